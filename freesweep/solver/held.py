@@ -1,0 +1,168 @@
+"""One integral held: Newton's method with its multiplier as one more unknown, and turning points.
+
+With ``C = sum h c(y_mid, slope)`` held at a target t, the load ``mu`` conjugate to it (c = dL/dmu) is unknown::
+
+    [ H    b ] [ dy  ]     [ g     ]
+    [ b^T  0 ] [ dmu ] = - [ C - t ],    b = -dC/dy
+
+solved with two tridiagonal solutions. ``sigma = b^T H^-1 b = dC/dmu`` along the branch: positive as long as the branch is
+stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
+"""
+
+from .jit import kernel
+from .newton import (
+    CONVERGED,
+    INFEASIBLE,
+    MAX_ITERATIONS,
+    SMALL_STEP,
+    STALLED,
+    assemble,
+    factor,
+    feasible_fraction,
+    settled,
+    substitute,
+)
+
+FIRST_CHANGE = 1e-3  # relative change of y of the first step of the search for a turning point
+SEARCH_STEPS = 60
+LARGEST_GROWTH = 3.0  # of the step from one to the next
+TURNING_TOLERANCE = 1e-12  # change of mu that the next step would bring, relative
+
+
+@kernel
+def loaded(load, direction, mu):
+    """The load changed by ``mu`` along ``direction``, component by component."""
+    return (
+        load[0] + mu * direction[0],
+        load[1] + mu * direction[1],
+        load[2] + mu * direction[2],
+        load[3] + mu * direction[3],
+        load[4] + mu * direction[4],
+        load[5] + mu * direction[5],
+        load[6] + mu * direction[6],
+    )
+
+
+@kernel
+def hold(conjugate, x, y, n, cells, load, direction, b):
+    """The held integral C, and its gradient as ``b = -dC/dy``."""
+    total = 0.0
+    b[0] = 0.0
+    last = len(cells) - 1
+    for j in range(n):
+        h = x[j + 1] - x[j]
+        c, c_y, c_v = conjugate(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cells[min(j, last)], load, direction)
+        total += h * c
+        b[j] -= 0.5 * h * c_y - c_v
+        b[j + 1] = -(0.5 * h * c_y + c_v)
+    return total
+
+
+@kernel
+def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, target, work):
+    """Newton for ``y`` (in place) and the multiplier ``mu`` of ``direction``, with the conjugate integral held.
+
+    Returns ``(status, unstable directions that keep the integral, mu, sigma)``; ``work[7]`` is left with the
+    change of y per unit of mu. ``direction`` is to be scaled so that mu is of order 1.
+    """
+    g, d, e, pivot, step = work[0], work[1], work[2], work[3], work[4]
+    b, response = work[6], work[7]
+    first, last = 1, n if free else n - 1
+    before = 1e300
+    for _ in range(MAX_ITERATIONS):
+        now = loaded(load, direction, mu)
+        if not assemble(density, x, y, n, cells, now, False, g, d, e):
+            return INFEASIBLE, 0, mu, 0.0
+        negative = factor(d, e, first, last, pivot)
+        value = hold(conjugate, x, y, n, cells, now, direction, b)
+        substitute(pivot, e, first, last, g, step)
+        substitute(pivot, e, first, last, b, response)
+        response[0] = 0.0
+        response[n] = response[n] if free else 0.0
+        sigma, lag = 0.0, 0.0
+        for i in range(first, last + 1):
+            response[i] = -response[i]
+            sigma -= b[i] * response[i]
+            lag += b[i] * step[i]
+        # dC = sigma dmu: a held change of C moves mu by change / sigma
+        change = (target - value - lag) / sigma
+        size = 0.0
+        step[0] = 0.0
+        step[n] = step[n] if free else 0.0
+        for i in range(1, n + 1):
+            step[i] = change * response[i] - step[i]
+            size = max(size, abs(step[i]) / y[i])
+        fraction = 1.0
+        if not size < SMALL_STEP:
+            ahead = loaded(load, direction, mu + change)
+            fraction = feasible_fraction(density, x, y, step, n, cells, now, ahead)
+            if fraction == 0.0:
+                return STALLED, negative, mu, sigma
+        for i in range(n + 1):
+            y[i] += fraction * step[i]
+        mu += fraction * change
+        size = max(size, abs(change) / max(1.0, abs(mu)))
+        if fraction == 1.0 and settled(size, before):
+            return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu, sigma
+        before = size if fraction == 1.0 else 1e300
+    return STALLED, 1, mu, 0.0
+
+
+@kernel
+def largest_change(y, response, n):
+    """Largest relative change of y that ``response`` makes."""
+    largest = 0.0
+    for i in range(n + 1):
+        largest = max(largest, abs(response[i]) / y[i])
+    return largest
+
+
+@kernel
+def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target, turning, work):
+    """Solve with the conjugate integral held at ``target``; or, if ``turning``, find the turning point of ``mu`` nearest
+    along the branch through ``y``.
+
+    ``y`` is changed in place; returns ``(status, unstable directions, mu)``. The search is a secant iteration for the zero
+    of 1/sigma over the held integral; it keeps to states that are stable while the integral is held, and leaves in ``y``
+    the state it came from: the turning point itself is no safe start on another mesh.
+    """
+    if turning:
+        target = hold(conjugate, x, y, n, cells, loaded(load, direction, mu), direction, work[6])
+    kept_y, kept_response, first_y = work[8], work[9], work[10]
+    near, near_value, near_mu, sigma, step = target, 0.0, mu, 0.0, 0.0
+    started = False
+    for _ in range(SEARCH_STEPS):
+        status, unstable, mu, sigma = solve_held(
+            density, conjugate, x, y, n, free, cells, load, direction, mu, target, work
+        )
+        if not turning or (not started and status != CONVERGED):
+            return status, unstable, mu
+        if status != CONVERGED or (started and unstable > 0):
+            step *= 0.25  # back to the last good state, and not so far
+            mu = near_mu
+        else:
+            value = 1.0 / sigma
+            if not started:
+                # a positive 1/sigma lies before the turning point: step toward it, whichever side this is
+                step = FIRST_CHANGE * sigma / largest_change(y, work[7], n)
+                started = True
+                for i in range(n + 1):
+                    first_y[i] = y[i]
+            else:
+                slope = (value - near_value) / (target - near)
+                full = -value / slope if value * slope != 0.0 else 0.0
+                if abs(value * full) < TURNING_TOLERANCE * max(1.0, abs(mu)):
+                    for i in range(n + 1):
+                        y[i] = first_y[i]
+                    return CONVERGED, 0, mu
+                reach = LARGEST_GROWTH * abs(step)
+                step = min(max(full, -reach), reach)
+                if full * value < 0.0:  # 1/sigma grows on the way: the zero lies farther on
+                    step = reach if value > 0.0 else -reach
+            near, near_value, near_mu = target, value, mu
+            for i in range(n + 1):
+                kept_y[i], kept_response[i] = y[i], work[7, i] * value
+        target = near + step
+        for i in range(n + 1):
+            y[i] = kept_y[i] + step * kept_response[i]
+    return STALLED, 0, mu

@@ -1,0 +1,55 @@
+"""The one compilation policy of every kernel.
+
+* ``error_model="numpy"``: a division by zero gives inf or nan, which the guards catch; no exception paths in loops.
+* ``fastmath={"contract"}``: fused multiply-add only. Reordering or ignoring NaN would break guards and determinism.
+* ``nogil``: kernels are driven by a thread pool, never by ``prange`` (its ``workqueue`` layer aborts the process when
+  two Python threads enter it).
+
+Entry points are cached on disk. Numba's cache knows only the file of the cached function, so editing the physics in
+another file would run stale code: the cache folder is therefore named after a hash of all kernel sources.
+"""
+
+import hashlib
+import os
+import sys
+from pathlib import Path
+
+import numba
+from numba.core import config
+
+_POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
+
+
+def source_hash() -> str:
+    """Hash of every kernel source, of Numba's version and of Python's: names the cache folder."""
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def _cache_folder() -> str:
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return str(Path(base) / "freesweep" / "kernels" / source_hash())
+
+
+def kernel(function):
+    """Compile a kernel that other kernels call."""
+    return numba.njit(**_POLICY)(function)
+
+
+def inlined(function):
+    """Put a kernel with one caller into that caller's code: LLVM otherwise optimises it anew at each level above."""
+    return numba.njit(inline="always", **_POLICY)(function)
+
+
+def entry_point(function):
+    """Compile a kernel that Python calls, and keep its machine code on disk."""
+    before = config.CACHE_DIR
+    config.CACHE_DIR = _cache_folder()
+    try:
+        return numba.njit(cache=True, **_POLICY)(function)
+    except RuntimeError:  # no folder can be written here: compile anew in each process
+        return kernel(function)
+    finally:
+        config.CACHE_DIR = before

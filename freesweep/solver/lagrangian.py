@@ -1,0 +1,187 @@
+"""The physics: the Lagrangian density of a pressurised tube with two fiber families, and its partial derivatives at
+one point.
+
+Everything is dimensionless: lengths by the undeformed radius r0, pressure by C10, force by pi r0^2 C10, torque by
+pi r0^3 C10, energy by pi r0^3 C10. The unknown is the circumferential stretch ``y`` with slope ``v = dy/dxi``.
+
+Fiber constraints (Eqs. 2.3, 2.4), solved for twist rate and meridional stretch, with H = (tan(alpha) + tan(beta))/2 and
+D = (tan(alpha) - tan(beta))/2::
+
+    psi(y) = H (gamma^2/y^2 - 1)
+    G(y)   = lambda_1^2 = gamma^2 (1 + H^2 + D^2) - D^2 y^2 - gamma^4 H^2/y^2
+    s(y,v) = sqrt(G - v^2)                                     axial length per undeformed length
+
+Functional (Eqs. 2.2, 2.5 - 2.8, 2.11; tension positive, unlike Eq. 2.11 where F is positive in compression)::
+
+    L(y, v) = (p y^2 + f) s - e a w(y) + m psi(y)
+    w       = (I1 - 3) + c (I2 - 3),  c = C01/C10              (Eq. 2.5)
+    I1      = G + y^2 (1 + k psi^2) + 1/(G y^2)
+    I2      = G y^2 + 1/y^2 + (1 + k psi^2)/G
+
+``k`` (``shear``) is 1 for the invariants of the whole in-plane tensor, whose twist shears the wall, and 0 for
+Eq. 2.5 as printed, which takes lambda_1 and lambda_2 for principal stretches.
+
+``cell`` holds what may vary along the tube, (H, D, a); ``load`` what does not, (gamma, c, k, p, f, m, e). The
+weight ``e`` of the strain energy is 1; 0 gives the locked shape (section 2.2). All functions are
+plain arithmetic: they run on a float or on any number-like lane type.
+"""
+
+from math import sqrt
+
+from .jit import kernel
+
+NO_ROOM = 1e-30  # stands for G - v^2 where that is negative: the state is refused, its numbers stay finite
+ROUNDING = 2e-13  # relative floor of every error bound
+ENERGY_ROUNDING = 4e-15  # the energy's, times the work of the loads
+
+
+@kernel
+def kinematics(y, cell, load):
+    """``(psi, psi_y, psi_yy, G - 1, G_y, G_yy)``: twist rate and squared meridional stretch (Eqs. 2.3, 2.4).
+
+    G - 1 and not G: near the undeformed state the strain energy lives in its last digits.
+    """
+    H, D = cell[0], cell[1]
+    gg = load[0] * load[0]
+    r = 1.0 / y
+    t = gg * r * r
+    psi = H * (t - 1.0)
+    psi_y = -2.0 * H * t * r
+    psi_yy = 6.0 * H * t * r * r
+    b = gg * H * H * t
+    stretch = (load[0] - 1.0) * (load[0] + 1.0)
+    G_1 = stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * t - D * D)
+    G_y = -2.0 * D * D * y + 2.0 * b * r
+    G_yy = -2.0 * D * D - 6.0 * b * r * r
+    return psi, psi_y, psi_yy, G_1, G_y, G_yy
+
+
+@kernel
+def excess(a, b):
+    """``A + B + 1/(A B) - 3`` for ``A = 1 + a``, ``B = 1 + b``, without cancellation near a = b = 0."""
+    c = a + b + a * b
+    return ((a + b) * c - a * b) / (1.0 + c)
+
+
+@kernel
+def strain_energy(y, cell, load):
+    """``(w, w_y, w_yy)``: strain energy density over C10, its first and second derivative along y (Eq. 2.5)."""
+    psi, psi_y, psi_yy, G_1, G_y, G_yy = kinematics(y, cell, load)
+    c, k = load[1], load[2]
+    G = 1.0 + G_1
+    r = 1.0 / y
+    z = r * r  # 1/y^2
+    e = 1.0 / G
+    e_y = -G_y * e * e
+    e_yy = (2.0 * G_y * G_y * e - G_yy) * e * e
+    q = k * psi * psi  # shear that the twist makes
+    q_y = 2.0 * k * psi * psi_y
+    q_yy = 2.0 * k * (psi_y * psi_y + psi * psi_yy)
+    y2 = y * y
+    b = (y - 1.0) * (y + 1.0)
+    first = excess(G_1, b) + y2 * q
+    first_y = G_y + 2.0 * y * (1.0 + q) + y2 * q_y + e_y * z - 2.0 * e * z * r
+    first_yy = G_yy + 2.0 * (1.0 + q) + 4.0 * y * q_y + y2 * q_yy + e_yy * z - 4.0 * e_y * z * r + 6.0 * e * z * z
+    second = excess(-G_1 * e, -b * z) + q * e
+    second_y = G_y * y2 + 2.0 * G * y - 2.0 * z * r + q_y * e + (1.0 + q) * e_y
+    second_yy = G_yy * y2 + 4.0 * G_y * y + 2.0 * G + 6.0 * z * z + q_yy * e + 2.0 * q_y * e_y + (1.0 + q) * e_yy
+    return first + c * second, first_y + c * second_y, first_yy + c * second_yy
+
+
+@kernel
+def density(y, v, cell, load):
+    """Derivatives of the density L at one point (Eq. 2.11).
+
+    Returns ``(room, L_y, L_v, L_yy, L_yv, L_vv)``. A state is admissible where ``room`` is positive: s is real, and the
+    meridional resultant p y^2 + f is a tension.
+    """
+    p, f, m = load[3], load[4], load[5]
+    _, psi_y, psi_yy, G_1, G_y, G_yy = kinematics(y, cell, load)
+    _, w_y, w_yy = strain_energy(y, cell, load)
+    a = load[6] * cell[2]
+    G = 1.0 + G_1
+    square = G - v * v
+    s = sqrt(max(square, NO_ROOM))
+    i = 1.0 / s
+    i3 = i * i * i
+    s_y = 0.5 * G_y * i
+    s_v = -v * i
+    s_yy = 0.5 * G_yy * i - 0.25 * G_y * G_y * i3
+    s_yv = 0.5 * G_y * v * i3
+    s_vv = -G * i3
+    T = p * y * y + f
+    T_y = 2.0 * p * y
+    L_y = T_y * s + T * s_y - a * w_y + m * psi_y
+    L_yy = 2.0 * p * s + 2.0 * T_y * s_y + T * s_yy - a * w_yy + m * psi_yy
+    L_yv = T_y * s_v + T * s_yv
+    return min(square, T), L_y, T * s_v, L_yy, L_yv, T * s_vv
+
+
+@kernel
+def integrands(y, v, cell, load):
+    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w (Eqs. 2.2, 2.5 - 2.7)."""
+    psi, _, _, G_1, _, _ = kinematics(y, cell, load)
+    w, _, _ = strain_energy(y, cell, load)
+    s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
+    return s, y * y * s, psi, cell[2] * w
+
+
+@kernel
+def locked_stretch(cell, gamma):
+    """Stretch of the uniform locked tube: the largest y^2 sqrt(G) (Eq. 2.12)."""
+    H, D = cell[0], cell[1]
+    A = gamma * gamma * (1.0 + H * H + D * D)
+    b = gamma * gamma * D * H
+    return sqrt((A + sqrt(A * A - 3.0 * b * b)) / (3.0 * D * D))
+
+
+@kernel
+def conjugate(y, v, cell, load, direction):
+    """``(c, c_y, c_v)`` with c = dL/dmu along a change of load: what is held when that load is unknown."""
+    psi, psi_y, _, G_1, G_y, _ = kinematics(y, cell, load)
+    s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
+    s_y = 0.5 * G_y / s
+    s_v = -v / s
+    T = direction[3] * y * y + direction[4]
+    T_y = 2.0 * direction[3] * y
+    return T * s + direction[5] * psi, T_y * s + T * s_y + direction[5] * psi_y, T * s_v
+
+
+@kernel
+def fiber_multipliers(y, v, cell, load):
+    """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family); a negative one belongs to a fiber that would have to push.
+
+    The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of pi r0^2 C10.
+    """
+    H, D, a = cell[0], cell[1], load[6] * cell[2]
+    c, k, f, m = load[1], load[2], load[4], load[5]
+    psi, _, _, G_1, _, _ = kinematics(y, cell, load)
+    G = 1.0 + G_1
+    q = 1.0 + k * psi * psi
+    y2 = y * y
+    w_G = 1.0 - 1.0 / (G * G * y2) + c * (y2 - q / (G * G))
+    w_psi = 2.0 * k * psi * (y2 + c / G)
+    total = (load[3] * y2 + f) / (2.0 * sqrt(max(G - v * v, NO_ROOM))) - a * w_G
+    difference = ((m - a * w_psi) / (2.0 * y2) - total * H * load[0] * load[0] / y2) / D
+    return 0.5 * (total + difference), 0.5 * (total - difference)
+
+
+@kernel
+def scales(outputs, load, length, scale, floor):
+    """By what each output's error is measured, and the error that rounding makes (length, volume, twist, energy,
+    middle stretch, multiplier).
+
+    Lengths count per undeformed length, stretch per radius, rotation per radian or relative to itself, the rest
+    relative to itself. The energy of a hardly strained wall carries the rounding of y - 1, as work of the loads.
+    """
+    work = abs(load[3] * outputs[1]) + abs(load[4] * outputs[0]) + abs(load[5] * outputs[2])
+    scale[0] = length
+    scale[1] = outputs[1]
+    scale[2] = max(0.5, abs(outputs[2]))  # half a tube: half a radian
+    scale[3] = max(outputs[3], 1e-9 * work)
+    scale[4] = 1.0
+    scale[5] = max(abs(load[3]), abs(load[4]), abs(load[5]))
+    for k in range(6):
+        floor[k] = ROUNDING * scale[k]
+    floor[3] += ENERGY_ROUNDING * work
+    floor[4] += ROUNDING * outputs[4]

@@ -1,0 +1,145 @@
+"""Nested meshes: every output extrapolated, with an error bound, refined until the bound meets the accuracy asked for.
+
+A midpoint cell errs by even powers of its size, so results A on meshes of n/2, n, 2n, 4n cells extrapolate to fourth
+order, ``E = (4 A_2n - A_n)/3``. The difference of two successive E, divided by the 15 that the order allows, estimates the
+error of the second; the difference before it, divided by 225, guards against its passing through zero. The bound is
+``SAFETY`` times the larger of the two, plus a floor for rounding.
+
+The rows of ``table`` belong to the meshes, coarsest first; its columns are the outputs: the four integrals, y in the
+middle, and the multiplier of a held integral.
+"""
+
+from . import held, mesh, newton
+from .held import loaded
+from .jit import kernel
+
+OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
+MIDDLE, MULTIPLIER = 4, 5
+BASE_CELLS = 24  # of the mesh that is graded; one coarser one (half) and two or more finer ones join it
+MAX_DOUBLINGS = 7  # of the base mesh: 3072 cells
+SAFETY = 3.0
+COMPANION = 0.01  # share of the largest scaled bound below which no other bound falls
+
+PLAIN, HELD, TURNING_POINT = 0, 1, 2
+UNREACHED = 3  # the accuracy was not met on the finest mesh
+
+
+@kernel
+def integrate(integrands, x, y, n, cells, load, row):
+    """Integrals over the tube on one mesh."""
+    for k in range(4):
+        row[k] = 0.0
+    last = len(cells) - 1
+    for j in range(n):
+        h = x[j + 1] - x[j]
+        s, volume, twist, energy = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cells[min(j, last)], load)
+        row[0] += h * s
+        row[1] += h * volume
+        row[2] += h * twist
+        row[3] += h * energy
+
+
+@kernel
+def extrapolate(table, level, scales, floors, values, bounds):
+    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound."""
+    largest = 0.0
+    for k in range(OUTPUTS):
+        a, b, c, d = table[level - 3, k], table[level - 2, k], table[level - 1, k], table[level, k]
+        first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
+        values[k] = third
+        bounds[k] = SAFETY * max(abs(third - second) / 15.0, abs(second - first) / 225.0)
+        largest = max(largest, bounds[k] / scales[k])
+    for k in range(OUTPUTS):
+        bounds[k] = max(bounds[k], COMPANION * largest * scales[k]) + floors[k]
+    return largest
+
+
+@kernel
+def make_admissible(density, x, y, n, cells, load):
+    """Shrink ``y`` toward 1, where every state is admissible, until each cell has room."""
+    for _ in range(60):
+        if newton.admissible(density, x, y, n, cells, load):
+            return True
+        for i in range(n + 1):
+            y[i] = 1.0 + 0.85 * (y[i] - 1.0)
+    return False
+
+
+@kernel
+def adapt(density, integrands, x, y, n, free, cells, load, work):
+    """Move the nodes of one mesh to where the solution bends, and carry the solution over; returns whether it is
+    admissible there.
+    """
+    rate, nodes, new_x, new_y = work[2], work[3], work[4], work[5]
+    mesh.turning(integrands, x, y, n, free, cells, load, work, rate)
+    mesh.node_density(x, n, rate, nodes)
+    mesh.regrade(x, y, nodes, n, new_x, new_y, work[6])
+    fits = newton.admissible(density, new_x, new_y, n, cells, load)
+    for i in range(n + 1):
+        x[i], y[i] = new_x[i], new_y[i]
+    return fits
+
+
+@kernel
+def solve(
+    density, conjugate, integrands, scales, x, y, free, cells, load, goal, direction, target, mu, regrades, accuracy,
+    fine, work, table, out,
+):  # fmt: skip
+    """Solve on nested meshes until every bound meets ``accuracy``.
+
+    ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
+    call's warm start. ``fine`` is scratch of shape (4, > 2 n) for the finer meshes: (x, y) of the last one in rows 0, 1,
+    of the one before in rows 2, 3. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
+
+    Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
+    """
+    n = len(x) - 1
+    passes, level, count, on_base = 0, 1, n, mu
+    unstable = 0
+    xs, ys = x, y
+    first_mu = mu
+    while True:
+        if goal == TURNING_POINT:
+            mu = first_mu
+        if not make_admissible(density, xs, ys, count, cells, loaded(load, direction, mu)):
+            return newton.INFEASIBLE, 0, 0, on_base
+        if goal == PLAIN:
+            status, unstable = newton.solve(density, xs, ys, count, free, cells, load, work)
+        else:
+            status, unstable, mu = held.solve(
+                density, conjugate, xs, ys, count, free, cells, load, direction, mu, target, goal == TURNING_POINT, work
+            )
+        if status != newton.CONVERGED:
+            return status, unstable, max(level - 1, 0), on_base
+        now = loaded(load, direction, mu)
+        if level == 1 and passes < regrades:
+            adapt(density, integrands, x, y, n, free, cells, now, work)
+            passes += 1
+            continue
+
+        row = table[level]
+        integrate(integrands, xs, ys, count, cells, now, row)
+        row[MIDDLE], row[MULTIPLIER] = ys[count], mu
+        if level >= 3:
+            scales(row, now, x[n] - x[0], out[2], out[3])
+            if extrapolate(table, level, out[2], out[3], out[0], out[1]) <= accuracy:
+                return newton.CONVERGED, unstable, level - 1, on_base
+            if level == MAX_DOUBLINGS + 1:
+                return UNREACHED, unstable, MAX_DOUBLINGS, on_base
+
+        # order of the meshes: base (row 1), half of it (row 0), then double, double again, ...
+        if level == 1:
+            on_base = mu
+            level, count = 0, n // 2
+            xs, ys = fine[0], fine[1]
+            for i in range(count + 1):
+                xs[i], ys[i] = x[2 * i], y[2 * i]
+            continue
+        level = level + 2 if level == 0 else level + 1
+        count = n << (level - 1)
+        for i in range(count // 2 + 1):
+            fine[2, i] = x[i] if level == 2 else fine[0, i]
+            fine[3, i] = y[i] if level == 2 else fine[1, i]
+        mu = on_base if level == 2 else mu
+        mesh.split(x, n, 1 << (level - 1), fine[0])
+        mesh.prolong(fine[3], count // 2, fine[1])

@@ -1,0 +1,173 @@
+"""The numerics: stationary points of ``J = sum h L(y_mid, slope)`` on a mesh, for any scalar density L(y, y').
+
+The functional itself is discretized, on midpoint cells, so the gradient is the discrete Euler-Lagrange equation and the
+Hessian is symmetric tridiagonal. A maximum of J is sought: gradient g and Hessian H are those of -J, and H is positive
+definite at a maximum. The pivots of its LDL^T factors count the directions in which a state is unstable (Sylvester).
+
+``density(y, v, cell, load) -> (room, L_y, L_v, L_yy, L_yv, L_vv)`` is handed in; a state is admissible where room > 0
+and y > 0. ``y[0]`` is held; so is ``y[n]`` unless ``free`` (a plane of symmetry: the natural condition).
+"""
+
+from .jit import kernel
+
+MAX_ITERATIONS = 60  # a warm start takes 2 or 3, a bad first guess at a small angle 25
+MAX_HALVINGS = 30  # of one step: below 1e-9 of it nothing is gained
+STEP_TOLERANCE = 1e-12  # relative error that the last step may leave behind
+SMALL_STEP = 1e-4  # relative: below it the full step is taken without a search
+MIN_ROOM = 0.02  # share of the room of any cell that one step must leave
+
+CONVERGED, STALLED, INFEASIBLE = 0, 1, 2
+
+
+@kernel
+def assemble(density, x, y, n, cells, load, convex, g, d, e):
+    """Gradient ``g`` and Hessian (diagonal ``d``, off-diagonal ``e``) of -J on n cells; False if not admissible.
+
+    ``convex`` drops whatever makes a cell's own Hessian indefinite: far from the solution every step is a descent then.
+    """
+    g[0] = 0.0
+    d[0] = 0.0
+    last = len(cells) - 1
+    for j in range(n):
+        h = x[j + 1] - x[j]
+        v = (y[j + 1] - y[j]) / h
+        middle = 0.5 * (y[j] + y[j + 1])
+        room, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cells[min(j, last)], load)
+        if not (room > 0.0 and middle > 0.0):  # a NaN counts as no room
+            return False
+        if convex:
+            L_yy = min(L_yy, L_yv * L_yv / L_vv)
+        half = 0.5 * h * L_y
+        corner = 0.25 * h * L_yy
+        stiff = L_vv / h
+        g[j] -= half - L_v
+        g[j + 1] = -(half + L_v)
+        d[j] -= corner - L_yv + stiff
+        d[j + 1] = -(corner + L_yv + stiff)
+        e[j] = -(corner - stiff)
+    return True
+
+
+@kernel
+def admissible(density, x, y, n, cells, load):
+    """Whether every cell has room."""
+    last = len(cells) - 1
+    for j in range(n):
+        middle = 0.5 * (y[j] + y[j + 1])
+        room = density(middle, (y[j + 1] - y[j]) / (x[j + 1] - x[j]), cells[min(j, last)], load)[0]
+        if not (room > 0.0 and middle > 0.0):
+            return False
+    return True
+
+
+@kernel
+def factor(d, e, first, last, pivot):
+    """LDL^T of rows first..last; returns the number of negative pivots."""
+    pivot[first] = d[first]
+    negative = 0 if pivot[first] > 0.0 else 1
+    for i in range(first + 1, last + 1):
+        pivot[i] = d[i] - e[i - 1] * e[i - 1] / pivot[i - 1]
+        if not pivot[i] > 0.0:
+            negative += 1
+    return negative
+
+
+@kernel
+def substitute(pivot, e, first, last, b, out):
+    """``out = H^-1 b`` with the factors of :func:`factor`."""
+    out[first] = b[first]
+    for i in range(first + 1, last + 1):
+        out[i] = b[i] - e[i - 1] * out[i - 1] / pivot[i - 1]
+    out[last] /= pivot[last]
+    for i in range(last - 1, first - 1, -1):
+        out[i] = (out[i] - e[i] * out[i + 1]) / pivot[i]
+
+
+@kernel
+def feasible_fraction(density, x, y, step, n, cells, load, ahead):
+    """Largest of 1, 1/2, 1/4, ... of ``step`` that leaves every cell MIN_ROOM of its room; 0 if none does.
+
+    ``ahead`` is the load after the step.
+    """
+    fraction = 1.0
+    last = len(cells) - 1
+    for _ in range(MAX_HALVINGS):
+        fits = True
+        for j in range(n):
+            h = x[j + 1] - x[j]
+            l, r = y[j] + fraction * step[j], y[j + 1] + fraction * step[j + 1]
+            before = density(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cells[min(j, last)], load)[0]
+            after = density(0.5 * (l + r), (r - l) / h, cells[min(j, last)], ahead)[0]
+            if not (after > MIN_ROOM * before and l + r > 0.2 * (y[j] + y[j + 1])):
+                fits = False
+                break
+        if fits:
+            return fraction
+        fraction *= 0.5
+    return 0.0
+
+
+@kernel
+def settled(size, before):
+    """Whether quadratic convergence leaves nothing: the next step would be about ``size^3/before^2``."""
+    ahead = size if before > 1e200 else size * (size / before) * (size / before)
+    return size < 1e-3 and (ahead < STEP_TOLERANCE or (size < 1e-9 and size > 0.3 * before))
+
+
+@kernel
+def solve(density, x, y, n, free, cells, load, work):
+    """Damped Newton from ``y`` (changed in place).
+
+    Returns ``(status, negative pivots)``. ``work`` is scratch of shape (11, > n).
+    """
+    g, d, e, pivot, step, trial = work[0], work[1], work[2], work[3], work[4], work[5]
+    first, last = 1, n if free else n - 1
+    for i in range(n + 1):
+        trial[i] = y[i]
+    convex, negative, halvings, iterations = False, 0, 0, 0
+    size, before, fraction, slope = 1e300, 1e300, 0.0, 0.0
+    while iterations < MAX_ITERATIONS and halvings < MAX_HALVINGS:
+        admitted = assemble(density, x, trial, n, cells, load, convex, g, d, e)
+        if iterations == 0 and not admitted:
+            return INFEASIBLE, 0
+        if iterations > 0 and not convex:
+            # shorten the step until its slope says that the valley's floor was not overshot by much
+            after = 0.0
+            for i in range(first, last + 1):
+                after += g[i] * step[i]
+            if not admitted or (size >= SMALL_STEP and after > -0.9 * slope):
+                fraction *= 0.5
+                halvings += 1
+                for i in range(n + 1):
+                    trial[i] = y[i] + fraction * step[i]
+                continue
+            for i in range(n + 1):
+                y[i] = trial[i]
+            arrived = fraction == 1.0 and negative == 0 and settled(size, before)
+            before = size if fraction == 1.0 else 1e300
+            negative = factor(d, e, first, last, pivot)
+            if arrived:
+                return CONVERGED, negative
+        else:
+            unconvex = factor(d, e, first, last, pivot)
+            negative = negative if convex else unconvex
+        if negative > 0 and not convex:
+            convex = True  # assemble again, at the same state
+            continue
+        substitute(pivot, e, first, last, g, step)
+        step[0] = 0.0
+        step[n] = step[n] if free else 0.0
+        size, slope = 0.0, 0.0
+        for i in range(1, n + 1):
+            step[i] = -step[i]
+            size = max(size, abs(step[i]) / y[i])
+            slope += g[i] * step[i] if i <= last else 0.0
+        fraction = 1.0
+        if not size < SMALL_STEP:
+            fraction = feasible_fraction(density, x, y, step, n, cells, load, load)
+            if fraction == 0.0:
+                return STALLED, negative
+        for i in range(n + 1):
+            trial[i] = y[i] + fraction * step[i]
+        convex, halvings, iterations = False, 0, iterations + 1
+    return STALLED, 1
