@@ -1,0 +1,108 @@
+"""One table of everything a dataset holds: name, units, long name, and in which parameters it varies.
+
+Datasets of single actuators and atlases share it. A parameter that takes several values is a dimension; one with a single
+value is a scalar coordinate. Every float output has ``<name>_error`` beside it, a bound that holds.
+"""
+
+from typing import NamedTuple
+
+from ..status import FLAGS, flag_attributes, status_attributes
+
+
+class Parameter(NamedTuple):
+    """What goes in: the undeformed design and its load."""
+
+    units: str
+    long_name: str
+
+
+PARAMETERS = {
+    "alpha": Parameter("degree", "angle of the first fiber family from the axis"),
+    "beta": Parameter("degree", "angle of the second fiber family from the axis"),
+    "length": Parameter("m", "undeformed length"),
+    "radius": Parameter("m", "undeformed inner radius"),
+    "wall": Parameter("m", "undeformed wall thickness"),
+    "fiber_radius": Parameter("m", "radius at which the fibers lie"),
+    "fiber_extension": Parameter("1", "stretch of the fibers at any pressure"),
+    "c10": Parameter("Pa", "first Mooney-Rivlin constant"),
+    "c01": Parameter("Pa", "second Mooney-Rivlin constant"),
+    "force": Parameter("N", "axial force applied by the surroundings, positive in tension"),
+    "torque": Parameter("N m", "torque applied by the surroundings, positive toward growing rotation"),
+    "pressure": Parameter("Pa", "gauge pressure"),
+}
+LOADS = ("force", "torque", "pressure")
+MATERIAL = ("wall", "c10", "c01")
+
+
+class Variable(NamedTuple):
+    """What comes out."""
+
+    units: str
+    long_name: str
+    without: tuple = ()  # parameters it does not vary in
+
+
+_SHAPE = {
+    "deformed_length": ("m", "length"),
+    "rotation": ("degree", "rotation of the free end"),
+    "mid_radius": ("m", "radius of the fiber surface at half length"),
+    "volume": ("m3", "volume of the cavity"),
+}
+
+VARIABLES = {
+    **{name: Variable(units, f"{long_name} under pressure") for name, (units, long_name) in _SHAPE.items()},
+    "strain_energy": Variable("J", "strain energy of the wall"),
+    "limit_pressure": Variable("Pa", "pressure at which the branch ends", ("pressure",)),
+    **{
+        f"locked_{name}": Variable(units, f"{long_name}, locked", (*LOADS, *MATERIAL))
+        for name, (units, long_name) in _SHAPE.items()
+    },
+    "locked_strain_energy": Variable("J", "strain energy of the wall, locked", LOADS),
+    "ideal_blocked_force": Variable(
+        "N", "blocked force of inextensible fibers (Eq. 2.16)", ("length", *MATERIAL, "force", "torque")
+    ),
+    "ideal_blocked_torque": Variable(
+        "N m", "blocked torque of inextensible fibers (Eq. 2.19)", ("length", *MATERIAL, "force", "torque")
+    ),
+}
+
+STATUS_OF = {
+    "status": ("status of the equilibrium", ()),
+    "locked_status": ("status of the locked state", VARIABLES["locked_strain_energy"].without),
+    "ideal_blocked_force_status": ("status of the blocked force", VARIABLES["ideal_blocked_force"].without),
+    "ideal_blocked_torque_status": ("status of the blocked torque", VARIABLES["ideal_blocked_torque"].without),
+}
+FLAG_OF = {
+    "stable": ("whether the equilibrium is stable", ()),
+    "slack_fiber": ("fiber family that would have to push somewhere", ()),
+    "limit_found": ("whether a limit pressure was met", ("pressure",)),
+}
+
+PROFILES = {
+    "deformed_radius": ("m", "radius of the fiber surface"),
+    "axial_position": ("m", "axial position after deformation"),
+    "twist": ("degree", "rotation from the fixed end"),
+    "alpha_deformed": ("degree", "angle of the first fiber family after deformation"),
+    "beta_deformed": ("degree", "angle of the second fiber family after deformation"),
+    "fiber_tension_alpha": ("N", "tension of the whole first family"),
+    "fiber_tension_beta": ("N", "tension of the whole second family"),
+}
+
+
+def attributes(name: str) -> dict:
+    """CF attributes of any variable or coordinate that a dataset may hold."""
+    if name in PARAMETERS:
+        return {"units": PARAMETERS[name].units, "long_name": PARAMETERS[name].long_name}
+    if name == "x":
+        return {"units": "m", "long_name": "distance from the fixed end before deformation"}
+    if name in PROFILES:
+        units, long_name = PROFILES[name]
+        return {"units": units, "long_name": long_name}
+    if name in STATUS_OF:
+        return {"long_name": STATUS_OF[name][0], **status_attributes()}
+    if name in FLAGS:
+        return {"long_name": FLAG_OF[name][0], **flag_attributes(name)}
+    if name.endswith("_error"):
+        of = VARIABLES[name.removesuffix("_error")]
+        return {"units": of.units, "long_name": f"error bound of {name.removesuffix('_error')}"}
+    return {"units": VARIABLES[name].units, "long_name": VARIABLES[name].long_name}

@@ -1,0 +1,103 @@
+"""Closed forms of the uniform tube: locked state, blocked force and torque, regions of the design space.
+
+Angles in degrees, arrays broadcast. With H = (tan(alpha) + tan(beta))/2 and D = (tan(alpha) - tan(beta))/2::
+
+    y_L^2 = (A + sqrt(A^2 - 3 gamma^4 D^2 H^2))/(3 D^2),   A = gamma^2 (1 + H^2 + D^2)       (Eq. 2.12)
+    tan(alpha') tan(beta') = -2                                                               the locked manifold
+    F_blocked = -pi r0^2 P (1 + 2/(tan(alpha) tan(beta)))                                     (Eq. 2.16)
+    M_blocked =  pi r0^3 P (2 + tan(alpha) tan(beta))/(tan(alpha) + tan(beta))                (Eqs. 2.19, 2.20)
+
+The forces are positive in tension: opposite to Eq. 2.11, as in the source's plots. Where a formula has a pole or no
+meaning (a straight fiber cannot stretch; alpha = -beta cannot rotate; region I has no blocked force) the result is NaN.
+"""
+
+import numpy as np
+
+REGIONS = ("AF", "DF", "I", "IIa", "IIb", "LM")
+ANGLE_TOLERANCE = 1e-9  # [degree] and, for the product of tangents, relative: what counts as lying on a line
+
+
+def _tangents(alpha, beta):
+    alpha, beta = np.broadcast_arrays(np.asarray(alpha, float), np.asarray(beta, float))
+    return np.tan(np.radians(alpha)), np.tan(np.radians(beta))
+
+
+def locked_stretch(alpha, beta, fiber_extension=1.0):
+    """Circumferential stretch of the locked uniform tube [-]; NaN on the line alpha = beta."""
+    ta, tb = _tangents(alpha, beta)
+    half_sum, half_difference = 0.5 * (ta + tb), 0.5 * (ta - tb)
+    g2 = np.asarray(fiber_extension, float) ** 2
+    a = g2 * (1.0 + half_sum**2 + half_difference**2)
+    root = np.sqrt(np.maximum(a**2 - 3.0 * (g2 * half_difference * half_sum) ** 2, 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stretch = np.sqrt((a + root) / (3.0 * half_difference**2))
+    return np.where(_on(alpha, beta), np.nan, stretch)
+
+
+def _on(alpha, beta):
+    return np.abs(np.subtract(alpha, beta)) < ANGLE_TOLERANCE
+
+
+def uniform_state(alpha, beta, stretch, fiber_extension=1.0):
+    """Axial stretch [-], twist [radian per radius of undeformed length] and deformed angles [degree] of a uniform tube.
+
+    Eqs. 2.3 and 2.4 solved for a circumferential ``stretch``; returns ``(axial_stretch, twist, alpha', beta')``.
+    """
+    ta, tb = _tangents(alpha, beta)
+    half_sum, half_difference = 0.5 * (ta + tb), 0.5 * (ta - tb)
+    g2 = np.asarray(fiber_extension, float) ** 2
+    y2 = np.asarray(stretch, float) ** 2
+    twist = half_sum * (g2 / y2 - 1.0)
+    squared = g2 * (1.0 + half_sum**2 + half_difference**2) - half_difference**2 * y2 - g2**2 * half_sum**2 / y2
+    axial = np.sqrt(np.where(squared >= 0.0, squared, np.nan))
+    y = np.sqrt(y2)
+    return (
+        axial,
+        twist,
+        np.degrees(np.arctan2(y * (ta + twist), axial)),
+        np.degrees(np.arctan2(y * (tb + twist), axial)),
+    )
+
+
+def locked_angles(alpha, beta, fiber_extension=1.0):
+    """Fiber angles of the locked uniform tube [degree], ``(alpha', beta')``: a point of the locked manifold."""
+    return uniform_state(alpha, beta, locked_stretch(alpha, beta, fiber_extension), fiber_extension)[2:]
+
+
+def locked_manifold(alpha):
+    """The beta [degree] that makes ``tan(alpha) tan(beta) = -2``: such a design does not move under pressure."""
+    with np.errstate(divide="ignore"):
+        return np.degrees(np.arctan(-2.0 / np.tan(np.radians(np.asarray(alpha, float)))))
+
+
+def blocked_force(alpha, beta, radius, pressure):
+    """Force [N] that keeps the length at pressure [Pa] with the ends free to rotate (Eq. 2.16); ``radius`` [m]."""
+    ta, tb = _tangents(alpha, beta)
+    product = ta * tb
+    with np.errstate(divide="ignore", invalid="ignore"):
+        force = -np.pi * np.asarray(radius) ** 2 * pressure * (1.0 + 2.0 / product)
+    return np.where((product < 0.0) & ~_on(alpha, beta), force, np.nan)
+
+
+def blocked_torque(alpha, beta, radius, pressure):
+    """Torque [N m] that keeps the rotation at pressure [Pa] with the length free (Eqs. 2.19, 2.20); ``radius`` [m]."""
+    ta, tb = _tangents(alpha, beta)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        torque = np.pi * np.asarray(radius) ** 3 * pressure * (2.0 + ta * tb) / (ta + tb)
+    on_af = np.abs(np.add(alpha, beta)) < ANGLE_TOLERANCE
+    return np.where(on_af | _on(alpha, beta), np.nan, torque)
+
+
+def region(alpha, beta):
+    """Name of the region of the design space (Figure 1-2) as an array of strings, one of REGIONS.
+
+    AF: alpha = -beta; DF: alpha = beta; LM: the locked manifold; I: swells, first longer, then shorter, rotating; IIa:
+    swells, shortens, rotates; IIb: thins, lengthens, rotates. A straight fiber (tan = 0) counts to region I.
+    """
+    ta, tb = _tangents(alpha, beta)
+    product = ta * tb
+    on_af = np.abs(np.add(alpha, beta)) < ANGLE_TOLERANCE
+    on_lm = np.abs(product + 2.0) < 2.0 * ANGLE_TOLERANCE
+    return np.select(
+        [_on(alpha, beta), on_lm, on_af, product >= 0.0, product > -2.0], ["DF", "LM", "AF", "I", "IIa"], default="IIb"
+    )

@@ -1,0 +1,64 @@
+"""The one table of statuses: value, CF meaning, cause and remedy; and of the flags beside it, which blank nothing."""
+
+from typing import NamedTuple
+
+
+class Status(NamedTuple):
+    """One row of the table."""
+
+    value: int
+    meaning: str
+    sentence: str
+
+
+STATUSES = (
+    Status(0, "ok", "solved to the accuracy asked for"),
+    Status(1, "degenerate", "alpha = beta: one fiber family leaves the shape free; choose angles that differ"),
+    Status(
+        2,
+        "beyond_limit_pressure",
+        "the branch from zero pressure ended at a lower pressure (see limit_pressure); stay below it",
+    ),
+    Status(
+        3,
+        "meridional_compression",
+        "the wall would have to be pushed along its length (p y^2 + f <= 0); raise the pressure or the axial force",
+    ),
+    Status(4, "held_impossible", "the held length or rotation cannot be reached; hold another value"),
+    Status(5, "inaccurate", "solved, but the error bound misses the accuracy asked for; the value and its bound stand"),
+    Status(6, "not_converged", "a defect of the solver: please report the design"),
+    Status(7, "invalid", "a parameter lies outside the domain of the model"),
+    Status(8, "outside_atlas", "the point lies beyond the grid; no extrapolation is made"),
+    Status(
+        9, "not_interpolable", "the cell touches a failed node, a limit or a change of validity; refine=True answers it"
+    ),
+)
+(
+    OK,
+    DEGENERATE,
+    BEYOND_LIMIT,
+    COMPRESSED,
+    HELD_IMPOSSIBLE,
+    INACCURATE,
+    NOT_CONVERGED,
+    INVALID,
+    OUTSIDE,
+    NOT_INTERPOLABLE,
+) = (s.value for s in STATUSES)
+VALUED = (OK, INACCURATE)  # the statuses whose outputs are numbers; all others' are NaN
+
+FLAGS = {
+    "stable": {0: "unstable", 1: "stable"},
+    "limit_found": {0: "none_up_to_the_largest_pressure", 1: "found"},
+    "slack_fiber": {0: "none", 1: "alpha_family", 2: "beta_family", 3: "both_families"},
+}
+
+
+def status_attributes() -> dict:
+    """CF attributes of a status variable."""
+    return {"flag_values": [s.value for s in STATUSES], "flag_meanings": " ".join(s.meaning for s in STATUSES)}
+
+
+def flag_attributes(name: str) -> dict:
+    """CF attributes of one of FLAGS."""
+    return {"flag_values": list(FLAGS[name]), "flag_meanings": " ".join(FLAGS[name].values())}
