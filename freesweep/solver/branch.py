@@ -17,7 +17,7 @@ from . import lagrangian, mesh, nested, newton, uniform
 from .climb import CLIMB_CHANGE, climb, creep
 from .held import loaded
 from .jit import entry_point, inlined, kernel
-from .profile import store_profile
+from .profile import FIELDS, at_stations, rest_profile
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK
 
 # columns of a problem: what one design is, dimensionless
@@ -99,7 +99,7 @@ def reach(x, y, last_x, last_y, u, reached, started, cells, before, load, half, 
 
     Returns ``(status, doublings, limit pressure, its bound)``.
     """
-    fine, work, table = space
+    fine, work, table, _ = space
     start, way, goal, mu = before, WARM, nested.PLAIN, 0.0
     direction = FLAT
     limit, limit_bound = np.nan, np.nan
@@ -166,7 +166,7 @@ def reach(x, y, last_x, last_y, u, reached, started, cells, before, load, half, 
 
 
 @inlined
-def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slack, limit, nodes, profiles):
+def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slack, limit, stations, profiles):
     """Equilibria of one design at rising ``pressures``, on the branch that the module describes.
 
     Arguments
@@ -178,7 +178,7 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
     values, bounds : (n, 5) length, volume, twist, energy of the half tube, stretch in the middle, and error bounds
     status, slack : (n,) codes; values are NaN unless the status is OK or INACCURATE
     limit : (2,) limit pressure and its bound, NaN if none was met
-    nodes, profiles : (n,), (n, 4, m): see :func:`store_profile`; nothing is stored where m = 0
+    stations, profiles : (m,), (n, FIELDS, m): see :func:`at_stations`; m = 0 for none
     """
     fine = space[0]
     out = np.zeros((4, nested.OUTPUTS))
@@ -193,9 +193,12 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
     limit[0], limit[1] = np.nan, np.nan
     for i in range(len(pressures)):
         p = pressures[i]
-        slack[i], nodes[i] = 0, 0
+        slack[i] = 0
         for k in range(5):
             values[i, k], bounds[i, k] = np.nan, np.nan
+        for j in range(len(stations)):
+            for k in range(FIELDS):
+                profiles[i, k, j] = np.nan
         if not (p >= 0.0 and clamped > 0.0):
             status[i] = INVALID
             continue
@@ -205,6 +208,7 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
             values[i, 0], values[i, 1], values[i, 2], values[i, 3], values[i, 4] = half, half, 0.0, 0.0, 1.0
             for k in range(5):
                 bounds[i, k] = 0.0
+            rest_profile(stations, cells[0], profiles[i])
             continue
         if not p + f > 0.0:
             status[i] = COMPRESSED
@@ -231,7 +235,8 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
             for k in range(5):
                 values[i, k], bounds[i, k] = out[0, k], out[1, k]
             slack[i] = slack_fibers(fine[0], fine[1], (len(x) - 1) << doublings, cells, load)
-            nodes[i] = store_profile(profiles[i], len(x) - 1, doublings, cells, load, fine)
+            if len(stations) > 0:
+                at_stations(stations, len(x) - 1, doublings, cells, load, fine, space[3], profiles[i])
             before, started = load, True
             u = ahead if reached == 1.0 else np.nan
             for k in range(len(x)):
@@ -245,15 +250,17 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
 
 
 @entry_point
-def walk_many(problems, first, pressures, base_cells, accuracy, values, bounds, status, slack, limits, nodes, profiles):
+def walk_many(
+    problems, first, pressures, base_cells, accuracy, values, bounds, status, slack, limits, stations, profiles
+):
     """:func:`walk` for each row of ``problems``; problem k owns rows ``first[k]`` to ``first[k + 1]`` of all others."""
     size = (base_cells << nested.MAX_DOUBLINGS) + 2
     table = np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
-    space = np.zeros((4, size)), np.zeros((11, size)), table
+    space = np.zeros((5, size)), np.zeros((13, size)), table, np.zeros((5, size))
     x, y = np.zeros(base_cells + 1), np.zeros(base_cells + 1)
     for k in range(len(problems)):
         own = slice(first[k], first[k + 1])
         walk(
             problems[k], pressures[own], x, y, accuracy, space, values[own], bounds[own], status[own], slack[own],
-            limits[k], nodes[own], profiles[own],
+            limits[k], stations, profiles[own],
         )  # fmt: skip

@@ -6,14 +6,15 @@ For a rising pressure that quantity is the volume. Held at each step, it leaves 
 import numpy as np
 
 from . import lagrangian, nested, newton, uniform
-from .held import hold, largest_change, loaded, solve_held
+from .held import MOST_GAIN, hold, largest_change, loaded, solve_held, strayed
 from .jit import inlined, kernel
 from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
 CLIMB_CHANGE = 0.06  # relative change of y in one step
 CLIMB_STEPS = 400
+TOLERANCE = 1e-10  # of states on the way
 CLOSING = 1.2  # times what is left of the way, by the linear prediction: the last step passes the end
-SMALLEST_SHRINK = 1e-6  # of a step, before the climb is given up
+SMALLEST_SHRINK = 1e-3  # of a step, before the climb is given up
 SMALLEST_CREEP = 1e-6  # of the way
 PUSHED = 0.02  # share of its largest part to which the resultant p y^2 + f has fallen where a climb ends in it
 
@@ -40,7 +41,7 @@ def largest_drift(y, other):
 @kernel
 def regraded(x, y, n, free, cells, load, work):
     """Adapt the mesh to the solution, unless that would leave the solution inadmissible."""
-    old_x, old_y = work[8], work[9]
+    old_x, old_y = work[10], work[11]
     for i in range(n + 1):
         old_x[i], old_y[i] = x[i], y[i]
     if not nested.adapt(lagrangian.density, lagrangian.integrands, x, y, n, free, cells, load, work):
@@ -60,12 +61,24 @@ def climb(x, y, free, cells, start, end, work):
     kept_x, kept_y, response = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
     safe_x, safe_y = np.empty(n + 1), np.empty(n + 1)
     kept_mu, kept_target, kept_sigma, safe_mu = 0.0, 0.0, 0.0, 0.0
-    mu, target, shrink, stepping, started = 0.0, 0.0, 1.0, False, False
+    mu, target, change, shrink, stepping, started = 0.0, 0.0, 0.0, 1.0, False, False
     for _ in range(CLIMB_STEPS):
         if not stepping:
-            target = hold(lagrangian.conjugate, x, y, n, cells, loaded(start, direction, mu), direction, work[6])
+            target = hold(lagrangian.conjugate, x, y, n, cells, loaded(start, direction, mu), direction, work[8])
         status, unstable, mu, sigma = solve_held(
-            lagrangian.density, lagrangian.conjugate, x, y, n, free, cells, start, direction, mu, target, work
+            lagrangian.density,
+            lagrangian.conjugate,
+            x,
+            y,
+            n,
+            free,
+            cells,
+            start,
+            direction,
+            mu,
+            target,
+            TOLERANCE,
+            work,
         )
         solved = status == newton.CONVERGED
         if solved and (sigma <= 0.0 or unstable > 0 or (stepping and mu < kept_mu)):
@@ -75,10 +88,10 @@ def climb(x, y, free, cells, start, end, work):
         if solved and not stepping:
             for i in range(n + 1):
                 safe_x[i], safe_y[i] = (kept_x[i], kept_y[i]) if started else (x[i], y[i])
-                kept_x[i], kept_y[i], response[i] = x[i], y[i], work[7, i]
+                kept_x[i], kept_y[i], response[i] = x[i], y[i], work[9, i]
             safe_mu = kept_mu if started else mu
             kept_mu, kept_target, kept_sigma, started = mu, target, sigma, True
-        elif solved and largest_drift(y, kept_y) < 2.0 * CLIMB_CHANGE:
+        elif solved and mu - kept_mu < MOST_GAIN * change and strayed(y, n, kept_y, response, change) < CLIMB_CHANGE:
             if mu >= 1.0:
                 for i in range(n + 1):
                     y[i] = kept_y[i] + (y[i] - kept_y[i]) * (1.0 - kept_mu) / (mu - kept_mu)
@@ -91,7 +104,12 @@ def climb(x, y, free, cells, start, end, work):
             shrink *= 0.5
             if shrink < SMALLEST_SHRINK or not stepping:
                 last = loaded(start, direction, kept_mu)
-                return (COMPRESSED if started and pushed(kept_y, last) else NOT_CONVERGED), kept_mu
+                if not started:
+                    return NOT_CONVERGED, mu
+                for i in range(n + 1):
+                    x[i], y[i] = safe_x[i], safe_y[i]
+                # stuck: at a turning point of many modes (long tubes), unless the wall went slack
+                return (COMPRESSED if pushed(kept_y, last) else BEYOND_LIMIT), safe_mu
         change = shrink * CLIMB_CHANGE / largest_change(kept_y, response, n)  # of mu, to first order
         change = min(change, CLOSING * (1.0 - kept_mu))
         for i in range(n + 1):
@@ -110,8 +128,9 @@ def creep(x, y, free, cells, start, end, work):
         for i in range(n + 1):
             kept_y[i] = y[i]
         ahead = min(1.0, t + step)
-        status, unstable = newton.solve(
-            lagrangian.density, x, y, n, free, cells, uniform.between(start, end, ahead), work
+        now = uniform.between(start, end, ahead)
+        status, unstable, _ = newton.solve(
+            lagrangian.density, x, y, n, free, cells, now, newton.UNKNOWN, TOLERANCE, work
         )
         if status == newton.CONVERGED and unstable == 0 and largest_drift(y, kept_y) < CLIMB_CHANGE:
             t, step = ahead, 1.5 * step

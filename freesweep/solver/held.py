@@ -13,18 +13,21 @@ from .jit import kernel
 from .newton import (
     CONVERGED,
     INFEASIBLE,
+    MAX_HALVINGS,
     MAX_ITERATIONS,
-    SMALL_STEP,
     STALLED,
+    UNKNOWN,
     assemble,
     factor,
-    feasible_fraction,
+    new_rate,
     settled,
     substitute,
 )
 
 FIRST_CHANGE = 1e-3  # relative change of y of the first step of the search for a turning point
 SEARCH_STEPS = 60
+MOST_GAIN = 3.0  # of the multiplier, times the linear prediction: more is another branch
+MOST_STRAY = 0.03  # relative difference from the linear prediction: more is another branch
 LARGEST_GROWTH = 3.0  # of the step from one to the next
 TURNING_TOLERANCE = 1e-12  # change of mu that the next step would bring, relative
 
@@ -59,20 +62,34 @@ def hold(conjugate, x, y, n, cells, load, direction, b):
 
 
 @kernel
-def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, target, work):
+def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work):
     """Newton for ``y`` (in place) and the multiplier ``mu`` of ``direction``, with the conjugate integral held.
 
-    Returns ``(status, unstable directions that keep the integral, mu, sigma)``; ``work[7]`` is left with the
-    change of y per unit of mu. ``direction`` is to be scaled so that mu is of order 1.
+    Returns ``(status, unstable directions that keep the integral, mu, sigma)``; ``work[9]`` is left with the change of y
+    per unit of mu. ``direction`` is to be scaled so that mu is of order 1.
     """
-    g, d, e, pivot, step = work[0], work[1], work[2], work[3], work[4]
-    b, response = work[6], work[7]
+    g, d, e, pivot, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
+    b, response = work[8], work[9]
     first, last = 1, n if free else n - 1
-    before = 1e300
-    for _ in range(MAX_ITERATIONS):
-        now = loaded(load, direction, mu)
-        if not assemble(density, x, y, n, cells, now, False, g, d, e):
-            return INFEASIBLE, 0, mu, 0.0
+    for i in range(n + 1):
+        trial[i] = y[i]
+        least[i] = 0.0
+    size, before, rate, fraction, change, sigma = 1e300, 1e300, UNKNOWN, 0.0, 0.0, 0.0
+    iterations, halvings = 0, 0
+    while iterations < MAX_ITERATIONS and halvings < MAX_HALVINGS:
+        now = loaded(load, direction, mu + fraction * change)
+        if not assemble(density, x, trial, n, cells, now, False, least, room, g, d, e):
+            if iterations == 0:
+                return INFEASIBLE, 0, mu, 0.0
+            fraction *= 0.5
+            halvings += 1
+            for i in range(n + 1):
+                trial[i] = y[i] + fraction * step[i]
+            continue
+        before = size if fraction == 1.0 else 1e300
+        mu += fraction * change
+        for i in range(n + 1):
+            y[i], least[i] = trial[i], room[i]
         negative = factor(d, e, first, last, pivot)
         value = hold(conjugate, x, y, n, cells, now, direction, b)
         substitute(pivot, e, first, last, g, step)
@@ -86,25 +103,20 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
             lag += b[i] * step[i]
         # dC = sigma dmu: a held change of C moves mu by change / sigma
         change = (target - value - lag) / sigma
-        size = 0.0
+        size = abs(change) / max(1.0, abs(mu))
         step[0] = 0.0
         step[n] = step[n] if free else 0.0
         for i in range(1, n + 1):
             step[i] = change * response[i] - step[i]
             size = max(size, abs(step[i]) / y[i])
-        fraction = 1.0
-        if not size < SMALL_STEP:
-            ahead = loaded(load, direction, mu + change)
-            fraction = feasible_fraction(density, x, y, step, n, cells, now, ahead)
-            if fraction == 0.0:
-                return STALLED, negative, mu, sigma
+        rate = new_rate(rate, size, before)
         for i in range(n + 1):
-            y[i] += fraction * step[i]
-        mu += fraction * change
-        size = max(size, abs(change) / max(1.0, abs(mu)))
-        if fraction == 1.0 and settled(size, before):
-            return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu, sigma
-        before = size if fraction == 1.0 else 1e300
+            trial[i] = y[i] + step[i]
+        if settled(size, before, rate, tolerance):
+            for i in range(n + 1):
+                y[i] = trial[i]
+            return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu + change, sigma
+        fraction, halvings, iterations = 1.0, 0, iterations + 1
     return STALLED, 1, mu, 0.0
 
 
@@ -118,7 +130,17 @@ def largest_change(y, response, n):
 
 
 @kernel
-def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target, turning, work):
+def strayed(y, n, start, response, change):
+    """Largest relative difference of ``y`` from its linear prediction."""
+    largest = 0.0
+    for i in range(n + 1):
+        expected = start[i] + change * response[i]
+        largest = max(largest, abs(y[i] - expected) / abs(expected))
+    return largest
+
+
+@kernel
+def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target, turning, tolerance, work):
     """Solve with the conjugate integral held at ``target``; or, if ``turning``, find the turning point of ``mu`` nearest
     along the branch through ``y``.
 
@@ -127,24 +149,30 @@ def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target,
     the state it came from: the turning point itself is no safe start on another mesh.
     """
     if turning:
-        target = hold(conjugate, x, y, n, cells, loaded(load, direction, mu), direction, work[6])
-    kept_y, kept_response, first_y = work[8], work[9], work[10]
+        target = hold(conjugate, x, y, n, cells, loaded(load, direction, mu), direction, work[8])
+    kept_y, kept_response, first_y = work[10], work[11], work[12]
     near, near_value, near_mu, sigma, step = target, 0.0, mu, 0.0, 0.0
     started = False
     for _ in range(SEARCH_STEPS):
         status, unstable, mu, sigma = solve_held(
-            density, conjugate, x, y, n, free, cells, load, direction, mu, target, work
+            density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work
         )
         if not turning or (not started and status != CONVERGED):
             return status, unstable, mu
-        if status != CONVERGED or (started and unstable > 0):
+        if started and status == CONVERGED:
+            gain = abs(mu - near_mu)
+            if unstable > 0 or gain > MOST_GAIN * abs(near_value * step):
+                status = STALLED
+            elif strayed(y, n, kept_y, kept_response, step) > MOST_STRAY:
+                status = STALLED
+        if status != CONVERGED:
             step *= 0.25  # back to the last good state, and not so far
             mu = near_mu
         else:
             value = 1.0 / sigma
             if not started:
                 # a positive 1/sigma lies before the turning point: step toward it, whichever side this is
-                step = FIRST_CHANGE * sigma / largest_change(y, work[7], n)
+                step = FIRST_CHANGE * sigma / largest_change(y, work[9], n)
                 started = True
                 for i in range(n + 1):
                     first_y[i] = y[i]
@@ -161,7 +189,7 @@ def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target,
                     step = reach if value > 0.0 else -reach
             near, near_value, near_mu = target, value, mu
             for i in range(n + 1):
-                kept_y[i], kept_response[i] = y[i], work[7, i] * value
+                kept_y[i], kept_response[i] = y[i], work[9, i] * value
         target = near + step
         for i in range(n + 1):
             y[i] = kept_y[i] + step * kept_response[i]

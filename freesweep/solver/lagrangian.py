@@ -31,6 +31,7 @@ from math import sqrt
 from .jit import kernel
 
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative: the state is refused, its numbers stay finite
+LAST_STEP = 10.0  # share of Newton's tolerance in every error bound
 ROUNDING = 2e-13  # relative floor of every error bound
 ENERGY_ROUNDING = 4e-15  # the energy's, times the work of the loads
 
@@ -167,8 +168,9 @@ def fiber_multipliers(y, v, cell, load):
 
 
 @kernel
-def scales(outputs, load, length, scale, floor):
-    """By what each output's error is measured, and the error that rounding makes (length, volume, twist, energy,
+def scales(outputs, load, length, tolerance, scale, floor):
+    """By what each output's error is measured, and the error that rounding and Newton's
+    last step (relative ``tolerance``) make (length, volume, twist, energy,
     middle stretch, multiplier).
 
     Lengths count per undeformed length, stretch per radius, rotation per radian or relative to itself, the rest
@@ -182,6 +184,6 @@ def scales(outputs, load, length, scale, floor):
     scale[4] = 1.0
     scale[5] = max(abs(load[3]), abs(load[4]), abs(load[5]))
     for k in range(6):
-        floor[k] = ROUNDING * scale[k]
-    floor[3] += ENERGY_ROUNDING * work
+        floor[k] = (ROUNDING + LAST_STEP * tolerance) * scale[k]
+    floor[3] += (ENERGY_ROUNDING + tolerance) * work
     floor[4] += ROUNDING * outputs[4]

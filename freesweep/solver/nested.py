@@ -17,6 +17,8 @@ OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
 MIDDLE, MULTIPLIER = 4, 5
 BASE_CELLS = 24  # of the mesh that is graded; one coarser one (half) and two or more finer ones join it
 MAX_DOUBLINGS = 7  # of the base mesh: 3072 cells
+STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
+SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.0
 COMPANION = 0.01  # share of the largest scaled bound below which no other bound falls
 
@@ -81,6 +83,24 @@ def adapt(density, integrands, x, y, n, free, cells, load, work):
 
 
 @kernel
+def foresee(fine, n, y):
+    """First guess on twice as many cells: the solution on n cells in row 1 of ``fine``, carried on by the change from
+    n/2 cells (row 3), which doubling the cells will repeat at a quarter.
+    """
+    for i in range(n // 2 + 1):
+        change = 0.25 * (fine[1, 2 * i] - fine[3, i])
+        fine[3, i] = change
+    mesh.prolong(fine[1], n, y)
+    for i in range(n // 2):
+        a, b = fine[3, i], fine[3, i + 1]
+        y[4 * i] += a
+        y[4 * i + 1] += 0.75 * a + 0.25 * b
+        y[4 * i + 2] += 0.5 * (a + b)
+        y[4 * i + 3] += 0.25 * a + 0.75 * b
+    y[2 * n] += fine[3, n // 2]
+
+
+@kernel
 def solve(
     density, conjugate, integrands, scales, x, y, free, cells, load, goal, direction, target, mu, regrades, accuracy,
     fine, work, table, out,
@@ -88,29 +108,33 @@ def solve(
     """Solve on nested meshes until every bound meets ``accuracy``.
 
     ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
-    call's warm start. ``fine`` is scratch of shape (4, > 2 n) for the finer meshes: (x, y) of the last one in rows 0, 1,
-    of the one before in rows 2, 3. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
+    call's warm start. ``fine`` is scratch of shape (5, > 2 n) for the finer meshes: (x, y) of the last one in rows 0, 1,
+    of the one before in rows 2, 4. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
 
     Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
     """
     n = len(x) - 1
-    passes, level, count, on_base = 0, 1, n, mu
-    unstable = 0
+    tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
+    passes, level, count, on_base, first_mu = 0, 1, n, mu, mu
+    unstable, rate, shrunk = 0, newton.UNKNOWN, False
     xs, ys = x, y
-    first_mu = mu
     while True:
         if goal == TURNING_POINT:
             mu = first_mu
-        if not make_admissible(density, xs, ys, count, cells, loaded(load, direction, mu)):
-            return newton.INFEASIBLE, 0, 0, on_base
         if goal == PLAIN:
-            status, unstable = newton.solve(density, xs, ys, count, free, cells, load, work)
+            status, unstable, rate = newton.solve(density, xs, ys, count, free, cells, load, rate, tolerance, work)
         else:
+            turning = goal == TURNING_POINT
             status, unstable, mu = held.solve(
-                density, conjugate, xs, ys, count, free, cells, load, direction, mu, target, goal == TURNING_POINT, work
+                density, conjugate, xs, ys, count, free, cells, load, direction, mu, target, turning, tolerance, work
             )
+        if status == newton.INFEASIBLE and not shrunk:
+            shrunk = True
+            if make_admissible(density, xs, ys, count, cells, loaded(load, direction, mu)):
+                continue
         if status != newton.CONVERGED:
             return status, unstable, max(level - 1, 0), on_base
+        shrunk = False
         now = loaded(load, direction, mu)
         if level == 1 and passes < regrades:
             adapt(density, integrands, x, y, n, free, cells, now, work)
@@ -121,7 +145,7 @@ def solve(
         integrate(integrands, xs, ys, count, cells, now, row)
         row[MIDDLE], row[MULTIPLIER] = ys[count], mu
         if level >= 3:
-            scales(row, now, x[n] - x[0], out[2], out[3])
+            scales(row, now, x[n] - x[0], tolerance, out[2], out[3])
             if extrapolate(table, level, out[2], out[3], out[0], out[1]) <= accuracy:
                 return newton.CONVERGED, unstable, level - 1, on_base
             if level == MAX_DOUBLINGS + 1:
@@ -131,15 +155,23 @@ def solve(
         if level == 1:
             on_base = mu
             level, count = 0, n // 2
-            xs, ys = fine[0], fine[1]
+            xs, ys = fine[2], fine[3]
             for i in range(count + 1):
                 xs[i], ys[i] = x[2 * i], y[2 * i]
             continue
-        level = level + 2 if level == 0 else level + 1
+        if level == 0:
+            level, mu = 1, on_base
+            for i in range(n + 1):
+                fine[0, i], fine[1, i] = x[i], y[i]
+        # rows 1 and 3 hold the solutions on this mesh and on the coarser one
         count = n << (level - 1)
+        for i in range(count + 1):
+            fine[2, i], fine[4, i] = fine[0, i], fine[1, i]
+        foresee(fine, count, work[0])
+        level, count = level + 1, 2 * count
+        for i in range(count + 1):
+            fine[1, i] = work[0, i]
         for i in range(count // 2 + 1):
-            fine[2, i] = x[i] if level == 2 else fine[0, i]
-            fine[3, i] = y[i] if level == 2 else fine[1, i]
-        mu = on_base if level == 2 else mu
+            fine[3, i] = fine[4, i]
         mesh.split(x, n, 1 << (level - 1), fine[0])
-        mesh.prolong(fine[3], count // 2, fine[1])
+        xs, ys = fine[0], fine[1]

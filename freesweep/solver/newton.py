@@ -10,20 +10,22 @@ and y > 0. ``y[0]`` is held; so is ``y[n]`` unless ``free`` (a plane of symmetry
 
 from .jit import kernel
 
-MAX_ITERATIONS = 60  # a warm start takes 2 or 3, a bad first guess at a small angle 25
+MAX_ITERATIONS = 60  # a warm start takes 1 to 3, a bad first guess at a small angle 25
 MAX_HALVINGS = 30  # of one step: below 1e-9 of it nothing is gained
-STEP_TOLERANCE = 1e-12  # relative error that the last step may leave behind
 SMALL_STEP = 1e-4  # relative: below it the full step is taken without a search
 MIN_ROOM = 0.02  # share of the room of any cell that one step must leave
+UNKNOWN = 1e300  # rate of convergence before it was seen
+CAUTION = 10.0  # times the rate seen so far
 
 CONVERGED, STALLED, INFEASIBLE = 0, 1, 2
 
 
 @kernel
-def assemble(density, x, y, n, cells, load, convex, g, d, e):
+def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
     """Gradient ``g`` and Hessian (diagonal ``d``, off-diagonal ``e``) of -J on n cells; False if not admissible.
 
-    ``convex`` drops whatever makes a cell's own Hessian indefinite: far from the solution every step is a descent then.
+    The ``room`` of each cell is written, and refused where it is not above MIN_ROOM of ``least``. ``convex`` drops
+    whatever makes a cell's own Hessian indefinite: far from the solution every step is a descent then.
     """
     g[0] = 0.0
     d[0] = 0.0
@@ -32,8 +34,8 @@ def assemble(density, x, y, n, cells, load, convex, g, d, e):
         h = x[j + 1] - x[j]
         v = (y[j + 1] - y[j]) / h
         middle = 0.5 * (y[j] + y[j + 1])
-        room, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cells[min(j, last)], load)
-        if not (room > 0.0 and middle > 0.0):  # a NaN counts as no room
+        room[j], L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cells[min(j, last)], load)
+        if not (room[j] > MIN_ROOM * least[j] and middle > 0.0):  # a NaN counts as no room
             return False
         if convex:
             L_yy = min(L_yy, L_yv * L_yv / L_vv)
@@ -84,52 +86,39 @@ def substitute(pivot, e, first, last, b, out):
 
 
 @kernel
-def feasible_fraction(density, x, y, step, n, cells, load, ahead):
-    """Largest of 1, 1/2, 1/4, ... of ``step`` that leaves every cell MIN_ROOM of its room; 0 if none does.
-
-    ``ahead`` is the load after the step.
+def settled(size, before, rate, tolerance):
+    """Whether the step just made, of relative ``size``, leaves an error below ``tolerance``: quadratic convergence makes
+    the next one ``rate size^2``; or rounding keeps it from shrinking.
     """
-    fraction = 1.0
-    last = len(cells) - 1
-    for _ in range(MAX_HALVINGS):
-        fits = True
-        for j in range(n):
-            h = x[j + 1] - x[j]
-            l, r = y[j] + fraction * step[j], y[j + 1] + fraction * step[j + 1]
-            before = density(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cells[min(j, last)], load)[0]
-            after = density(0.5 * (l + r), (r - l) / h, cells[min(j, last)], ahead)[0]
-            if not (after > MIN_ROOM * before and l + r > 0.2 * (y[j] + y[j + 1])):
-                fits = False
-                break
-        if fits:
-            return fraction
-        fraction *= 0.5
-    return 0.0
+    return size < SMALL_STEP and (CAUTION * rate * size * size < tolerance or (size < 1e-9 and size > 0.3 * before))
 
 
 @kernel
-def settled(size, before):
-    """Whether quadratic convergence leaves nothing: the next step would be about ``size^3/before^2``."""
-    ahead = size if before > 1e200 else size * (size / before) * (size / before)
-    return size < 1e-3 and (ahead < STEP_TOLERANCE or (size < 1e-9 and size > 0.3 * before))
+def new_rate(rate, size, before):
+    """The rate of quadratic convergence, if the two steps show it: neither too long nor lost in rounding."""
+    if 1e-12 < size and before < 0.03:
+        return size / (before * before)
+    return rate
 
 
 @kernel
-def solve(density, x, y, n, free, cells, load, work):
-    """Damped Newton from ``y`` (changed in place).
+def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
+    """Damped Newton from ``y`` (changed in place), to a relative error of ``tolerance``.
 
-    Returns ``(status, negative pivots)``. ``work`` is scratch of shape (11, > n).
+    Returns ``(status, negative pivots, rate)``; the rate of convergence seen on one mesh serves the next. ``work`` is
+    scratch of shape (13, > n).
     """
-    g, d, e, pivot, step, trial = work[0], work[1], work[2], work[3], work[4], work[5]
+    g, d, e, pivot, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
     first, last = 1, n if free else n - 1
     for i in range(n + 1):
         trial[i] = y[i]
+        least[i] = 0.0
     convex, negative, halvings, iterations = False, 0, 0, 0
     size, before, fraction, slope = 1e300, 1e300, 0.0, 0.0
     while iterations < MAX_ITERATIONS and halvings < MAX_HALVINGS:
-        admitted = assemble(density, x, trial, n, cells, load, convex, g, d, e)
+        admitted = assemble(density, x, trial, n, cells, load, convex, least, room, g, d, e)
         if iterations == 0 and not admitted:
-            return INFEASIBLE, 0
+            return INFEASIBLE, 0, rate
         if iterations > 0 and not convex:
             # shorten the step until its slope says that the valley's floor was not overshot by much
             after = 0.0
@@ -141,19 +130,15 @@ def solve(density, x, y, n, free, cells, load, work):
                 for i in range(n + 1):
                     trial[i] = y[i] + fraction * step[i]
                 continue
+            before = size if fraction == 1.0 and negative == 0 else 1e300
             for i in range(n + 1):
-                y[i] = trial[i]
-            arrived = fraction == 1.0 and negative == 0 and settled(size, before)
-            before = size if fraction == 1.0 else 1e300
-            negative = factor(d, e, first, last, pivot)
-            if arrived:
-                return CONVERGED, negative
-        else:
-            unconvex = factor(d, e, first, last, pivot)
-            negative = negative if convex else unconvex
-        if negative > 0 and not convex:
-            convex = True  # assemble again, at the same state
-            continue
+                y[i], least[i] = trial[i], room[i]
+        pivots = factor(d, e, first, last, pivot)
+        if not convex:
+            negative = pivots
+            if negative > 0:
+                convex = True  # assemble again, at the same state
+                continue
         substitute(pivot, e, first, last, g, step)
         step[0] = 0.0
         step[n] = step[n] if free else 0.0
@@ -162,12 +147,12 @@ def solve(density, x, y, n, free, cells, load, work):
             step[i] = -step[i]
             size = max(size, abs(step[i]) / y[i])
             slope += g[i] * step[i] if i <= last else 0.0
-        fraction = 1.0
-        if not size < SMALL_STEP:
-            fraction = feasible_fraction(density, x, y, step, n, cells, load, load)
-            if fraction == 0.0:
-                return STALLED, negative
+        rate = new_rate(rate, size, before)
         for i in range(n + 1):
-            trial[i] = y[i] + fraction * step[i]
-        convex, halvings, iterations = False, 0, iterations + 1
-    return STALLED, 1
+            trial[i] = y[i] + step[i]
+        if negative == 0 and settled(size, before, rate, tolerance):
+            for i in range(n + 1):
+                y[i] = trial[i]
+            return CONVERGED, 0, rate
+        fraction, convex, halvings, iterations = 1.0, False, 0, iterations + 1
+    return STALLED, 1, rate
