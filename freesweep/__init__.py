@@ -1,0 +1,35 @@
+"""freesweep: the statics of fiber-reinforced soft actuators, solved exactly and swept over the design space.
+
+``actuator`` describes a tube, ``statics`` solves one, ``closed_form`` holds the formulas of the uniform tube, ``sweep``
+solves grids of designs into atlases, ``atlas`` stores and opens them, ``plot`` draws them. ``solver`` holds the Numba
+kernels, dimensionless; nothing else compiles. Lengths in metres, pressures in pascals, angles in degrees.
+"""
+
+import importlib
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Actuator": "actuator",
+    "ActuatorError": "actuator",
+    "MooneyRivlin": "actuator",
+    "NeoHookean": "actuator",
+    "lock": "statics",
+    "inflate": "statics",
+    "run_sweep": "sweep.run",
+    "open_atlas": "atlas.store",
+    "Atlas": "atlas.store",
+}
+__all__ = [*_HOMES, "closed_form"]
+
+
+def __getattr__(name):
+    if name in _HOMES:
+        return getattr(importlib.import_module(f".{_HOMES[name]}", __name__), name)
+    if name in ("closed_form", "plot", "status"):
+        return importlib.import_module(f".{name}", __name__)
+    raise AttributeError(f"module 'freesweep' has no attribute {name!r}")
+
+
+def __dir__():
+    return sorted([*globals(), *__all__])

@@ -1,0 +1,172 @@
+"""What a person describes: the actuator and its material, checked, in SI units and degrees."""
+
+import math
+import warnings
+from dataclasses import dataclass, field, fields
+from numbers import Real
+
+LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
+SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
+ENERGIES = ("full", "principal")
+
+
+class ActuatorError(ValueError):
+    """The description of an actuator or a load has faults; ``faults`` lists them all."""
+
+    def __init__(self, faults):
+        self.faults = list(faults)
+        super().__init__("\n".join(["cannot describe this actuator:", *(f"  - {fault}" for fault in self.faults)]))
+
+
+def number_fault(name, value, unit, positive=False, least=None):
+    """A sentence on what is wrong with a number, or None."""
+    if isinstance(value, str):
+        return f"{name}: found the text {value!r}; the Python API takes a number in [{unit}]"
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return f"{name}: found {type(value).__name__} {value!r:.60}; give one number in [{unit}]"
+    if not math.isfinite(value):
+        return f"{name}: found {value}; give a finite number in [{unit}]"
+    if positive and not value > 0:
+        return f"{name}: found {value:g} {unit}; it has to be above 0"
+    if least is not None and value < least:
+        return f"{name}: found {value:g}; it has to be {least:g} or more"
+    return None
+
+
+@dataclass(frozen=True)
+class MooneyRivlin:
+    """Mooney-Rivlin rubber: w = c10 (I1 - 3) + c01 (I2 - 3), Eq. 2.5.
+
+    ``c10`` > 0 and ``c01`` >= 0 in [Pa]. Raises :class:`ActuatorError`.
+    """
+
+    c10: float
+    c01: float = 0.0
+
+    def __post_init__(self):
+        faults = [number_fault("c10", self.c10, "Pa", positive=True), number_fault("c01", self.c01, "Pa", least=0.0)]
+        if faults := [fault for fault in faults if fault]:
+            raise ActuatorError(faults)
+
+
+@dataclass(frozen=True)
+class NeoHookean(MooneyRivlin):
+    """Neo-Hookean rubber: w = c10 (I1 - 3), ``c10`` > 0 in [Pa]."""
+
+    c01: float = field(default=0.0, init=False, repr=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Actuator:
+    """A fiber-reinforced tube before deformation.
+
+    Parameters
+    ----------
+    alpha, beta : fiber angles from the axis [degree], between -90 and 90, at least 0.5 apart
+    length, radius, wall : undeformed length, inner radius, wall thickness [m]
+    material : :class:`MooneyRivlin` or :class:`NeoHookean`
+    fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
+    fiber_radius : radius at which the fibers lie [m], from the inner to the outer one; None: the inner one, as in Eq. 2.20
+    energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed
+
+    Raises :class:`ActuatorError`, which lists every fault. Warns where the wall is thicker than the radius: the model is
+    a thin wall's.
+    """
+
+    alpha: float
+    beta: float
+    length: float
+    radius: float
+    wall: float
+    material: MooneyRivlin
+    fiber_extension: float = 1.0
+    fiber_radius: float | None = None
+    energy: str = "full"
+
+    def __post_init__(self):
+        if faults := self._faults():
+            raise ActuatorError(faults)
+        for item in fields(self):  # NumPy scalars and integers become floats
+            value = getattr(self, item.name)
+            if isinstance(value, Real):
+                object.__setattr__(self, item.name, float(value))
+        if self.wall > self.radius:
+            warnings.warn(
+                f"wall {self.wall:g} m is thicker than the inner radius {self.radius:g} m: the model takes a thin wall",
+                stacklevel=3,
+            )
+
+    def _faults(self):
+        faults = [number_fault(name, getattr(self, name), "degree") for name in ("alpha", "beta")]
+        faults += [number_fault(name, getattr(self, name), "m", positive=True) for name in ("length", "radius", "wall")]
+        faults.append(number_fault("fiber_extension", self.fiber_extension, "1", least=1.0))
+        if self.fiber_radius is not None:
+            faults.append(number_fault("fiber_radius", self.fiber_radius, "m", positive=True))
+        if not isinstance(self.material, MooneyRivlin):
+            faults.append(
+                f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01) or NeoHookean(c10), in [Pa]"
+            )
+        if self.energy not in ENERGIES:
+            faults.append(f"energy: found {self.energy!r}; choose one of {', '.join(map(repr, ENERGIES))}")
+        faults = [fault for fault in faults if fault]
+        return faults or self._impossible()
+
+    def _impossible(self):
+        """Faults of numbers that are each fine alone."""
+        faults = [
+            f"{name}: found {angle:g} degree; it has to lie between -90 and 90, both excluded"
+            for name, angle in (("alpha", self.alpha), ("beta", self.beta))
+            if not abs(angle) < LARGEST_ANGLE
+        ]
+        if self.alpha == self.beta:
+            faults.append(
+                f"alpha, beta: both are {self.alpha:g} degree (line DF of Figure 1-2): one fiber family leaves the shape"
+                f" free; choose angles at least {SMALLEST_DIFFERENCE:g} degree apart"
+            )
+        elif abs(self.alpha - self.beta) < SMALLEST_DIFFERENCE:
+            faults.append(
+                f"alpha, beta: {self.alpha:g} and {self.beta:g} degree are less than {SMALLEST_DIFFERENCE:g} degree apart:"
+                " nearly one fiber family, without a finite locked shape"
+            )
+        if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= self.radius + self.wall:
+            faults.append(
+                f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
+                f" {self.radius:g} to {self.radius + self.wall:g} m"
+            )
+        if not faults and not self.clamped_stretch() > 0.0:
+            faults.append(
+                f"fiber_extension: with {self.fiber_extension:g} these fibers cannot meet the clamped ends, whose radius"
+                " stays; reduce it or the angles"
+            )
+        return faults
+
+    def clamped_stretch(self) -> float:
+        """Squared meridional stretch at the clamped ends [-] (G at y = 1): positive if the fibers can meet them."""
+        return clamped_stretch(self.alpha, self.beta, self.fiber_extension)
+
+    @property
+    def fiber_surface(self) -> float:
+        """Radius at which the fibers lie [m]; every formula is scaled by it."""
+        return self.radius if self.fiber_radius is None else self.fiber_radius
+
+    def design(self) -> dict:
+        """The numbers that a sweep would vary: name -> value in SI units and degrees."""
+        return {
+            "alpha": self.alpha,
+            "beta": self.beta,
+            "length": self.length,
+            "radius": self.radius,
+            "wall": self.wall,
+            "fiber_radius": self.fiber_surface,
+            "fiber_extension": self.fiber_extension,
+            "c10": self.material.c10,
+            "c01": self.material.c01,
+        }
+
+
+def clamped_stretch(alpha, beta, fiber_extension):
+    """G at y = 1 [-] for fiber angles in [degree]; where it is not positive, clamped ends cannot be met."""
+    ta, tb = math.tan(math.radians(alpha)), math.tan(math.radians(beta))
+    half_sum, half_difference = 0.5 * (ta + tb), 0.5 * (ta - tb)
+    g2 = fiber_extension * fiber_extension
+    return 1.0 + (g2 - 1.0) * (1.0 + half_difference**2 - g2 * half_sum**2)

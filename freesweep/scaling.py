@@ -1,0 +1,46 @@
+"""From designs in SI units to dimensionless problems and back: the one place where scales are known.
+
+Lengths by the fiber surface's radius r0, pressure by C10, force by pi r0^2 C10, torque by pi r0^3 C10. A problem is a row of
+``solver.branch.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda.
+"""
+
+import numpy as np
+
+OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius")  # order of the kernels' columns
+
+
+def problem_rows(design, energy) -> np.ndarray:
+    """Dimensionless problems (n, 9) of a ``design``: name -> array (n,), in SI units and degrees, loads among them."""
+    ta, tb = np.tan(np.radians(design["alpha"])), np.tan(np.radians(design["beta"]))
+    r, c10 = design["fiber_radius"], design["c10"]
+    inner = design["radius"]
+    area = ((inner + design["wall"]) ** 2 - inner**2) / r**2
+    columns = (
+        0.5 * (ta + tb),
+        0.5 * (ta - tb),
+        area,
+        design["fiber_extension"],
+        design["c01"] / c10,
+        np.full_like(area, float(energy == "full")),
+        design["force"] / (np.pi * r**2 * c10),
+        design["torque"] / (np.pi * r**3 * c10),
+        design["length"] / r,
+    )
+    return np.column_stack(columns)
+
+
+def output_scales(design) -> dict:
+    """SI units of one dimensionless output of half a tube, by name; rotation in degrees."""
+    r, c10 = design["fiber_radius"], design["c10"]
+    return {
+        "deformed_length": 2.0 * r,
+        "volume": 2.0 * np.pi * r**3,
+        "rotation": np.full_like(r, np.degrees(2.0)),
+        "strain_energy": 2.0 * np.pi * r**3 * c10,
+        "mid_radius": r,
+    }
+
+
+def wall_volume_inside(design):
+    """Volume between the cavity and the fiber surface [m3]: an incompressible wall keeps it."""
+    return np.pi * (design["fiber_radius"] ** 2 - design["radius"] ** 2) * design["length"]

@@ -1,0 +1,104 @@
+"""From results of distinct problems to the dataset of a grid."""
+
+import numpy as np
+
+from .. import closed_form, status
+from ..atlas.schema import FLAG_OF, LOADS, STATUS_OF, VARIABLES, attributes
+from ..scaling import OUTPUTS, output_scales, wall_volume_inside
+
+CLOSED_FORM_ERROR = 4e-15  # relative to the sum of the terms: rounding
+
+
+def collect(sweep, plan, results):
+    """The Dataset of a sweep from ``results``: name -> array over the rows of the plan."""
+    import xarray as xr
+
+    data = {}
+    for names, arrays in (
+        (_names("", plan), _states(plan, results, plan.rows, limits=True)),
+        (_names("locked_", plan), _states(plan, results, plan.locked_rows[:, None])),
+        (lambda name: name, _ideal(plan)),
+    ):
+        for name, array in arrays.items():
+            data[names(name)] = array
+    dataset = xr.Dataset({name: _placed(plan, name, array) for name, array in data.items()})
+    dataset = dataset.assign_coords(plan.coordinates | {"pressure": ("pressure", plan.pressure)})
+    if "pressure" not in sweep.axes:
+        dataset = dataset.isel(pressure=0)
+    for name in dataset.variables:
+        if name != "design":
+            dataset[name].attrs = attributes(name)
+    return dataset
+
+
+def _names(prefix, plan):
+    return lambda name: prefix + name
+
+
+def _placed(plan, name, array):
+    """``(dimensions, array)`` of a variable over the grid, without the dimensions it does not vary in."""
+    of = name.removesuffix("_error")
+    without = STATUS_OF[of][1] if of in STATUS_OF else FLAG_OF[of][1] if of in FLAG_OF else VARIABLES[of].without
+    dimensions = (*plan.dimensions, "pressure")
+    array = array.reshape(*plan.shape, -1)
+    if of != "status" and array.shape[-1] == 1 and "pressure" in without:
+        array, dimensions = array[..., 0], plan.dimensions
+    keep = tuple(0 if name in without else slice(None) for name in dimensions)
+    return tuple(name for name in dimensions if name not in without), np.ascontiguousarray(array[keep])
+
+
+def _states(plan, results, rows, limits=False):
+    """Outputs of the grid's designs at some rows of the results: arrays (d, p)."""
+    good = (plan.status == status.OK)[:, None]
+    codes = np.where(good, _at(results["status"], rows, status.NOT_CONVERGED), plan.status[:, None])
+    valued = np.isin(codes, status.VALUED)
+    design = {name: column[:, None] for name, column in plan.design.items()}
+    scales = output_scales(design)
+    arrays = {"status": codes.astype(np.int8)}
+    for k, name in enumerate(OUTPUTS):
+        value = np.where(valued, _at(results["values"][:, k], rows, np.nan), np.nan) * scales[name]
+        if name == "rotation":
+            value = np.where(plan.mirrored[:, None], -value, value) + 0.0
+        if name == "volume":
+            value = value - wall_volume_inside(design)
+        bound = np.where(valued, _at(results["bounds"][:, k], rows, np.nan), np.nan) * scales[name]
+        arrays[name], arrays[f"{name}_error"] = value, upward(bound)
+    if limits:
+        slack = np.where(valued, _at(results["slack"], rows, 0), 0)
+        exchanged = (slack & 1) << 1 | slack >> 1
+        arrays["slack_fiber"] = np.where(plan.swapped[:, None], exchanged, slack).astype(np.int8)
+        arrays["stable"] = valued.astype(np.int8)
+        found = np.where(good[:, 0, None], _at(results["limits"], plan.problem, np.nan), np.nan) * design["c10"]
+        arrays["limit_pressure"], arrays["limit_pressure_error"] = found[:, :1], upward(found[:, 1:])
+        arrays["limit_found"] = np.isfinite(found[:, :1]).astype(np.int8)
+    return arrays
+
+
+def _at(column, rows, empty):
+    """``column[rows]``, or ``empty`` where nothing was solved at all."""
+    return column[rows] if len(column) else np.full(rows.shape + column.shape[1:], empty)
+
+
+def upward(bound):
+    """An error bound in single precision, rounded up: it still holds."""
+    single = bound.astype(np.float32)
+    return np.where(single < bound, np.nextafter(single, np.float32(np.inf)), single)
+
+
+def _ideal(plan):
+    """Blocked force and torque of inextensible fibers, in closed form: arrays (d, p)."""
+    alpha, beta, radius = (plan.design[name][:, None] for name in ("alpha", "beta", "fiber_radius"))
+    product = np.tan(np.radians(alpha)) * np.tan(np.radians(beta))
+    arrays = {}
+    for name, value in (
+        ("ideal_blocked_force", closed_form.blocked_force(alpha, beta, radius, plan.pressure)),
+        ("ideal_blocked_torque", closed_form.blocked_torque(alpha, beta, radius, plan.pressure)),
+    ):
+        solved = np.isfinite(value)
+        region_one = (product > 0.0) & (name == "ideal_blocked_force")
+        failed = np.where(region_one, status.COMPRESSED, status.HELD_IMPOSSIBLE)
+        codes = np.where(solved, status.OK, np.where((alpha == beta), status.DEGENERATE, failed))
+        scale = np.pi * radius**2 * plan.pressure * (1.0 if name == "ideal_blocked_force" else radius)
+        arrays[name], arrays[f"{name}_status"] = value, codes.astype(np.int8)
+        arrays[f"{name}_error"] = upward(np.where(solved, CLOSED_FORM_ERROR * (scale + np.abs(value)), np.nan))
+    return arrays
