@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import closed_form, status
-from ..atlas.schema import FLAG_OF, LOADS, STATUS_OF, VARIABLES, attributes
+from ..atlas.schema import FLAG_OF, STATUS_OF, VARIABLES, attributes
 from ..scaling import OUTPUTS, output_scales, wall_volume_inside
 
 CLOSED_FORM_ERROR = 4e-15  # relative to the sum of the terms: rounding
@@ -13,15 +13,9 @@ def collect(sweep, plan, results):
     """The Dataset of a sweep from ``results``: name -> array over the rows of the plan."""
     import xarray as xr
 
-    data = {}
-    for names, arrays in (
-        (_names("", plan), _states(plan, results, plan.rows, limits=True)),
-        (_names("locked_", plan), _states(plan, results, plan.locked_rows[:, None])),
-        (lambda name: name, _ideal(plan)),
-    ):
-        for name, array in arrays.items():
-            data[names(name)] = array
-    dataset = xr.Dataset({name: _placed(plan, name, array) for name, array in data.items()})
+    arrays = _states(plan, results, plan.rows) | _limits(plan, results) | _ideal(plan)
+    arrays |= {f"locked_{name}": array for name, array in _outputs(plan, results, plan.locked_rows[:, None]).items()}
+    dataset = xr.Dataset({name: _placed(plan, name, array) for name, array in arrays.items()})
     dataset = dataset.assign_coords(plan.coordinates | {"pressure": ("pressure", plan.pressure)})
     if "pressure" not in sweep.axes:
         dataset = dataset.isel(pressure=0)
@@ -31,24 +25,18 @@ def collect(sweep, plan, results):
     return dataset
 
 
-def _names(prefix, plan):
-    return lambda name: prefix + name
-
-
 def _placed(plan, name, array):
     """``(dimensions, array)`` of a variable over the grid, without the dimensions it does not vary in."""
     of = name.removesuffix("_error")
     without = STATUS_OF[of][1] if of in STATUS_OF else FLAG_OF[of][1] if of in FLAG_OF else VARIABLES[of].without
     dimensions = (*plan.dimensions, "pressure")
     array = array.reshape(*plan.shape, -1)
-    if of != "status" and array.shape[-1] == 1 and "pressure" in without:
-        array, dimensions = array[..., 0], plan.dimensions
     keep = tuple(0 if name in without else slice(None) for name in dimensions)
     return tuple(name for name in dimensions if name not in without), np.ascontiguousarray(array[keep])
 
 
-def _states(plan, results, rows, limits=False):
-    """Outputs of the grid's designs at some rows of the results: arrays (d, p)."""
+def _outputs(plan, results, rows):
+    """Status, outputs and bounds of the grid's designs at some rows of the results: arrays (d, p)."""
     good = (plan.status == status.OK)[:, None]
     codes = np.where(good, _at(results["status"], rows, status.NOT_CONVERGED), plan.status[:, None])
     valued = np.isin(codes, status.VALUED)
@@ -58,24 +46,38 @@ def _states(plan, results, rows, limits=False):
     for k, name in enumerate(OUTPUTS):
         value = np.where(valued, _at(results["values"][:, k], rows, np.nan), np.nan) * scales[name]
         if name == "rotation":
-            value = np.where(plan.mirrored[:, None], -value, value) + 0.0
+            value = np.where(plan.mirrored[:, None], -value, value) + 0.0  # + 0.0: no negative zeros
         if name == "volume":
             value = value - wall_volume_inside(design)
         bound = np.where(valued, _at(results["bounds"][:, k], rows, np.nan), np.nan) * scales[name]
         arrays[name], arrays[f"{name}_error"] = value, upward(bound)
-    if limits:
-        slack = np.where(valued, _at(results["slack"], rows, 0), 0)
-        exchanged = (slack & 1) << 1 | slack >> 1
-        arrays["slack_fiber"] = np.where(plan.swapped[:, None], exchanged, slack).astype(np.int8)
-        arrays["stable"] = valued.astype(np.int8)
-        found = np.where(good[:, 0, None], _at(results["limits"], plan.problem, np.nan), np.nan) * design["c10"]
-        arrays["limit_pressure"], arrays["limit_pressure_error"] = found[:, :1], upward(found[:, 1:])
-        arrays["limit_found"] = np.isfinite(found[:, :1]).astype(np.int8)
     return arrays
 
 
+def _states(plan, results, rows):
+    """Outputs and flags under pressure."""
+    arrays = _outputs(plan, results, rows)
+    valued = np.isin(arrays["status"], status.VALUED)
+    slack = np.where(valued, _at(results["slack"], rows, 0), 0)
+    exchanged = (slack & 1) << 1 | slack >> 1
+    arrays["slack_fiber"] = np.where(plan.swapped[:, None], exchanged, slack).astype(np.int8)
+    arrays["stable"] = valued.astype(np.int8)  # the walk keeps to stable states
+    return arrays
+
+
+def _limits(plan, results):
+    """Limit pressures [Pa], one for each design."""
+    good = plan.status == status.OK
+    found = np.where(good[:, None], _at(results["limits"], plan.problem, np.nan), np.nan) * plan.design["c10"][:, None]
+    return {
+        "limit_pressure": found[:, :1],
+        "limit_pressure_error": upward(found[:, 1:]),
+        "limit_found": np.isfinite(found[:, :1]).astype(np.int8),
+    }
+
+
 def _at(column, rows, empty):
-    """``column[rows]``, or ``empty`` where nothing was solved at all."""
+    """``column[rows]``, or ``empty`` where the grid holds no solvable design at all."""
     return column[rows] if len(column) else np.full(rows.shape + column.shape[1:], empty)
 
 
@@ -97,7 +99,7 @@ def _ideal(plan):
         solved = np.isfinite(value)
         region_one = (product > 0.0) & (name == "ideal_blocked_force")
         failed = np.where(region_one, status.COMPRESSED, status.HELD_IMPOSSIBLE)
-        codes = np.where(solved, status.OK, np.where((alpha == beta), status.DEGENERATE, failed))
+        codes = np.where(solved, status.OK, np.where(alpha == beta, status.DEGENERATE, failed))
         scale = np.pi * radius**2 * plan.pressure * (1.0 if name == "ideal_blocked_force" else radius)
         arrays[name], arrays[f"{name}_status"] = value, codes.astype(np.int8)
         arrays[f"{name}_error"] = upward(np.where(solved, CLOSED_FORM_ERROR * (scale + np.abs(value)), np.nan))

@@ -90,8 +90,8 @@ def plan(sweep) -> Plan:
 def design_grid(sweep):
     """Dimensions, shape, coordinates and columns of the designs: the grid without its pressure axis."""
     axes = {name: values for name, values in sweep.axes.items() if name != "pressure"}
-    count = len(sweep.designs.names) if sweep.designs else 0
-    dimensions = (("design",) if sweep.designs else ()) + tuple(axes)
+    count = len(sweep.designs["names"]) if sweep.designs else 0
+    dimensions = tuple(name for name in sweep.dims if name != "pressure")
     shape = ((count,) if sweep.designs else ()) + tuple(len(values) for values in axes.values())
     coordinates = {name: (name, values) for name, values in axes.items()}
     full = {name: np.full(shape, value) for name, value in sweep.fixed.items() if name != "pressure"}
@@ -100,8 +100,8 @@ def design_grid(sweep):
         side[position] = shape[position]
         full[name] = np.broadcast_to(axes[name].reshape(side), shape)
     if sweep.designs:
-        coordinates["design"] = ("design", np.array(sweep.designs.names))
-        for name, column in sweep.designs.columns.items():
+        coordinates["design"] = ("design", np.array(sweep.designs["names"]))
+        for name, column in sweep.designs["columns"].items():
             coordinates[name] = ("design", column)
             full[name] = np.broadcast_to(column.reshape(-1, *[1] * (len(shape) - 1)), shape)
     coordinates |= {name: value for name, value in sweep.fixed.items() if name not in coordinates}

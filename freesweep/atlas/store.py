@@ -1,0 +1,79 @@
+"""Atlases as netCDF4 files: saved whole, opened lazily."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..status import STATUSES
+from .files import write_whole
+
+FORMAT = "1"
+COMPRESSION = {"zlib": True, "complevel": 1, "shuffle": True}  # checksums come with it; higher levels gain 3 %
+
+
+class AtlasError(ValueError):
+    """A file that is no atlas, or not the one asked for."""
+
+
+@dataclass(frozen=True)
+class Atlas:
+    """A design atlas: ``data`` is the xarray Dataset, ``path`` the file."""
+
+    data: object
+    path: Path
+
+    def __repr__(self):
+        axes = ", ".join(f"{name} {size}" for name, size in self.data.sizes.items())
+        counts = "; ".join(f"{meaning} {count:,}" for meaning, count in self.status_counts().items())
+        return f"<Atlas {self.path.name}: {self.data.attrs.get('title', '')}\n  {axes}\n  {counts}>"
+
+    def status_counts(self) -> dict:
+        """How many points of the grid have which status: meaning -> count."""
+        values, counts = np.unique(self.data["status"].values, return_counts=True)
+        return {STATUSES[value].meaning: int(count) for value, count in zip(values, counts)}
+
+    def close(self):
+        """Let go of the file."""
+        self.data.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def save_atlas(dataset, path) -> None:
+    """Write a Dataset as an atlas: one netCDF4 file, whole or not at all.
+
+    Raises :class:`freesweep.atlas.files.EnvironmentFault`.
+    """
+    encoding = {
+        name: COMPRESSION | {"_FillValue": None}
+        for name, variable in dataset.variables.items()
+        if variable.ndim > 0 and variable.dtype.kind in "fiu"
+    }
+    content = dataset.assign_attrs(freesweep_format=FORMAT).to_netcdf(engine="netcdf4", encoding=encoding)
+    write_whole(path, content)
+
+
+def open_atlas(path) -> Atlas:
+    """Open an atlas; its numbers are read when they are used.
+
+    Raises FileNotFoundError, or :class:`AtlasError` for a file that is no atlas of this program.
+    """
+    import xarray as xr
+
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"no atlas at {path}; make one with: freesweep sweep SPEC -o {path.name}")
+    try:
+        data = xr.open_dataset(path, engine="netcdf4", decode_times=False)
+    except Exception as error:  # the HDF5 library raises many kinds for a damaged file
+        raise AtlasError(f"{path} is no readable netCDF4 file: {error}") from error
+    found = data.attrs.get("freesweep_format")
+    if found != FORMAT or "status" not in data:
+        data.close()
+        raise AtlasError(f"{path} is no freesweep atlas of format {FORMAT} (found format {found!r})")
+    return Atlas(data, path)
