@@ -75,7 +75,9 @@ def _load(name, value, unit, faults):
     if array.ndim == 0:
         return _load(name, array.item(), unit, faults)
     if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
-        faults.append(f"{name}: found an array of shape {array.shape}; give finite numbers in one dimension, in [{unit}]")
+        faults.append(
+            f"{name}: found an array of shape {array.shape}; give finite numbers in one dimension, in [{unit}]"
+        )
         return None
     if len(np.unique(array)) != array.size:
         faults.append(f"{name}: a value is given twice; give each once")

@@ -77,3 +77,31 @@ def open_atlas(path) -> Atlas:
         data.close()
         raise AtlasError(f"{path} is no freesweep atlas of format {FORMAT} (found format {found!r})")
     return Atlas(data, path)
+
+
+def describe(atlas) -> str:
+    """What an atlas holds, in words: axes with ranges, variables with units, statuses, provenance."""
+    data = atlas.data
+    lines = [f"{atlas.path}: {data.attrs.get('title', '')}", "", "axes"]
+    for name, size in data.sizes.items():
+        values = data[name].values
+        unit = data[name].attrs.get("units", "")
+        span = f"{values[0]:g} .. {values[-1]:g} {unit}" if values.dtype.kind == "f" else ", ".join(map(str, values))
+        lines.append(f"  {name:<18}{size:>6}  {span}")
+    lines += ["", "fixed"]
+    for name, value in data.coords.items():
+        if value.ndim == 0:
+            lines.append(f"  {name:<18}{float(value):>12g} {value.attrs.get('units', '')}")
+    lines += ["", "variables"]
+    for name, variable in data.data_vars.items():
+        if not name.endswith("_error"):
+            bound = ", with error bound" if f"{name}_error" in data else ""
+            unit = variable.attrs.get("units")
+            lines.append(
+                f"  {name:<28}{f'[{unit}]' if unit else '[flag]':<10}{variable.attrs.get('long_name', '')}{bound}"
+            )
+    lines += ["", "statuses"]
+    lines += [f"  {meaning:<28}{count:>12,}" for meaning, count in atlas.status_counts().items()]
+    lines += ["", "provenance"]
+    lines += [f"  {name:<22}{value}" for name, value in data.attrs.items() if name not in ("specification", "title")]
+    return "\n".join(lines)

@@ -131,7 +131,9 @@ def _solve_all(plan, parts, done, shards, accuracy, threads, progress):
     for index in done:
         bar.update(int(plan.first[parts[index][1]] - plan.first[parts[index][0]]))
     if todo:
-        solve_shard(plan.problems[:0], plan.first[:1], plan.pressures[:0], accuracy)  # compiles, or loads what is compiled
+        solve_shard(
+            plan.problems[:0], plan.first[:1], plan.pressures[:0], accuracy
+        )  # compiles, or loads what is compiled
     pool = ThreadPoolExecutor(threads)
     try:
         running = {}
@@ -139,7 +141,12 @@ def _solve_all(plan, parts, done, shards, accuracy, threads, progress):
             while todo and len(running) < 2 * threads:
                 index = todo.pop(0)
                 a, b = parts[index]
-                job = (plan.problems[a:b], plan.first[a : b + 1], plan.pressures[plan.first[a] : plan.first[b]], accuracy)
+                job = (
+                    plan.problems[a:b],
+                    plan.first[a : b + 1],
+                    plan.pressures[plan.first[a] : plan.first[b]],
+                    accuracy,
+                )
                 running[pool.submit(solve_shard, *job)] = index
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 index = running.pop(future)

@@ -1,0 +1,58 @@
+"""Datasets of single actuators as text for people."""
+
+from .status import STATUSES, VALUED
+
+COLUMNS = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
+SHOWN = {"m": ("mm", 1e3), "m3": ("ml", 1e6), "degree": ("deg", 1.0), "J": ("J", 1.0), "Pa": ("kPa", 1e-3)}
+
+
+def table(dataset) -> str:
+    """One line for each pressure: outputs in everyday units, status, slack fibers; then what the statuses mean."""
+    heads, rows = [], []
+    points = dataset.drop_dims("x")
+    columns = [name for name in COLUMNS if name in dataset]
+    if "pressure" in points.dims:
+        heads.append("pressure [kPa]")
+        states = [points.isel(pressure=k) for k in range(points.sizes["pressure"])]
+    else:
+        states = [points]
+    for name in columns:
+        unit, _ = SHOWN[dataset[name].attrs["units"]]
+        heads.append(f"{name.replace('_', ' ')} [{unit}]")
+    for state in states:
+        row = [f"{state['pressure'].item() * 1e-3:.6g}"] if "pressure" in points.dims else []
+        for name in columns:
+            _, scale = SHOWN[dataset[name].attrs["units"]]
+            row.append(_number(state[name].item() * scale, state[f"{name}_error"].item() * scale))
+        rows.append([*row, STATUSES[int(state["status"])].meaning + _slack(int(state["slack_fiber"]))])
+    lines = _aligned([[*heads, "status"], *rows])
+    seen = sorted({int(value) for value in dataset["status"].values.ravel()} - {0})
+    lines += [f"{STATUSES[value].meaning}: {STATUSES[value].sentence}" for value in seen]
+    if "limit_found" in dataset and bool(dataset["limit_found"]):
+        lines.append(f"limit pressure: {dataset['limit_pressure'].item() * 1e-3:.6g} kPa")
+    if bool((dataset["slack_fiber"] > 0).any()):
+        lines.append("slack: the state relies on a fiber family that would have to push somewhere; fibers cannot")
+    if not all(int(value) in VALUED for value in dataset["status"].values.ravel()):
+        lines.append("a dash stands where there is no result")
+    return "\n".join(lines)
+
+
+def _number(value, error):
+    """A value with the digits that its error bound leaves, seven at most."""
+    if value != value:
+        return "-"
+    if error > 0.0 and value != 0.0:
+        digits = 0
+        while digits < 7 and abs(value) * 10.0**-digits > error:
+            digits += 1
+        return f"{value:.{max(digits, 1)}g}"
+    return f"{value:.7g}"
+
+
+def _slack(flag):
+    return ("", ", alpha fibers slack", ", beta fibers slack", ", fibers slack")[flag]
+
+
+def _aligned(rows):
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
