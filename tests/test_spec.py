@@ -174,7 +174,11 @@ def test_every_parameter_stands_in_exactly_one_place():
             "designs[1].lenght: unknown key; did you mean 'length'",
         ),
         (HEAD + DESIGNS + "c10 = 2e5", "designs.c10: every design gives it, so actuator.c10 is never used"),
-        (HEAD + DESIGNS + "pressure = 2e5", "designs.pressure: given twice, also as axes.pressure"),
+        (HEAD + DESIGNS + "pressure = 2e5", "designs[1].pressure: unknown key; all designs share the pressures"),
+        (
+            HEAD + DESIGNS.replace("[0, 1e5]", "[0, 1e5]\nforce = [0, 1]") + "force = 2",
+            "given twice, also as axes.force",
+        ),
         (HEAD + DESIGNS + "fiber_radius = 5e-3", "designs[0].fiber_radius: is missing, but other designs"),
         (HEAD + DESIGNS + 'energy = "full"', "cannot differ between designs"),
         (HEAD + DESIGNS.replace("beta = 60", "beta = 90"), "designs[1].beta: found 90"),
@@ -217,7 +221,7 @@ def test_faults_of_designs_are_named(text, says):
         ("[axes]", "[solver]\naccuracy = 1e-13\n[axes]", "solver.accuracy: found 1e-13, allowed is 1e-12 to 0.01"),
         ("[axes]", "[solver]\naccuracy = [1]\n[axes]", "solver.accuracy: expects"),
         ("[axes]", "[solver]\nsteps = 1\n[axes]", "solver.steps: unknown key"),
-        ('radius = "4.76 mm"', "", "radius: is missing; give it in [actuator], [axes] or every one of [[designs]]"),
+        ('radius = "4.76 mm"', "", "radius: is missing; give it in [actuator] or [axes]"),
         ('["100 mm", 0.2]', '"100 mm"', "axes.length: found '100 mm'; an axis is a list, or"),
         ('["100 mm", 0.2]', "[]", "axes.length: found an empty list"),
         (

@@ -8,6 +8,11 @@ from . import axis
 from .faults import Faults
 
 DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0}  # fiber_radius: none, the inner radius
+OWN = tuple(name for name in PARAMETERS if name != "pressure")  # what may differ between designs
+ELSEWHERE = {
+    "pressure": "all designs share the pressures; give them in [axes] or [load]",
+    "energy": "it belongs in [actuator] and cannot differ between designs",
+}
 HOME = {name: "load" if name in LOADS else "actuator" for name in PARAMETERS}
 
 
@@ -22,9 +27,7 @@ def read_designs(faults: Faults, tables, given: dict, fixed: dict) -> dict | Non
     names, rows = {}, []
     for i, table in enumerate(tables):
         path = f"designs[{i}]"
-        faults.unknown_keys(
-            table, ("name", *PARAMETERS), path, {"energy": "it belongs in [actuator] and cannot differ between designs"}
-        )
+        faults.unknown_keys(table, ("name", *OWN), path, ELSEWHERE)
         name = table.get("name")
         if not isinstance(name, str) or not name.strip():
             faults.add(f"{path}.name", "is missing; give each design a name of its own")
@@ -32,14 +35,14 @@ def read_designs(faults: Faults, tables, given: dict, fixed: dict) -> dict | Non
             faults.add(f"{path}.name", f"{shown(name)} is also the name of designs[{names[name]}]; names must differ")
         else:
             names[name] = i
-        rows.append({key: axis.value(faults, f"{path}.{key}", key, table[key]) for key in PARAMETERS if key in table})
+        rows.append({key: axis.value(faults, f"{path}.{key}", key, table[key]) for key in OWN if key in table})
     return {"names": tuple(names), "columns": _columns(faults, rows, given, fixed)}
 
 
 def _columns(faults, rows, given, fixed):
     """Arrays, shape (designs,); a design that lacks a parameter takes its fixed value or default."""
     columns = {}
-    for key in PARAMETERS:
+    for key in OWN:
         lacking = [i for i, row in enumerate(rows) if key not in row]
         if len(lacking) == len(rows):
             continue

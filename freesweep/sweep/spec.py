@@ -29,7 +29,7 @@ import numpy as np
 from ..atlas.schema import PARAMETERS
 from ..units import quantity, shown
 from . import axis, toml_guard
-from .designs import DEFAULTS, HOME, read_designs
+from .designs import DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
@@ -100,8 +100,11 @@ def parse(text: str, name: str = "specification") -> Sweep:
     designs = read_designs(faults, document["designs"], given, fixed) if "designs" in document else None
     for parameter in REQUIRED:
         if parameter not in given:
-            home = f"[{HOME[parameter]}], [axes] or every one of [[designs]]"
-            faults.add(parameter, f"is missing; give it in {home}")
+            homes = f"[{HOME[parameter]}] or [axes]"
+            faults.add(
+                parameter,
+                f"is missing; give it in {homes}" + (", or in every design" if designs and parameter in OWN else ""),
+            )
     fixed = {key: DEFAULTS.get(key) if key not in given else fixed.get(key) for key in PARAMETERS}
     fixed = {key: number for key, number in fixed.items() if number is not None}
     _check_fibers(faults, fixed | axes | (designs or {}).get("columns", {}))
