@@ -1,0 +1,244 @@
+"""The numerics alone, on problems that the solver has never heard of and whose solutions are known in closed form.
+
+* soap film between two rings, ``L = -y sqrt(1 + v^2)``: the catenoid ``y = c cosh((x - X)/c)``,
+  a stable and an unstable one
+* hanging chain of given length, ``L = -(y - mu) sqrt(1 + v^2)`` with ``int sqrt(1 + v^2)`` held
+* Bratu's problem, ``L = -v^2/2 + lambda exp(y - 1)``: a turning point at ``lambda = 3.513830719125...``
+
+Half of each is solved: x from the end to the plane of symmetry at X = 1/2.
+"""
+
+from math import cosh, exp, log, pi, sinh, sqrt, tanh
+
+import numba
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from freesweep.solver import held, mesh, nested, newton
+
+X = 0.5
+FILM, BRATU = 0.0, 1.0
+BRATU_LIMIT = 3.513830719125162
+REST = (0.0,) * 7
+ALONG_MU = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+
+
+@numba.njit
+def density(y, v, cell, load):
+    mu = load[3]
+    if cell[0] == BRATU:
+        growth = mu * exp(y - 1.0)
+        return 1.0, growth, -v, growth, 0.0, -1.0
+    root = sqrt(1.0 + v * v)
+    return y - mu, -root, -(y - mu) * v / root, 0.0, -v / root, -(y - mu) / root**3
+
+
+@numba.njit
+def conjugate(y, v, cell, load, direction):
+    if cell[0] == BRATU:
+        growth = direction[3] * exp(y - 1.0)
+        return growth, growth, 0.0
+    root = sqrt(1.0 + v * v)
+    return direction[3] * root, 0.0, direction[3] * v / root
+
+
+@numba.njit
+def integrands(y, v, cell, load):
+    """Length of the axis, volume/pi, length of the meridian, area/(2 pi)."""
+    root = sqrt(1.0 + v * v)
+    return 1.0, y * y, root, y * root
+
+
+@numba.njit
+def scales(outputs, load, length, tolerance, scale, floor):
+    for k in range(6):
+        scale[k] = 1.0
+        floor[k] = 2e-13 + 10.0 * tolerance
+
+
+def catenoid(c):
+    """The six outputs of half a catenoid, exactly."""
+    area = X / 2 + c / 4 * sinh(2 * X / c)
+    return np.array([X, c * c * area, c * sinh(X / c), c * area, c, 0.0])
+
+
+STABLE, UNSTABLE = (brentq(lambda c: c * cosh(X / c) - 1.0, *pair, xtol=1e-15) for pair in ((0.5, 1.0), (0.1, 0.4)))
+
+
+def bratu_theta(strength, pair=(0.01, 4.7)):
+    """Parameter of Bratu's ``y = 1 - 2 log(cosh(theta (X - x)/2)/cosh(theta/4))``; the lower branch by default."""
+    return brentq(lambda t: t / cosh(t / 4) - sqrt(2 * strength), *pair, xtol=1e-15)
+
+
+def bratu(theta):
+    def y(x):
+        return 1.0 - 2.0 * log(cosh(theta * (X - x) / 2) / cosh(theta / 4))
+
+    def v(x):
+        return theta * tanh(theta * (X - x) / 2)
+
+    def total(function):
+        return 0.5 * X * sum(w * function(0.5 * X * (1 + t)) for t, w in zip(*np.polynomial.legendre.leggauss(60)))
+
+    return y, [
+        X,
+        total(lambda x: y(x) ** 2),
+        total(lambda x: sqrt(1 + v(x) ** 2)),
+        total(lambda x: y(x) * sqrt(1 + v(x) ** 2)),
+        y(X),
+        0.0,
+    ]
+
+
+def on_one_mesh(x, y, cell, load, free=True, tolerance=1e-14):
+    """Newton on one mesh: (status, negative pivots)."""
+    work = np.zeros((13, len(x)))
+    return newton.solve(
+        density, x, y, len(x) - 1, free, np.array([[cell]]), load, newton.UNKNOWN, tolerance, work
+    )[:2]  # fmt: skip
+
+
+def on_nested_meshes(x, y, cell, load=REST, goal=nested.PLAIN, direction=REST, target=0.0, mu=0.0, accuracy=1e-8):
+    """``(status, unstable, doublings, values, bounds, table)`` of nested.solve."""
+    size = ((len(x) - 1) << nested.MAX_DOUBLINGS) + 2
+    out, table = np.zeros((4, nested.OUTPUTS)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
+    status, unstable, doublings, _ = nested.solve(
+        density, conjugate, integrands, scales, x, y, True, np.array([[cell]]), load, goal, direction, target, mu, 2,
+        accuracy, np.zeros((5, size)), np.zeros((13, size)), table, out,
+    )  # fmt: skip
+    return status, unstable, doublings, out[0], out[1], table
+
+
+def start(cells=24, value=1.0):
+    x = np.empty(cells + 1)
+    mesh.layer_mesh(X, 2.0, cells, x)
+    return x, np.full(cells + 1, value)
+
+
+def curvature(x, y, cell, load, free):
+    """Negative pivots of the second variation at y: unstable directions."""
+    n = len(x) - 1
+    g, d, e, pivot, room = (np.zeros(n + 1) for _ in range(5))
+    assert newton.assemble(density, x, y, n, np.array([[cell]]), load, False, np.zeros(n + 1), room, g, d, e)
+    return newton.factor(d, e, 1, n if free else n - 1, pivot)
+
+
+def orders(errors):
+    return np.log2(np.abs(errors[:-1] / errors[1:]))
+
+
+def test_a_soap_film_is_a_catenoid():
+    x, y = start()
+    status, negative = on_one_mesh(x, y, FILM, REST)
+    assert (status, negative) == (newton.CONVERGED, 0)
+    assert y == pytest.approx(STABLE * np.cosh((X - x) / STABLE), abs=2e-4)
+
+
+@pytest.mark.parametrize(("cell", "load"), [(FILM, REST), (BRATU, (0, 0, 0, 3.0, 0, 0, 0.0))])
+def test_one_mesh_is_of_second_order_and_extrapolation_of_fourth(cell, load):
+    exact = catenoid(STABLE) if cell == FILM else np.array(bratu(bratu_theta(3.0))[1])
+    x, y = start()
+    load = tuple(float(q) for q in load)
+    status, *_, table = on_nested_meshes(x, y, cell, load, accuracy=1e-30)
+    assert status == nested.UNREACHED
+    # volume, meridian, area and middle on meshes of 24, 48, ... cells, as far as rounding lets one see the order
+    error = (table - exact)[:, 1:5]
+    assert orders(error[2:7]) == pytest.approx(2.0, abs=0.05)
+    extrapolated = ((4 * table[1:] - table[:-1]) / 3 - exact)[:, 1:5]
+    seen = extrapolated[1:5]
+    assert np.all(np.abs(seen) > 1e-14)
+    assert orders(seen)[-1] == pytest.approx(4.0, abs=0.2)
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("cells", [12, 24])
+def test_bounds_hold_and_meet_the_accuracy_asked_for(accuracy, cells):
+    problems = [(FILM, 0.0, catenoid(STABLE))]
+    problems += [(BRATU, mu, np.array(bratu(bratu_theta(mu))[1])) for mu in (0.3, 1.0, 2.0, 3.0, 3.4)]
+    for cell, mu, exact in problems:
+        x, y = start(cells)
+        load = (0.0, 0.0, 0.0, mu, 0.0, 0.0, 0.0)
+        status, unstable, _, values, bounds, _ = on_nested_meshes(x, y, cell, load, accuracy=accuracy)
+        assert (status, unstable) == (newton.CONVERGED, 0)
+        assert np.all(np.abs(values - exact)[:5] <= bounds[:5]), (cell, mu)
+        assert np.all(bounds <= 1.01 * accuracy + 1e-10)
+
+
+def test_a_chain_of_given_length_hangs_as_a_catenary():
+    """The held integral's multiplier is the level from which the catenary's height counts."""
+    length = 0.6
+    c = brentq(lambda t: t * sinh(X / t) - length, 0.1, 2.0, xtol=1e-15)
+    x, _ = start()
+    y = 1.0 - 0.5 * np.sin(0.5 * pi * x / X)
+    status, unstable, _, values, bounds, _ = on_nested_meshes(
+        x, y, FILM, goal=nested.HELD, direction=ALONG_MU, target=length, mu=0.2, accuracy=1e-8
+    )
+    assert (status, unstable) == (newton.CONVERGED, 0)
+    exact = 1.0 - c * cosh(X / c)
+    assert values[nested.MIDDLE] == pytest.approx(exact + c, abs=1e-8)
+    assert abs(values[nested.MULTIPLIER] - exact) <= bounds[nested.MULTIPLIER] < 2e-8
+    assert values[2] == pytest.approx(length, abs=1e-12)
+
+
+@pytest.mark.parametrize("begin", [0.5, 2.0, 3.4])
+def test_the_turning_point_of_bratus_problem(begin):
+    x, y = start()
+    load = (0.0, 0.0, 0.0, begin, 0.0, 0.0, 0.0)
+    assert on_one_mesh(x, y, BRATU, load)[0] == newton.CONVERGED
+    status, _, _, values, bounds, _ = on_nested_meshes(
+        x, y, BRATU, load, goal=nested.TURNING_POINT, direction=ALONG_MU, accuracy=1e-8
+    )
+    assert status == newton.CONVERGED
+    assert abs(begin + values[nested.MULTIPLIER] - BRATU_LIMIT) <= bounds[nested.MULTIPLIER] < 2e-8
+
+
+def test_no_state_is_found_beyond_the_turning_point():
+    x, y = start()
+    load = (0.0, 0.0, 0.0, 1.02 * BRATU_LIMIT, 0.0, 0.0, 0.0)
+    assert on_one_mesh(x, y, BRATU, load)[0] != newton.CONVERGED
+
+
+STRINGS = [(0.9, False, 0), (1.1, False, 1), (2.5, False, 2), (5.5, False, 5)]
+STRINGS += [(0.4, True, 0), (0.6, True, 1), (1.4, True, 1), (1.6, True, 2)]
+
+
+@pytest.mark.parametrize(("waves", "free", "unstable"), STRINGS)
+def test_pivots_count_the_unstable_directions_of_a_string(waves, free, unstable):
+    """-v^2/2 + k^2 y^2/2 on 0..X, held ends: as many unstable sines as half waves of wave number k fit in; with one end
+    free, quarter waves.
+
+    Bratu's density at y = 1 has this second variation, with k^2 = lambda.
+    """
+    x = np.linspace(0, X, 801)
+    k = waves * pi / X
+    assert curvature(x, np.ones_like(x), BRATU, (0.0, 0.0, 0.0, k * k, 0.0, 0.0, 0.0), free) == unstable
+
+
+def test_the_deep_soap_film_is_unstable():
+    """Of two catenoids through the same rings only the shallow one is stable; Newton never settles on the other."""
+    x = np.linspace(0, X, 801)
+    shallow, deep = (c * np.cosh((X - x) / c) for c in (STABLE, UNSTABLE))
+    assert curvature(x, shallow, FILM, REST, True) == 0
+    assert curvature(x, deep, FILM, REST, True) == 1
+    y = deep.copy()
+    status, _ = on_one_mesh(x, y, FILM, REST)
+    assert status != newton.CONVERGED or abs(y[-1] - STABLE) < 1e-3
+
+
+@pytest.mark.parametrize(("strength", "pair", "sign"), [(2.0, (0.01, 4.7), 1), (2.0, (4.9, 20.0), -1)])
+def test_holding_the_conjugate_integral_stabilises_the_upper_branch(strength, pair, sign):
+    """Bratu's upper branch has one unstable direction, none while ``int exp(u)`` is held: sigma is negative there."""
+    shape, _ = bratu(bratu_theta(strength, pair))
+    x = np.linspace(0, X, 401)
+    y = np.array([shape(t) for t in x])
+    cells, load = np.array([[BRATU]]), (0.0, 0.0, 0.0, strength, 0.0, 0.0, 0.0)
+    assert curvature(x, y, BRATU, load, True) == (0 if sign > 0 else 1)
+    work = np.zeros((13, len(x)))
+    target = held.hold(conjugate, x, y, len(x) - 1, cells, load, ALONG_MU, work[8])
+    status, unstable, mu, sigma = held.solve_held(
+        density, conjugate, x, y, len(x) - 1, True, cells, REST, ALONG_MU, 0.9 * strength, target, 1e-12, work
+    )
+    assert (status, unstable) == (newton.CONVERGED, 0)
+    assert mu == pytest.approx(strength, rel=1e-4)
+    assert np.sign(sigma) == sign
