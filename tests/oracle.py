@@ -292,8 +292,8 @@ class _FromMiddle(_Quadrature):
         rate = self.scale * np.sinh(theta) * (flat + fall) / np.sqrt(G * fall * (2 * flat + fall))
         return rate, y, T * G / (flat + fall), psi, w
 
-    def total(self):
-        return float(self.refined(np.longdouble(0), self.end, self.end, 1e-13)[0][0][0])
+    def total(self, tolerance):
+        return float(self.refined(np.longdouble(0), self.end, self.end, tolerance)[0][0][0])
 
 
 def _shape(quadrature, folds, half, y_m, stations, area):
@@ -344,13 +344,13 @@ def _solve(values, u, half, stations):
     return _shape(quadrature, folds, half, y_m, stations, float(values[2]))
 
 
-def _nearby_middle(values, y, half, reach):
+def _nearby_middle(values, y, half, reach, tolerance=1e-9):
     """The middle stretch near ``y`` at which the half length is met and rises outward; NoState if there is none."""
     sign = np.sign(y - 1)
 
     def excess(middle):  # monotonic in the half length; 1 where it is infinite
         try:
-            return 1.0 - half / _FromMiddle(values, middle).total()
+            return 1.0 - half / _FromMiddle(values, middle).total(tolerance)
         except NoState:
             return 1.0
 
@@ -365,12 +365,12 @@ def _nearby_middle(values, y, half, reach):
             break
         ahead = excess(far)
         if ahead * here < 0:
-            return brentq(excess, *sorted((near, far)), xtol=1e-16, rtol=1e-15)
+            return brentq(excess, *sorted((near, far)), xtol=tolerance**1.2, rtol=1e-15)
         if here < 0 and ahead < value:  # past the greatest length: is that long enough?
             low = y if before is None else before
             top = minimize_scalar(lambda t: -excess(t), bounds=sorted((low, far)), method="bounded").x
             if excess(top) > 0:
-                return brentq(excess, *sorted((low, top)), xtol=1e-16, rtol=1e-15)
+                return brentq(excess, *sorted((low, top)), xtol=tolerance**1.2, rtol=1e-15)
             break
         before, near, value, step = near, far, ahead, 1.5 * step
     raise NoState("no middle stretch nearby")
@@ -408,7 +408,7 @@ def _follow_tube(legs, half, closest=1e-8):
                 if step < closest:
                     reached = _between(start, end, t)
                     raise NoState(f"limit at p = {float(reached[6]):.9g}, {t:.9g} of the way") from None
-    return y
+    return _nearby_middle(legs[-1], y, half, 1e-3, 1e-13) if lost else y
 
 
 def _stretch(quadrature, folds, edges, from_end, x, half):
