@@ -1,0 +1,146 @@
+"""A variable of a dataset on the two quadrants of fiber angles: everything but alpha and beta chosen, symmetry used.
+
+Swapping alpha and beta changes nothing; negating both mirrors the tube, so rotation and torque change sign. A node of
+the two quadrants that the dataset does not store is taken from its mirror images, if one of them is stored.
+"""
+
+import difflib
+from numbers import Real
+from typing import NamedTuple
+
+import numpy as np
+
+from ..atlas import schema
+from ..status import OK, OUTSIDE, VALUED
+
+ALPHA, BETA = (0.0, 90.0), (-90.0, 90.0)  # the two quadrants of Figure 1-2 [degree]
+ODD = ("rotation", "locked_rotation", "ideal_blocked_torque")  # change sign in the mirror
+NO_VALUE = -1  # solved, and yet no number: no limit pressure was met
+SAME_ANGLE = 1e-4  # [degree]: nodes closer than this are one
+
+
+class Plane(NamedTuple):
+    """Nodes [degree] of shapes (n,) and (m,); ``values`` in stored units, masked where there is none, and ``reason``,
+    both of shape (m, n); ``point`` holds the parameters that were chosen, in stored units.
+    """
+
+    alpha: np.ndarray
+    beta: np.ndarray
+    values: np.ma.MaskedArray
+    reason: np.ndarray
+    point: dict
+
+
+def status_of(variable: str) -> str:
+    """Name of the status that says why a value of ``variable`` is missing."""
+    own = f"{variable}_status"
+    return own if own in schema.STATUS_OF else "locked_status" if variable.startswith("locked_") else "status"
+
+
+def check_name(name: str, available, what: str) -> None:
+    """Raises ValueError that lists ``available``, and names the nearest, if ``name`` is not among them."""
+    available = sorted(available)
+    if name not in available:
+        near = difflib.get_close_matches(str(name), available, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        raise ValueError(f"no {what} {name!r}{hint} (available: {', '.join(available) or 'none'})")
+
+
+def plane(dataset, variable: str, select: dict) -> Plane:
+    """``variable`` of an xarray Dataset at the grid values nearest to ``select`` (name: value in stored units).
+
+    What is not selected: the largest pressure, the force and torque nearest zero, the middle of anything else. Raises
+    ValueError for names that are unknown, values that are no numbers, and a dataset without a plane of angles.
+    """
+    missing = [name for name in ("alpha", "beta") if dataset.sizes.get(name, 0) < 2]
+    if missing:
+        sizes = ", ".join(f"{name} ({size})" for name, size in dataset.sizes.items()) or "none"
+        raise ValueError(
+            f"a map needs alpha and beta as dimensions of two nodes or more; {' and '.join(missing)} "
+            f"{'is' if len(missing) == 1 else 'are'} not (dimensions: {sizes})"
+        )
+    on_plane = [name for name in schema.VARIABLES if name in dataset and {"alpha", "beta"} <= set(dataset[name].dims)]
+    check_name(variable, on_plane, "variable")
+    check_name(status_of(variable), dataset.data_vars, "status variable")
+
+    point, index = _choose(dataset, select)
+    values = _sheet(dataset[variable], index)
+    status = _sheet(dataset[status_of(variable)], index)
+    free = schema.VARIABLES[variable].without
+    turns = point.get("torque", 0.0) != 0.0 and "torque" not in free
+    alpha, beta, values, status = _unfold(dataset, values, status, variable in ODD, turns)
+
+    none = ~np.isfinite(values)
+    if variable != "limit_pressure":  # which has a value just where the state has none
+        none |= ~np.isin(status, VALUED)
+    reason = np.where(none & np.isin(status, VALUED), NO_VALUE, status)
+    if variable == "limit_pressure":
+        reason[~none] = OK
+    return Plane(alpha, beta, np.ma.array(values, mask=none), reason, {k: v for k, v in point.items() if k not in free})
+
+
+def _choose(dataset, select):
+    """Parameters of the point, and the index along each dimension other than alpha and beta."""
+    parameters = [name for name in schema.PARAMETERS if name in dataset.coords and name not in ("alpha", "beta")]
+    for name, value in select.items():
+        check_name(name, parameters, "dimension")
+        if not isinstance(value, Real) or not np.isfinite(value):
+            raise ValueError(f"{name} must be one finite number [{schema.PARAMETERS[name].units}], not {value!r}")
+    point, index = {}, {}
+    for name in parameters:
+        nodes = np.atleast_1d(dataset[name].values).astype(float)
+        if name in select:
+            at = np.abs(nodes - select[name]).argmin()
+        elif name == "pressure":
+            at = nodes.argmax()
+        elif name in schema.LOADS:
+            at = np.abs(nodes).argmin()
+        else:
+            at = np.argsort(nodes)[nodes.size // 2]
+        point[name] = float(nodes[at])
+        if name in dataset.dims:
+            index[name] = int(at)
+    return point, index
+
+
+def _sheet(array, index):
+    chosen = array.isel({name: at for name, at in index.items() if name in array.dims})
+    return chosen.transpose("beta", "alpha").values
+
+
+def _unfold(dataset, values, status, odd, turns):
+    """Nodes, values and status on the two quadrants; ``turns``: a torque is applied, the mirror would reverse it."""
+    a, b = (dataset[name].values.astype(float) for name in ("alpha", "beta"))
+    images = [(a, b, values, status), (b, a, values.T, status.T)]
+    if not turns:
+        sign = -1.0 if odd else 1.0
+        images += [(-x, -y, sign * v, s) for x, y, v, s in images]
+    alpha = _nodes([image[0] for image in images], ALPHA)
+    beta = _nodes([image[1] for image in images], BETA)
+    if min(alpha.size, beta.size) < 2:
+        raise ValueError("the dataset has fewer than two nodes of alpha or beta in 0..90 and -90..90 degrees")
+    full = np.full((beta.size, alpha.size), np.nan)
+    reason = np.full(full.shape, OUTSIDE)
+    for x, y, v, s in images:
+        column, has_x = _match(alpha, x)
+        row, has_y = _match(beta, y)
+        take = has_y[:, None] & has_x & (reason == OUTSIDE)
+        full = np.where(take, v[np.ix_(row, column)], full)
+        reason = np.where(take, s[np.ix_(row, column)], reason)
+    return alpha, beta, full, reason
+
+
+def _nodes(axes, window):
+    """The stored nodes in the window, and beyond their range those of the images."""
+    inside = [np.unique(axis[(axis >= window[0]) & (axis <= window[1])]) for axis in axes]
+    nodes = inside[0]
+    for other in inside[1:]:
+        if nodes.size:
+            other = other[(other < nodes[0] - SAME_ANGLE) | (other > nodes[-1] + SAME_ANGLE)]
+        nodes = np.union1d(nodes, other)
+    return nodes + 0.0  # no negative zero
+
+
+def _match(nodes, stored):
+    distance = np.abs(nodes[:, None] - stored)
+    return distance.argmin(axis=1), distance.min(axis=1) < SAME_ANGLE

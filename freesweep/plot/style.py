@@ -1,0 +1,116 @@
+"""One visual language for every plot: type, publication sizes, colours, colour maps; and how a plot becomes a file.
+
+Importing this changes nothing: the settings hold inside ``with context():`` only. The colour maps are straight lines in
+CIELAB, so equal steps of a value look equally large and keep their order in grey, for colour-blind eyes too.
+"""
+
+import io
+import os
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+
+INCH = 25.4  # [mm]
+COLUMN, PAGE = 85.0, 170.0  # widths in print [mm]
+RESOLUTION = 300  # of PNG files [dots per inch]
+SUFFIXES = (".png", ".svg", ".pdf")
+
+INK = "#23272e"
+QUIET = "#6b717b"
+PAPER = "#ffffff"
+BLANK = "#e9e9ea"  # where there is no value
+LOCKED = "#1f4fe0"  # the locked manifold, blue as in the source
+FAMILIES = ("#c2187f", "#1d2b3a")  # the alpha and the beta family of fibers
+DESIGN = {"color": INK, "markerfacecolor": PAPER, "markersize": 3.4, "markeredgewidth": 0.8}  # the dot of a design
+
+SMALL, NORMAL, LARGE = 7.0, 8.0, 10.0  # type [points]
+
+SETTINGS = {
+    "font.family": ["STIXGeneral"],  # comes with matplotlib: the same plot on every machine
+    "mathtext.fontset": "stix",
+    "font.size": NORMAL,
+    "text.color": INK,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.6,
+    "axes.titlesize": LARGE,
+    "axes.labelsize": NORMAL + 1.0,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.labelsize": NORMAL,
+    "ytick.labelsize": NORMAL,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.fontsize": NORMAL,
+    "legend.frameon": False,
+    "hatch.linewidth": 0.5,
+    "figure.facecolor": PAPER,
+    "savefig.facecolor": PAPER,
+    "savefig.bbox": None,  # the width asked for is the width in print
+    "pdf.fonttype": 42,
+    "svg.hashsalt": "freesweep",  # equal plots are equal files
+}
+
+
+def context():
+    """The settings, as a context manager."""
+    return mpl.rc_context(SETTINGS)
+
+
+def new_axes(width: float, height: float) -> Axes:
+    """Axes that fill a new figure of ``width`` and ``height`` [mm]."""
+    from matplotlib import pyplot  # so that notebooks and plt.show() see the figure
+
+    with context():
+        return pyplot.figure(figsize=(width / INCH, height / INCH), layout="constrained").add_subplot()
+
+
+def _rgb(lab):
+    """SRGB in 0..1, shape (n, 3), of CIELAB under D65, shape (n, 3)."""
+    light = (lab[:, 0] + 16.0) / 116.0
+    f = np.stack([light + lab[:, 1] / 500.0, light, light - lab[:, 2] / 200.0], axis=1)
+    xyz = np.where(f > 6.0 / 29.0, f**3, (f - 4.0 / 29.0) * 3.0 * (6.0 / 29.0) ** 2) * [0.95047, 1.0, 1.08883]
+    to_rgb = [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]]
+    linear = np.clip(xyz @ np.transpose(to_rgb), 0.0, 1.0)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055)
+
+
+def _colour_map(name, anchors):
+    at = np.linspace(0.0, 1.0, len(anchors))
+    fine = np.linspace(0.0, 1.0, 257)  # odd: the middle of a diverging map is one of them
+    lab = np.stack([np.interp(fine, at, channel) for channel in np.transpose(anchors)], axis=1)
+    return LinearSegmentedColormap.from_list(name, _rgb(lab), N=257)
+
+
+# lightness, green-red, blue-yellow; ends that print and leave black type legible
+DIVERGING = _colour_map("rust_teal", [(46.0, 38.0, 46.0), (97.0, 0.0, 1.0), (46.0, -34.0, -8.0)])
+SEQUENTIAL = _colour_map("sand_pine", [(96.0, -2.0, 14.0), (66.0, -24.0, 8.0), (36.0, -14.0, -12.0)])
+
+
+def save(drawing: Axes | Figure, path: str | os.PathLike) -> Path:
+    """Writes the figure of ``drawing`` as PNG, SVG or PDF, by the suffix of ``path``; returns the path.
+
+    The file is complete or not there. Raises ValueError for any other suffix, OSError where the path cannot be written.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise ValueError(f"cannot save a plot as {path.name!r}: the suffix must be one of {', '.join(SUFFIXES)}")
+    figure = drawing.figure if isinstance(drawing, Axes) else drawing
+    if not isinstance(figure, Figure):  # a subfigure: the file shows all of it
+        figure = figure.figure
+    undated = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
+    content = io.BytesIO()
+    with context():
+        figure.savefig(content, format=suffix[1:], dpi=RESOLUTION, metadata=undated)
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        part.write_bytes(content.getvalue())
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
