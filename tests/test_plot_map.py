@@ -173,6 +173,15 @@ def test_colours_are_centred_at_zero(whole):
     np.testing.assert_allclose(np.array(style.DIVERGING(0.5)[:3]) - around, 0.0, atol=0.12)
 
 
+@pytest.mark.parametrize("value", [0.0, 1e-300, -3.0, 4.0, np.nan])
+@pytest.mark.parametrize("variable", ["rotation", "volume"])
+def test_maps_of_one_value_or_none(whole, variable, value):
+    flat = whole.assign({variable: whole[variable] * 0.0 + value})
+    ax = design_map(flat, variable, paths=False, examples=False)
+    np.testing.assert_allclose(mesh_of(ax).compressed(), display.display(variable).convert(value, {}))
+    assert ("no value" in [text.get_text() for text in ax.get_legend().get_texts()]) == np.isnan(value)
+
+
 def test_limit_pressure_tells_none_from_failed(whole):
     ax = design_map(whole, "limit_pressure", paths=False, examples=False)
     values = mesh_of(ax)

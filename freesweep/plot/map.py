@@ -79,7 +79,8 @@ def _draw_values(ax, sheet: Plane, variable):
     levels, colours, extend = _levels(values.compressed(), shown.centre)
     norm = BoundaryNorm(levels, len(levels) - 1)
     edges = _edges(sheet.alpha), _edges(sheet.beta)
-    ax.pcolormesh(*edges, values, cmap=colours, norm=norm, zorder=1)
+    # an image also in vector files: cells that abut would show seams there
+    ax.pcolormesh(*edges, values, cmap=colours, norm=norm, rasterized=True, zorder=1)
     ax.add_patch(Rectangle((edges[0][0], edges[1][0]), np.ptp(edges[0]), np.ptp(edges[1]), fill=False,
                            edgecolor=style.QUIET, linewidth=0.5, zorder=3))  # fmt: skip
     if max(np.diff(sheet.alpha).max(), np.diff(sheet.beta).max()) <= COARSE:
@@ -105,11 +106,13 @@ def _levels(values, centre):
         place, colours = (lambda value: (value - levels[0]) / (levels[-1] - levels[0])), style.SEQUENTIAL
     else:  # colours symmetric about the centre; the bar covers the values only
         low, high = min(low, centre), max(high, centre)
-        reach = max(centre - low, high - centre) or 1.0
-        count = min(2.0 * STEPS, STEPS * 2.0 * reach / (high - low or 2.0 * reach))
+        if low == high:  # nothing moves
+            low, high = centre - 1.0, centre + 1.0
+        reach = max(centre - low, high - centre)
+        count = min(2.0 * STEPS, STEPS * 2.0 * reach / (high - low))
         levels = MaxNLocator(int(count), steps=NICE).tick_values(-reach, reach) + centre
         width = np.abs(levels - centre).max()
-        levels = levels[np.searchsorted(levels, low, "right") - 1 : np.searchsorted(levels, high) + 1]
+        levels = levels[max(np.searchsorted(levels, low, "right") - 1, 0) : np.searchsorted(levels, high) + 1]
         place, colours = (lambda value: 0.5 + 0.5 * (value - centre) / width), style.DIVERGING
     under, over = (values.size > 0 and values.min() < levels[0]), (values.size > 0 and values.max() > levels[-1])
     extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[bool(under), bool(over)]
