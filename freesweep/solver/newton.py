@@ -32,7 +32,8 @@ def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
     last = len(cells) - 1
     for j in range(n):
         h = x[j + 1] - x[j]
-        v = (y[j + 1] - y[j]) / h
+        per_h = 1.0 / h
+        v = (y[j + 1] - y[j]) * per_h
         middle = 0.5 * (y[j] + y[j + 1])
         room[j], L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cells[min(j, last)], load)
         if not (room[j] > MIN_ROOM * least[j] and middle > 0.0):  # a NaN counts as no room
@@ -41,7 +42,7 @@ def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
             L_yy = min(L_yy, L_yv * L_yv / L_vv)
         half = 0.5 * h * L_y
         corner = 0.25 * h * L_yy
-        stiff = L_vv / h
+        stiff = L_vv * per_h
         g[j] -= half - L_v
         g[j + 1] = -(half + L_v)
         d[j] -= corner - L_yv + stiff
