@@ -6,6 +6,7 @@ Lengths by the fiber surface's radius r0, pressure by C10, force by pi r0^2 C10,
 
 import numpy as np
 
+ACCURACIES = (1e-10, 1e-2)  # error bounds that may be asked for, scaled: below lies rounding
 OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius")  # order of the kernels' columns
 
 

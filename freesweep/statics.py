@@ -7,11 +7,10 @@ import numpy as np
 from . import status
 from .actuator import Actuator, ActuatorError, number_fault
 from .atlas.schema import PROFILES, attributes
-from .scaling import OUTPUTS, output_scales, problem_rows, wall_volume_inside
+from .scaling import ACCURACIES, OUTPUTS, output_scales, problem_rows, wall_volume_inside
 
 STATIONS = 201
 BASE_CELLS = 96  # four times a sweep's: profiles are wanted as exact as scalars
-SMALLEST_ACCURACY, LARGEST_ACCURACY = 1e-10, 1e-2
 LOADS = ("force", "torque", "pressure")
 
 
@@ -90,8 +89,8 @@ def _stations(tube, x, accuracy, faults):
     if not isinstance(tube, Actuator):
         raise ActuatorError([f"tube: found {type(tube).__name__}; give an Actuator"])
     fault = number_fault("accuracy", accuracy, "1", positive=True)
-    if not fault and not SMALLEST_ACCURACY <= accuracy <= LARGEST_ACCURACY:
-        fault = f"accuracy: found {accuracy:g}; give a value from {SMALLEST_ACCURACY:g} to {LARGEST_ACCURACY:g}"
+    if not fault and not ACCURACIES[0] <= accuracy <= ACCURACIES[1]:
+        fault = f"accuracy: found {accuracy:g}; give a value from {ACCURACIES[0]:g} to {ACCURACIES[1]:g}"
     faults += [fault] if fault else []
     if x is None:
         stations = np.linspace(0.0, tube.length, STATIONS)

@@ -95,7 +95,7 @@ def on_one_mesh(x, y, cell, load, free=True, tolerance=1e-14):
     """Newton on one mesh: (status, negative pivots)."""
     work = np.zeros((13, len(x)))
     return newton.solve(
-        density, x, y, len(x) - 1, free, np.array([[cell]]), load, newton.UNKNOWN, tolerance, work
+        density, x, y, len(x) - 1, free, np.array([[cell, 0.0, 0.0]]), load, newton.UNKNOWN, tolerance, work
     )[:2]  # fmt: skip
 
 
@@ -104,7 +104,7 @@ def on_nested_meshes(x, y, cell, load=REST, goal=nested.PLAIN, direction=REST, t
     size = ((len(x) - 1) << nested.MAX_DOUBLINGS) + 2
     out, table = np.zeros((4, nested.OUTPUTS)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
     status, unstable, doublings, _ = nested.solve(
-        density, conjugate, integrands, scales, x, y, True, np.array([[cell]]), load, goal, direction, target, mu, 2,
+        density, conjugate, integrands, scales, x, y, True, np.array([[cell, 0.0, 0.0]]), load, goal, direction, target, mu, 2,
         accuracy, np.zeros((5, size)), np.zeros((13, size)), table, out,
     )  # fmt: skip
     return status, unstable, doublings, out[0], out[1], table
@@ -120,7 +120,7 @@ def curvature(x, y, cell, load, free):
     """Negative pivots of the second variation at y: unstable directions."""
     n = len(x) - 1
     g, d, e, pivot, room = (np.zeros(n + 1) for _ in range(5))
-    assert newton.assemble(density, x, y, n, np.array([[cell]]), load, False, np.zeros(n + 1), room, g, d, e)
+    assert newton.assemble(density, x, y, n, np.array([[cell, 0.0, 0.0]]), load, False, np.zeros(n + 1), room, g, d, e)
     return newton.factor(d, e, 1, n if free else n - 1, pivot)
 
 
@@ -232,7 +232,7 @@ def test_holding_the_conjugate_integral_stabilises_the_upper_branch(strength, pa
     shape, _ = bratu(bratu_theta(strength, pair))
     x = np.linspace(0, X, 401)
     y = np.array([shape(t) for t in x])
-    cells, load = np.array([[BRATU]]), (0.0, 0.0, 0.0, strength, 0.0, 0.0, 0.0)
+    cells, load = np.array([[BRATU, 0.0, 0.0]]), (0.0, 0.0, 0.0, strength, 0.0, 0.0, 0.0)
     assert curvature(x, y, BRATU, load, True) == (0 if sign > 0 else 1)
     work = np.zeros((13, len(x)))
     target = held.hold(conjugate, x, y, len(x) - 1, cells, load, ALONG_MU, work[8])

@@ -218,7 +218,7 @@ def test_faults_of_designs_are_named(text, says):
         ("title =", "alpha = 3\ntitle =", "alpha: unknown key; it belongs in [actuator] or [axes]"),
         ("title =", "load = 3\ntitle =", "load: found 3, must be a table"),
         ('"A sweep"', '"""two\nlines"""', "title: found 'two\\nlines', allowed is one line"),
-        ("[axes]", "[solver]\naccuracy = 1e-13\n[axes]", "solver.accuracy: found 1e-13, allowed is 1e-12 to 0.01"),
+        ("[axes]", "[solver]\naccuracy = 1e-13\n[axes]", "solver.accuracy: found 1e-13, allowed is 1e-10 to 0.01"),
         ("[axes]", "[solver]\naccuracy = [1]\n[axes]", "solver.accuracy: expects"),
         ("[axes]", "[solver]\nsteps = 1\n[axes]", "solver.steps: unknown key"),
         ('radius = "4.76 mm"', "", "radius: is missing; give it in [actuator] or [axes]"),

@@ -17,6 +17,7 @@ from . import lagrangian, mesh, nested, newton, uniform
 from .climb import CLIMB_CHANGE, climb, creep
 from .held import loaded
 from .jit import entry_point, inlined, kernel
+from .mesh import cell_at
 from .profile import FIELDS, at_stations, rest_profile
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK
 
@@ -42,7 +43,7 @@ def first_shape(u, rate, x, y):
 @kernel
 def start_shape(u, cells, load, half_length, x, y):
     """Mesh and first guess from the uniform stretch ``u``."""
-    _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cells[0], load)
+    _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell_at(cells, 0), load)
     rate = sqrt(L_yy / L_vv)
     mesh.layer_mesh(half_length, rate, len(x) - 1, x)
     first_shape(u, rate, x, y)
@@ -63,17 +64,16 @@ def strays(y, u):
 def slack_fibers(x, y, n, cells, load):
     """Bit 1: the alpha family would have to push somewhere; bit 2: the beta family."""
     flag = 0
-    last = len(cells) - 1
     for j in range(-1, n):
         if j < 0:  # the clamped end itself, with the slope carried on from the first two cells
             near = (y[1] - y[0]) / (x[1] - x[0])
             next_ = (y[2] - y[1]) / (x[2] - x[1])
             v, middle = near + (near - next_) * (x[1] - x[0]) / (x[2] - x[0]), y[0]
-            if not v * v < 1.0 + lagrangian.kinematics(middle, cells[0], load)[3]:
+            if not v * v < 1.0 + lagrangian.kinematics(middle, cell_at(cells, 0), load)[3]:
                 continue
         else:
             v, middle = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (y[j] + y[j + 1])
-        alpha, beta = lagrangian.fiber_multipliers(middle, v, cells[min(max(j, 0), last)], load)
+        alpha, beta = lagrangian.fiber_multipliers(middle, v, cell_at(cells, max(j, 0)), load)
         flag |= (1 if alpha < 0.0 else 0) | (2 if beta < 0.0 else 0)
     return flag
 
@@ -85,7 +85,7 @@ def begin(x, y, cells, load, half_length):
     part, u, reached = 1.0, 1.0, 0.0
     for _ in range(80):
         now = uniform.between(rest, load, part)
-        u, reached = uniform.follow(lagrangian.density, 1.0, cells[0], rest, now)
+        u, reached = uniform.follow(lagrangian.density, 1.0, cell_at(cells, 0), rest, now)
         if reached == 1.0 and abs(u - 1.0) < FIRST_STRAIN:
             start_shape(u, cells, now, half_length, x, y)
             return part
@@ -189,7 +189,7 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
     rest = (1.0, problem[RATIO], problem[SHEAR], 0.0, 0.0, 0.0, 1.0)
     before, u, started, ended = rest, 1.0, False, OK
     last_x, last_y = np.zeros(len(x)), np.zeros(len(x))
-    clamped = 1.0 + lagrangian.kinematics(1.0, cells[0], (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3]
+    clamped = 1.0 + lagrangian.kinematics(1.0, cell_at(cells, 0), (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3]
     limit[0], limit[1] = np.nan, np.nan
     for i in range(len(pressures)):
         p = pressures[i]
@@ -208,7 +208,7 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
             values[i, 0], values[i, 1], values[i, 2], values[i, 3], values[i, 4] = half, half, 0.0, 0.0, 1.0
             for k in range(5):
                 bounds[i, k] = 0.0
-            rest_profile(stations, cells[0], profiles[i])
+            rest_profile(stations, cell_at(cells, 0), profiles[i])
             continue
         if not p + f > 0.0:
             status[i] = COMPRESSED
@@ -219,9 +219,9 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
         load = (gamma, problem[RATIO], problem[SHEAR], p, f, m, 1.0)
         if locked:
             load = (gamma, problem[RATIO], problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
-            ahead, reached, started = lagrangian.locked_stretch(cells[0], gamma), 1.0, False
+            ahead, reached, started = lagrangian.locked_stretch(cell_at(cells, 0), gamma), 1.0, False
         elif u == u:
-            ahead, reached = uniform.follow(lagrangian.density, u, cells[0], before, load)
+            ahead, reached = uniform.follow(lagrangian.density, u, cell_at(cells, 0), before, load)
         else:
             ahead, reached = u, 0.0
         if reached == 1.0 and started and abs(u - 1.0) > 1e-9:

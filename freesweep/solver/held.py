@@ -10,6 +10,7 @@ stable under given loads; through a turning point of mu, 1/sigma falls smoothly 
 """
 
 from .jit import kernel
+from .mesh import cell_at
 from .newton import (
     CONVERGED,
     INFEASIBLE,
@@ -51,10 +52,9 @@ def hold(conjugate, x, y, n, cells, load, direction, b):
     """The held integral C, and its gradient as ``b = -dC/dy``."""
     total = 0.0
     b[0] = 0.0
-    last = len(cells) - 1
     for j in range(n):
         h = x[j + 1] - x[j]
-        c, c_y, c_v = conjugate(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cells[min(j, last)], load, direction)
+        c, c_y, c_v = conjugate(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell_at(cells, j), load, direction)
         total += h * c
         b[j] -= 0.5 * h * c_y - c_v
         b[j + 1] = -(0.5 * h * c_y + c_v)
@@ -68,7 +68,7 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
     Returns ``(status, unstable directions that keep the integral, mu, sigma)``; ``work[9]`` is left with the change of y
     per unit of mu. ``direction`` is to be scaled so that mu is of order 1.
     """
-    g, d, e, pivot, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
+    g, d, e, inverse, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
     b, response = work[8], work[9]
     first, last = 1, n if free else n - 1
     for i in range(n + 1):
@@ -90,10 +90,10 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
         mu += fraction * change
         for i in range(n + 1):
             y[i], least[i] = trial[i], room[i]
-        negative = factor(d, e, first, last, pivot)
+        negative = factor(d, e, first, last, inverse)
         value = hold(conjugate, x, y, n, cells, now, direction, b)
-        substitute(pivot, e, first, last, g, step)
-        substitute(pivot, e, first, last, b, response)
+        substitute(inverse, e, first, last, g, step)
+        substitute(inverse, e, first, last, b, response)
         response[0] = 0.0
         response[n] = response[n] if free else 0.0
         sigma, lag = 0.0, 0.0

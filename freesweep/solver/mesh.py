@@ -19,6 +19,13 @@ SMOOTHINGS = 3  # passes over the cell sizes
 
 
 @kernel
+def cell_at(cells, j):
+    """What varies along the tube, in cell j: a row of three numbers; a single row holds for all cells."""
+    k = min(j, len(cells) - 1)
+    return cells[k, 0], cells[k, 1], cells[k, 2]
+
+
+@kernel
 def layer_mesh(length, rate, n, x):
     """First guess: n cells on 0..length, graded by an end layer exp(-rate x)."""
     k = FIRST_GRADING * rate
@@ -36,10 +43,9 @@ def turning(integrands, x, y, n, free, cells, load, work, out):
     The first of ``integrands`` is the axial length per length, so tan(angle) = v/s.
     """
     sine, cosine = work[0], work[1]
-    last = len(cells) - 1
     for j in range(n):
         v = (y[j + 1] - y[j]) / (x[j + 1] - x[j])
-        s = integrands(0.5 * (y[j] + y[j + 1]), v, cells[min(j, last)], load)[0]
+        s = integrands(0.5 * (y[j] + y[j + 1]), v, cell_at(cells, j), load)[0]
         i = 1.0 / sqrt(s * s + v * v)
         sine[j], cosine[j] = v * i, s * i
     for j in range(n):

@@ -29,16 +29,19 @@ UNREACHED = 3  # the accuracy was not met on the finest mesh
 @kernel
 def integrate(integrands, x, y, n, cells, load, row):
     """Integrals over the tube on one mesh."""
-    for k in range(4):
-        row[k] = 0.0
-    last = len(cells) - 1
+    length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
+    varying = len(cells) > 1
+    cell = mesh.cell_at(cells, 0)
     for j in range(n):
+        if varying:
+            cell = mesh.cell_at(cells, j)
         h = x[j + 1] - x[j]
-        s, volume, twist, energy = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cells[min(j, last)], load)
-        row[0] += h * s
-        row[1] += h * volume
-        row[2] += h * twist
-        row[3] += h * energy
+        s, v, t, w = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell, load)
+        length += h * s
+        volume += h * v
+        twist += h * t
+        energy += h * w
+    row[0], row[1], row[2], row[3] = length, volume, twist, energy
 
 
 @kernel

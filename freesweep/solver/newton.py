@@ -9,6 +9,7 @@ and y > 0. ``y[0]`` is held; so is ``y[n]`` unless ``free`` (a plane of symmetry
 """
 
 from .jit import kernel
+from .mesh import cell_at
 
 MAX_ITERATIONS = 60  # a warm start takes 1 to 3, a bad first guess at a small angle 25
 MAX_HALVINGS = 30  # of one step: below 1e-9 of it nothing is gained
@@ -27,63 +28,72 @@ def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
     The ``room`` of each cell is written, and refused where it is not above MIN_ROOM of ``least``. ``convex`` drops
     whatever makes a cell's own Hessian indefinite: far from the solution every step is a descent then.
     """
-    g[0] = 0.0
-    d[0] = 0.0
-    last = len(cells) - 1
+    fits = True
+    varying = len(cells) > 1
+    cell = cell_at(cells, 0)
+    g_left, d_left = 0.0, 0.0
     for j in range(n):
+        if varying:
+            cell = cell_at(cells, j)
         h = x[j + 1] - x[j]
         per_h = 1.0 / h
         v = (y[j + 1] - y[j]) * per_h
         middle = 0.5 * (y[j] + y[j + 1])
-        room[j], L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cells[min(j, last)], load)
-        if not (room[j] > MIN_ROOM * least[j] and middle > 0.0):  # a NaN counts as no room
-            return False
+        space, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cell, load)
+        fits = fits and space > MIN_ROOM * least[j] and middle > 0.0  # a NaN counts as no room
+        room[j] = space
         if convex:
             L_yy = min(L_yy, L_yv * L_yv / L_vv)
         half = 0.5 * h * L_y
         corner = 0.25 * h * L_yy
         stiff = L_vv * per_h
-        g[j] -= half - L_v
-        g[j + 1] = -(half + L_v)
-        d[j] -= corner - L_yv + stiff
-        d[j + 1] = -(corner + L_yv + stiff)
-        e[j] = -(corner - stiff)
-    return True
+        g[j] = g_left - half + L_v
+        d[j] = d_left - corner + L_yv - stiff
+        e[j] = stiff - corner
+        g_left = -half - L_v
+        d_left = -corner - L_yv - stiff
+    g[n], d[n] = g_left, d_left
+    return fits
 
 
 @kernel
 def admissible(density, x, y, n, cells, load):
     """Whether every cell has room."""
-    last = len(cells) - 1
     for j in range(n):
         middle = 0.5 * (y[j] + y[j + 1])
-        room = density(middle, (y[j + 1] - y[j]) / (x[j + 1] - x[j]), cells[min(j, last)], load)[0]
+        room = density(middle, (y[j + 1] - y[j]) / (x[j + 1] - x[j]), cell_at(cells, j), load)[0]
         if not (room > 0.0 and middle > 0.0):
             return False
     return True
 
 
 @kernel
-def factor(d, e, first, last, pivot):
-    """LDL^T of rows first..last; returns the number of negative pivots."""
-    pivot[first] = d[first]
-    negative = 0 if pivot[first] > 0.0 else 1
-    for i in range(first + 1, last + 1):
-        pivot[i] = d[i] - e[i - 1] * e[i - 1] / pivot[i - 1]
-        if not pivot[i] > 0.0:
+def factor(d, e, first, last, inverse):
+    """LDL^T of rows first..last: writes the ``inverse`` pivots, returns how many are negative."""
+    negative = 0
+    below = 0.0
+    for i in range(first, last + 1):
+        pivot = d[i] - below
+        per_pivot = 1.0 / pivot
+        inverse[i] = per_pivot
+        below = e[i] * e[i] * per_pivot
+        if not pivot > 0.0:
             negative += 1
     return negative
 
 
 @kernel
-def substitute(pivot, e, first, last, b, out):
+def substitute(inverse, e, first, last, b, out):
     """``out = H^-1 b`` with the factors of :func:`factor`."""
-    out[first] = b[first]
-    for i in range(first + 1, last + 1):
-        out[i] = b[i] - e[i - 1] * out[i - 1] / pivot[i - 1]
-    out[last] /= pivot[last]
-    for i in range(last - 1, first - 1, -1):
-        out[i] = (out[i] - e[i] * out[i + 1]) / pivot[i]
+    carried = 0.0
+    for i in range(first, last + 1):
+        value = b[i] - carried
+        out[i] = value
+        carried = e[i] * value * inverse[i]
+    carried = 0.0
+    for i in range(last, first - 1, -1):
+        carried = (out[i] - (e[i] * carried if i < last else 0.0)) * inverse[i]
+        out[i] = carried
 
 
 @kernel
@@ -109,7 +119,7 @@ def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
     Returns ``(status, negative pivots, rate)``; the rate of convergence seen on one mesh serves the next. ``work`` is
     scratch of shape (13, > n).
     """
-    g, d, e, pivot, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
+    g, d, e, inverse, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
     first, last = 1, n if free else n - 1
     for i in range(n + 1):
         trial[i] = y[i]
@@ -134,13 +144,13 @@ def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
             before = size if fraction == 1.0 and negative == 0 else 1e300
             for i in range(n + 1):
                 y[i], least[i] = trial[i], room[i]
-        pivots = factor(d, e, first, last, pivot)
+        pivots = factor(d, e, first, last, inverse)
         if not convex:
             negative = pivots
             if negative > 0:
                 convex = True  # assemble again, at the same state
                 continue
-        substitute(pivot, e, first, last, g, step)
+        substitute(inverse, e, first, last, g, step)
         step[0] = 0.0
         step[n] = step[n] if free else 0.0
         size, slope = 0.0, 0.0

@@ -4,6 +4,7 @@ from math import sqrt
 
 from . import lagrangian
 from .jit import kernel
+from .mesh import cell_at
 
 FIELDS = 7  # stretch, axial position, twist, tangents of the deformed angles, fiber multipliers
 STENCIL = 6  # nodes of the interpolating polynomial: its error is of sixth order, the node values' of fourth
@@ -17,20 +18,19 @@ def extrapolate_nodes(base_cells, doublings, cells, load, fine, nodes):
     """
     n = base_cells << (doublings - 1)
     x2, y2, x1, y1 = fine[0], fine[1], fine[2], fine[4]
-    last = len(cells) - 1
     near, far, near_twist, far_twist = 0.0, 0.0, 0.0, 0.0
     for k in range(n + 1):
         if k > 0:
             h = x1[k] - x1[k - 1]
             s, _, twist, _ = lagrangian.integrands(
-                0.5 * (y1[k - 1] + y1[k]), (y1[k] - y1[k - 1]) / h, cells[min(k - 1, last)], load
+                0.5 * (y1[k - 1] + y1[k]), (y1[k] - y1[k - 1]) / h, cell_at(cells, k - 1), load
             )
             near += h * s
             near_twist += h * twist
             for j in range(2 * k - 2, 2 * k):
                 h = x2[j + 1] - x2[j]
                 s, _, twist, _ = lagrangian.integrands(
-                    0.5 * (y2[j] + y2[j + 1]), (y2[j + 1] - y2[j]) / h, cells[min(j, last)], load
+                    0.5 * (y2[j] + y2[j + 1]), (y2[j + 1] - y2[j]) / h, cell_at(cells, j), load
                 )
                 far += h * s
                 far_twist += h * twist
@@ -74,7 +74,7 @@ def at_stations(stations, base_cells, doublings, cells, load, fine, nodes, profi
             v += slope[k] * nodes[0, first + k]
             z += value[k] * nodes[1, first + k]
             twist += value[k] * nodes[2, first + k]
-        cell = cells[min(j, len(cells) - 1)]
+        cell = cell_at(cells, j)
         psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
         meridional = sqrt(1.0 + G_1)
         v = min(max(v, -(1.0 - 1e-12) * meridional), (1.0 - 1e-12) * meridional)

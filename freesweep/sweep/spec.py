@@ -27,6 +27,7 @@ from pathlib import Path
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from ..scaling import ACCURACIES
 from ..units import quantity, shown
 from . import axis, toml_guard
 from .designs import DEFAULTS, HOME, OWN, read_designs
@@ -37,7 +38,6 @@ __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 MAX_POINTS = 2_000_000_000  # 16 GB for each variable of the atlas
 ENERGIES = ("full", "principal")
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
-ACCURACIES = (1e-12, 1e-2)
 
 
 @dataclass(frozen=True, eq=False)
