@@ -376,8 +376,22 @@ def _nearby_middle(values, y, half, reach, tolerance=1e-9):
     raise NoState("no middle stretch nearby")
 
 
+def _uniform_beside(values, y):
+    """A stationary stretch of the uniform tube just beyond ``y``, seen from 1; None if there is none."""
+    slopes = compiled()["slopes"]
+    u = np.longdouble(y)
+    for _ in range(30):
+        slope, curvature = slopes(u, values)
+        if not curvature < 0 or abs(u / y - 1) > 1e-4:
+            return None
+        u = u - slope / curvature
+    return u if (u - y) * (y - 1) >= 0 else None
+
+
 def _follow_tube(legs, half, closest=1e-8):
-    """The middle stretch of the clamped tube, carried along straight lines of parameters from leg to leg."""
+    """The middle stretch of the clamped tube, carried along straight lines of parameters from leg to leg; and the
+    uniform stretch beside it, None if there is none.
+    """
     u, t, step, y, lost = np.longdouble(1), 0.0, 1 / 64, None, False
     for start, end in pairwise(legs):
         t = 0.0
@@ -402,13 +416,16 @@ def _follow_tube(legs, half, closest=1e-8):
                         continue
                 else:
                     y = _nearby_middle(now, y, half, 0.06)
+                    again = _uniform_beside(now, y)
+                    if again is not None:  # past the uniform tube's fold: the middle nears its stretch again
+                        u, y, lost = again, _middle_of(now, again, half)[2], False
                 t, step = ahead, 1.5 * step
             except NoState:
                 step *= 0.5
                 if step < closest:
                     reached = _between(start, end, t)
                     raise NoState(f"limit at p = {float(reached[6]):.9g}, {t:.9g} of the way") from None
-    return _nearby_middle(legs[-1], y, half, 1e-3, 1e-13) if lost else y
+    return (_nearby_middle(legs[-1], y, half, 1e-3, 1e-13), None) if lost else (y, u)
 
 
 def _stretch(quadrature, folds, edges, from_end, x, half):
@@ -457,9 +474,17 @@ def first_integral(
         except NoState:
             legs = [parameters(*given, *load, energy) for load in ((0, 0, 0, 1.0), (first_pressure or p, f, m, gamma))]
             legs += [values] if (first_pressure or p) != p else []
-            found = _FromMiddle(values, _follow_tube(legs, 0.5 * length_over_radius))
+            y_m, u = _follow_tube(legs, 0.5 * length_over_radius)
+            if u is not None:
+                return _solve(values, u, 0.5 * length_over_radius, stations)
+            found = _FromMiddle(values, y_m)
             return _shape(found, found.end, 0.5 * length_over_radius, found.y_m, stations, float(values[2]))
     return _solve(values, u, 0.5 * length_over_radius, stations)
+
+
+def uniform_stretch(alpha, beta, area, ratio, p, f=0.0, m=0.0, gamma=1.0, energy="full"):
+    """Stretch of the uniform tube, all loads raised in proportion."""
+    return float(_uniform_of(alpha, beta, area, ratio, p, p, f, m, gamma, energy))
 
 
 @lru_cache(maxsize=256)
