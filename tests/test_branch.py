@@ -208,14 +208,33 @@ def test_limit_pressure_of_a_wall_of_principal_energy():
     assert np.isfinite(walks.values[:3]).all()
 
 
+def quadrature_limit(*args, **loads):
+    """Pressure at which the quadrature's branch ends."""
+    with pytest.raises(NoState) as end:
+        first_integral(*args, **loads)
+    return float(str(end.value).split("p = ")[1].split(",")[0])
+
+
 def test_limit_pressure_against_the_quadrature():
     """Short tubes carry more than the uniform tube: the quadrature's branch ends where the walk's does."""
     walks = one(tube(60, 55, length=8, energy="principal"), 0.5, 1.5)
     assert walks.status.tolist() == [OK, BEYOND_LIMIT]
-    with pytest.raises(NoState) as end:
-        first_integral(60, 55, 8, WALL, 0.5, 1.5, energy="principal")
-    reached = float(str(end.value).split("p = ")[1].split(",")[0])
-    assert walks.limits[0, 0] == pytest.approx(reached, abs=2e-7)
+    limit = quadrature_limit(60, 55, 8, WALL, 0.5, 1.5, energy="principal")
+    assert walks.limits[0, 0] == pytest.approx(limit, abs=2e-7)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "length", "area", "ratio", "far"),
+    [(80, 23, 20, 0.26, 0.2, 2.4), (22, 84, 4.3, 1.64, 0.04, 9.0), (25, 73, 4.1, 0.19, 0.84, 1.3)],
+)
+def test_small_snap_is_not_jumped(alpha, beta, length, area, ratio, far):
+    """The stretch beyond the limit differs by 2 to 30 %, and is a stable equilibrium: of another branch."""
+    design = tube(alpha, beta, length=length, area=area, ratio=ratio, energy="principal")
+    walks = one(design, 0.01, far)
+    limit = quadrature_limit(alpha, beta, length, area, ratio, 0.6, energy="principal")
+    assert walks.status.tolist() == [OK, BEYOND_LIMIT]
+    assert walks.limits[0, 0] == pytest.approx(limit, abs=2e-7)
+    assert one(design, far).status.tolist() == [BEYOND_LIMIT]
 
 
 def test_full_energy_has_no_limit_there():
@@ -264,7 +283,7 @@ def test_wall_that_would_have_to_be_pushed():
 
 def test_torque_that_draws_the_tube_together_slackens_the_wall():
     """p y^2 + f is positive at the ends and negative at the uniform stretch: no result, and none by quadrature."""
-    alpha, beta, area, ratio, p, f, m = 75, -20, 0.1, 0.0, 0.11, -0.05, 4.5
+    alpha, beta, area, ratio, p, f, m = 75, -20, 0.1, 0.0, 0.1, -0.055, 4.5
     u = uniform_stretch(alpha, beta, area, ratio, p, f, m)
     assert p + f > 0
     assert p * u**2 + f < 0
