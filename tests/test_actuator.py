@@ -45,7 +45,7 @@ def test_integers_and_numpy_scalars_become_floats(kind):
         (True, "found bool True; give one number in ["),
         (math.nan, "found nan; give a finite number in ["),
         (math.inf, "found inf; give a finite number in ["),
-        ([1.0, 2.0], "found list [1.0, 2.0]; give one number in ["),
+        ({1: 2.0}, "found dict {1: 2.0}; give one number in ["),
         (1j, "found complex 1j; give one number in ["),
     ],
 )

@@ -1,0 +1,33 @@
+"""Small sweeps for tests, written as a person would write them."""
+
+from freesweep import run_sweep
+from freesweep.sweep.spec import parse
+
+FIXED = {"length": 0.1, "radius": 4.76e-3, "wall": 1.59e-3, "c10": 0.17e6, "c01": 0.08e6}
+GRID = {
+    "alpha": [-25.0, 10.0, 30.0],
+    "beta": [-60.0, 30.0, 30.25, 50.0],
+    "fiber_radius": [4.76e-3, 5.5e-3],
+    "c10": [0.1e6, 0.2e6],
+    "force": [-0.4, 0.0, 2.0],
+    "torque": [-5e-3, 0.0, 8e-3],
+    "pressure": [0.0, 2e4, 1e5],
+}
+
+
+def spec(axes, designs=(), fixed=None, title="A sweep", energy="full"):
+    """The text of a specification: numbers in SI units and degrees."""
+    own = set.intersection(*map(set, designs)) if designs else set()
+    fixed = {name: value for name, value in (FIXED | (fixed or {})).items() if name not in {*axes, *own}}
+    lines = [f'title = "{title}"', "[actuator]", f'energy = "{energy}"']
+    lines += [f"{name} = {value!r}" for name, value in fixed.items() if name != "pressure"]
+    lines += ["[load]", f"pressure = {fixed['pressure']!r}"] if "pressure" in fixed else []
+    lines += ["[axes]", *(f"{name} = {values}" for name, values in axes.items())]
+    for design in designs:
+        lines += ["[[designs]]", *(f"{name} = {value!r}" for name, value in design.items())]
+    return "\n".join(lines)
+
+
+def swept(folder, *arguments, threads=2, **more):
+    sweep = parse(spec(*arguments, **more))
+    return run_sweep(sweep, folder / "atlas.nc", threads=threads, progress=False)
