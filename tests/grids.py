@@ -1,18 +1,26 @@
 """Small sweeps for tests, written as a person would write them."""
 
+import os
+from pathlib import Path
+
+import freesweep
 from freesweep import run_sweep
 from freesweep.sweep.spec import parse
+
+# for child processes, wherever they start: the package under test
+CHILD_ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(freesweep.__file__).parents[1])}
 
 FIXED = {"length": 0.1, "radius": 4.76e-3, "wall": 1.59e-3, "c10": 0.17e6, "c01": 0.08e6}
 GRID = {
     "alpha": [-25.0, 10.0, 30.0],
-    "beta": [-60.0, 30.0, 30.25, 50.0],
+    "beta": [-30.0, 30.0, 30.25, 50.0],
     "fiber_radius": [4.76e-3, 5.5e-3],
     "c10": [0.1e6, 0.2e6],
     "force": [-0.4, 0.0, 2.0],
     "torque": [-5e-3, 0.0, 8e-3],
     "pressure": [0.0, 2e4, 1e5],
 }
+SMALL = {"alpha": [20.0], "beta": [-50.0], "pressure": [0.0, 5e4]}
 
 
 def spec(axes, designs=(), fixed=None, title="A sweep", energy="full"):
@@ -31,3 +39,13 @@ def spec(axes, designs=(), fixed=None, title="A sweep", energy="full"):
 def swept(folder, *arguments, threads=2, **more):
     sweep = parse(spec(*arguments, **more))
     return run_sweep(sweep, folder / "atlas.nc", threads=threads, progress=False)
+
+
+def make(out, sweep, threads=2, **more):
+    """The dataset of a sweep, read and closed."""
+    with run_sweep(sweep, out, threads=threads, progress=False, **more) as atlas:
+        return atlas.data.load()
+
+
+def only(folder, *names):
+    assert sorted(path.name for path in folder.iterdir()) == sorted(names)

@@ -1,7 +1,5 @@
 """A sweep's files: whole or absent, the same bits by any way, refused where they are not its own."""
 
-import errno
-import os
 import signal
 import subprocess
 import sys
@@ -9,13 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
-from grids import spec
+from grids import CHILD_ENVIRONMENT, SMALL, make, only, spec
 
-from freesweep import Atlas, open_atlas, run_sweep
-from freesweep.atlas import files
-from freesweep.atlas.files import EnvironmentFault
-from freesweep.atlas.store import AtlasError
+from freesweep import Atlas, run_sweep
 from freesweep.sweep import run
 from freesweep.sweep.shards import SweepError
 from freesweep.sweep.spec import parse
@@ -27,7 +21,6 @@ AXES = {
     "length": [0.05, 0.1],
     "pressure": [0.0, 2e4, 1e5],
 }
-SMALL = {"alpha": [20.0], "beta": [-50.0], "pressure": [0.0, 5e4]}
 SWEEP = parse(spec(AXES))
 
 CHILD = """
@@ -54,17 +47,11 @@ def _small_shards(monkeypatch):
     monkeypatch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
 
 
-def make(out, sweep=SWEEP, threads=2, **more):
-    """The dataset of a sweep, read and closed."""
-    with run_sweep(sweep, out, threads=threads, progress=False, **more) as atlas:
-        return atlas.data.load()
-
-
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
-        return make(tmp_path_factory.mktemp("reference") / "atlas.nc", threads=1)
+        return make(tmp_path_factory.mktemp("reference") / "atlas.nc", SWEEP, threads=1)
 
 
 def same_bits(first, second):
@@ -76,20 +63,16 @@ def same_bits(first, second):
         assert variable.values.tobytes() == second[name].values.tobytes(), name
 
 
-def only(folder, *names):
-    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
-
-
 def test_the_number_of_threads_does_not_change_a_bit(reference, tmp_path):
     assert np.isfinite(reference["rotation"]).any()
     for threads in (2, 5):
-        same_bits(reference, make(tmp_path / f"{threads}.nc", threads=threads))
+        same_bits(reference, make(tmp_path / f"{threads}.nc", SWEEP, threads=threads))
     only(tmp_path, "2.nc", "5.nc")
 
 
 def test_the_size_of_the_shards_does_not_change_a_bit(reference, tmp_path, monkeypatch):
     monkeypatch.setattr(run, "SHARD_EQUILIBRIA", 8192)
-    same_bits(reference, make(tmp_path / "one.nc"))
+    same_bits(reference, make(tmp_path / "one.nc", SWEEP))
 
 
 @pytest.mark.parametrize("moment", [1, 2, 6, 0])
@@ -102,6 +85,7 @@ def test_a_killed_sweep_goes_on_to_the_same_bits(moment, reference, tmp_path, mo
         text=True,
         capture_output=True,
         timeout=300,
+        env=CHILD_ENVIRONMENT,
     )
     assert child.returncode == -signal.SIGKILL, child.stderr
     assert out.exists() == (moment == 0)
@@ -109,10 +93,10 @@ def test_a_killed_sweep_goes_on_to_the_same_bits(moment, reference, tmp_path, mo
         assert len(list(Path(f"{out}.parts").glob("shard-*.npz"))) == moment - 2
         solved, solve = [], run.solve_shard
         monkeypatch.setattr(run, "solve_shard", lambda *job: solved.append(len(job[0])) or solve(*job))
-        same_bits(reference, make(out))
+        same_bits(reference, make(out, SWEEP))
         assert 0 < sum(solved) < reference.attrs["distinct_problems"]
     else:
-        same_bits(reference, make(out))
+        same_bits(reference, make(out, SWEEP))
 
 
 @pytest.mark.xfail(
@@ -156,7 +140,7 @@ def test_a_damaged_shard_is_solved_again(damage, reference, tmp_path, monkeypatc
     content = bytearray(stored[1].read_bytes())
     content[len(content) // 2] ^= 1
     stored[1].write_bytes({"one bit": content, "cut": content[:100], "empty": b""}[damage])
-    same_bits(reference, make(tmp_path / "atlas.nc"))
+    same_bits(reference, make(tmp_path / "atlas.nc", SWEEP))
     only(tmp_path, "atlas.nc")
 
 
@@ -164,7 +148,7 @@ def test_a_damaged_shard_is_solved_again(damage, reference, tmp_path, monkeypatc
 def test_shards_of_another_size_are_not_mixed_in(reference, tmp_path, monkeypatch):
     interrupted(tmp_path / "atlas.nc", SWEEP, 3, monkeypatch)
     monkeypatch.setattr(run, "SHARD_EQUILIBRIA", SHARD // 3)
-    same_bits(reference, make(tmp_path / "atlas.nc"))
+    same_bits(reference, make(tmp_path / "atlas.nc", SWEEP))
 
 
 def test_shards_of_another_specification_are_refused_by_name(tmp_path, monkeypatch):
@@ -177,7 +161,7 @@ def test_shards_of_another_specification_are_refused_by_name(tmp_path, monkeypat
     assert sorted(Path(f"{out}.parts").glob("shard-*.npz")) == before
     monkeypatch.setattr("freesweep.solver.jit.source_hash", lambda: "other")
     with pytest.raises(SweepError, match=r"whose kernels_sha256 differs: .* there, 'other' now"):
-        make(out)
+        make(out, SWEEP)
 
 
 def test_a_finished_atlas_is_used_again_and_never_overwritten_unasked(tmp_path, monkeypatch, capsys):
@@ -196,55 +180,3 @@ def test_a_finished_atlas_is_used_again_and_never_overwritten_unasked(tmp_path, 
     assert out.stat().st_mtime_ns == stamp
     assert make(out, other, overwrite=True).attrs["title"] == "Another"
     only(tmp_path, "atlas.nc")
-
-
-def test_a_file_that_is_no_atlas_is_not_replaced(tmp_path):
-    out = tmp_path / "notes.nc"
-    out.write_text("precious")
-    with pytest.raises(SweepError, match="is no readable netCDF4 file"):
-        make(out, parse(spec(SMALL)))
-    assert out.read_text() == "precious"
-
-
-def test_a_failed_write_leaves_the_old_file_and_says_what_is_needed(tmp_path, monkeypatch):
-    out, sweep = tmp_path / "atlas.nc", parse(spec(SMALL))
-    make(out, sweep)
-    before, rename = out.read_bytes(), os.replace
-
-    def full(source, target):
-        if Path(target) == out:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        rename(source, target)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(files.os, "replace", full)
-        with pytest.raises(
-            EnvironmentFault, match=r"cannot write .*atlas\.nc: No space left on device; [\d,]+ bytes needed"
-        ):
-            make(out, sweep, overwrite=True)
-    assert out.read_bytes() == before
-    only(tmp_path, "atlas.nc", "atlas.nc.parts")  # what was solved is kept, nothing half-written
-    assert {path.suffix for path in Path(f"{out}.parts").iterdir()} == {".npz", ".json"}
-
-
-def test_a_missing_folder_is_a_fault_of_the_environment(tmp_path):
-    with pytest.raises(EnvironmentFault, match=r"cannot make the folder .*absent"):
-        make(tmp_path / "absent" / "atlas.nc", parse(spec(SMALL)))
-
-
-def test_only_atlases_are_opened(tmp_path):
-    with pytest.raises(FileNotFoundError, match=r"no atlas at .*; make one with: freesweep sweep SPEC -o none\.nc"):
-        open_atlas(tmp_path / "none.nc")
-    text, other, newer = (tmp_path / f"{name}.nc" for name in ("text", "other", "newer"))
-    text.write_text("no netCDF")
-    xr.Dataset({"status": 1}).to_netcdf(other, engine="netcdf4")
-    xr.Dataset({"status": 1}, attrs={"freesweep_format": "2"}).to_netcdf(newer, engine="netcdf4")
-    for path, says in ((text, "is no readable netCDF4 file"), (other, "found format None"), (newer, "format '2'")):
-        with pytest.raises(AtlasError, match=says) as caught:
-            open_atlas(path)
-        assert str(path) in str(caught.value)
-    make(tmp_path / "atlas.nc", parse(spec(SMALL)))
-    cut = tmp_path / "cut.nc"
-    cut.write_bytes((tmp_path / "atlas.nc").read_bytes()[:5000])
-    with pytest.raises(AtlasError, match=r"cut\.nc is no readable"):
-        open_atlas(cut)

@@ -1,0 +1,111 @@
+"""Sweeps and atlases on the command line: files, words, exit codes; never a traceback."""
+
+import pytest
+from commands import refused, run
+from grids import spec
+
+from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED
+
+TINY = spec(
+    {"alpha": [0.0, 20.0, 40.0], "beta": [-40.0, -20.0, 20.0], "pressure": [0.0, 2e4, 5e4]}, title="A tiny sweep"
+)
+
+
+@pytest.fixture(autouse=True)
+def _somewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def specification(tmp_path):
+    path = tmp_path / "tiny.toml"
+    path.write_text(TINY)
+    return str(path)
+
+
+def test_from_a_specification_to_a_map(specification, tmp_path, capsys):
+    assert run("sweep", specification, "-o", "tiny.nc", "--map", "first.svg", "--threads", "1") == DONE
+    out, err = capsys.readouterr()
+    assert "27 grid points" in out
+    assert "degenerate" in out
+    assert "Traceback" not in err
+    assert run("info", "tiny.nc") == DONE
+    text = capsys.readouterr().out
+    for part in (
+        "A tiny sweep",
+        "axes",
+        "pressure",
+        "0 .. 50000 Pa",
+        "deformed_length",
+        "[m]",
+        "statuses",
+        "provenance",
+    ):
+        assert part in text, part
+    assert run("info", "tiny.nc", "--specification") == DONE
+    assert capsys.readouterr().out == TINY + "\n"
+    assert run("plot", "map", "tiny.nc", "--variable", "deformed_length", "--at", "pressure=50 kPa") == DONE
+    assert capsys.readouterr().out == "tiny-deformed_length.png\n"
+    assert (tmp_path / "tiny-deformed_length.png").read_bytes().startswith(b"\x89PNG")
+    assert "<svg" in (tmp_path / "first.svg").read_text()[:1000]
+    made = {"tiny.toml", "tiny.nc", "first.svg", "tiny-deformed_length.png"}
+    assert {path.name for path in tmp_path.iterdir()} == made
+
+
+def test_a_sweep_names_its_atlas_after_the_specification_and_may_be_quiet(specification, tmp_path, capsys):
+    assert run("sweep", specification, "--quiet") == DONE
+    assert capsys.readouterr() == ("", "")
+    assert (tmp_path / "tiny.nc").exists()
+    (tmp_path / "tiny.toml").write_text(TINY.replace("tiny sweep", "changed sweep"))
+    assert "specification_sha256 differs" in refused(capsys, "sweep", specification, "--quiet")
+    assert run("sweep", specification, "--quiet", "--overwrite") == DONE
+
+
+def test_a_dry_run_says_what_would_be_solved_and_makes_nothing(specification, tmp_path, capsys):
+    assert run("sweep", specification, "--dry-run") == DONE
+    # six of nine designs are different: 0/20 and 20/40 occur twice, 20/20 is degenerate; three pressures and locked
+    says = ["A tiny sweep", "27 grid points, 24 distinct equilibria -> tiny.nc"]
+    assert capsys.readouterr().out.splitlines() == says
+    assert [path.name for path in tmp_path.iterdir()] == ["tiny.toml"]
+
+
+def test_every_fault_of_a_specification_is_listed(tmp_path, capsys):
+    text = (
+        TINY.replace("length = 0.1", 'length = "1 kPa"').replace("c10", "c11").replace("[0.0, 20.0, 40.0]", "[20, 0]")
+    )
+    (tmp_path / "bad.toml").write_text(text)
+    err = refused(capsys, "sweep", "bad.toml")
+    for key in ("bad.toml: 4 faults", "actuator.length: ", "actuator.c11: ", "axes.alpha: ", "c10: is missing"):
+        assert key in err, key
+    assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
+
+
+def test_files_that_are_absent_or_no_atlas_are_refused(specification, tmp_path, capsys):
+    assert "there is no specification 'none.toml'" in refused(capsys, "sweep", "none.toml")
+    for command in (["info"], ["plot", "map"]):
+        assert "no atlas at none.nc" in refused(capsys, *command, "none.nc")
+        assert "no readable netCDF4 file" in refused(capsys, *command, specification)
+    (tmp_path / "tiny.nc").write_text("precious")
+    assert "choose another output" in refused(capsys, "sweep", specification)
+    assert (tmp_path / "tiny.nc").read_text() == "precious"
+
+
+def test_an_output_in_a_missing_folder_is_the_environments_fault(specification, capsys):
+    err = refused(capsys, "sweep", specification, "-o", "absent/tiny.nc", code=ENVIRONMENT)
+    assert "cannot make the folder absent/tiny.nc.parts: No such file or directory" in err
+
+
+def test_threads_and_places_in_the_atlas_are_checked(specification, capsys):
+    assert "--threads: found 0; give 1 or more" in refused(capsys, "sweep", specification, "--threads", "0")
+    assert run("sweep", specification, "--quiet") == DONE
+    assert "give NAME=VALUE" in refused(capsys, "plot", "map", "tiny.nc", "--at", "pressure")
+    assert "expects a pressure" in refused(capsys, "plot", "map", "tiny.nc", "--at", "pressure=1 mm")
+    assert "sideways" in refused(capsys, "plot", "map", "tiny.nc", "--variable", "sideways")
+
+
+def test_an_interruption_has_its_own_exit_code(specification, capsys, monkeypatch):
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("freesweep.sweep.run.run_sweep", interrupt)
+    assert "the same command goes on from there" in refused(capsys, "sweep", specification, code=INTERRUPTED)
