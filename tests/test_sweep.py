@@ -196,7 +196,6 @@ def test_every_variable_is_described_and_has_the_dimensions_it_varies_in(grid):
         assert all(np.array_equal(variable.attrs[key], value) for key, value in expected.items()), name
     for name, values in GRID.items():
         assert grid[name].values.tolist() == values
-    assert grid["length"].ndim == 0
     assert grid["length"] == 0.1
 
 
