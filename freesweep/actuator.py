@@ -5,6 +5,10 @@ import warnings
 from dataclasses import dataclass, field, fields
 from numbers import Real
 
+import numpy as np
+
+from .profiles import SAMPLES, ProfileError, as_profile, is_profile
+
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
 SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
 ENERGIES = ("full", "principal")
@@ -30,6 +34,23 @@ def number_fault(name, value, unit, positive=False, least=None):
         return f"{name}: found {value:g} {unit}; it has to be above 0"
     if least is not None and value < least:
         return f"{name}: found {value:g}; it has to be {least:g} or more"
+    return None
+
+
+def _along_fault(name, value, unit, positive=False):
+    """A sentence on what is wrong with a number or a profile along the tube, or None."""
+    if not is_profile(value):
+        return number_fault(name, value, unit, positive)
+    try:
+        samples = as_profile(value).samples()
+    except ProfileError as error:
+        return f"{name}: {error}"
+    except Exception as error:  # whatever a person's callable raises
+        return f"{name}: the callable failed: {type(error).__name__}: {error}"
+    if not np.all(np.isfinite(samples)):
+        return f"{name}: the profile has values that are not finite; give finite numbers in [{unit}]"
+    if positive and not np.all(samples > 0.0):
+        return f"{name}: the profile falls to {samples.min():g} {unit}; it has to be above 0"
     return None
 
 
@@ -62,8 +83,10 @@ class Actuator:
 
     Parameters
     ----------
-    alpha, beta : fiber angles from the axis [degree], between -90 and 90, at least 0.5 apart
-    length, radius, wall : undeformed length, inner radius, wall thickness [m]
+    alpha, beta : fiber angles from the axis [degree], between -90 and 90, at least 0.5 apart; a number, or a profile
+        along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump) or a callable of x/l (array in, array out)
+    length, radius : undeformed length, inner radius [m]
+    wall : wall thickness [m], number or profile
     material : :class:`MooneyRivlin` or :class:`NeoHookean`
     fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
     fiber_radius : radius at which the fibers lie [m], from the inner to the outer one; None: the inner one, as in Eq. 2.20
@@ -73,11 +96,11 @@ class Actuator:
     a thin wall's.
     """
 
-    alpha: float
-    beta: float
+    alpha: object
+    beta: object
     length: float
     radius: float
-    wall: float
+    wall: object
     material: MooneyRivlin
     fiber_extension: float = 1.0
     fiber_radius: float | None = None
@@ -90,15 +113,17 @@ class Actuator:
             value = getattr(self, item.name)
             if isinstance(value, Real):
                 object.__setattr__(self, item.name, float(value))
-        if self.wall > self.radius:
+        wall = self.wall if not is_profile(self.wall) else float(np.max(as_profile(self.wall).samples()))
+        if wall > self.radius:
             warnings.warn(
-                f"wall {self.wall:g} m is thicker than the inner radius {self.radius:g} m: the model takes a thin wall",
+                f"wall {wall:g} m is thicker than the inner radius {self.radius:g} m: the model takes a thin wall",
                 stacklevel=3,
             )
 
     def _faults(self):
-        faults = [number_fault(name, getattr(self, name), "degree") for name in ("alpha", "beta")]
-        faults += [number_fault(name, getattr(self, name), "m", positive=True) for name in ("length", "radius", "wall")]
+        faults = [_along_fault(name, getattr(self, name), "degree") for name in ("alpha", "beta")]
+        faults += [number_fault(name, getattr(self, name), "m", positive=True) for name in ("length", "radius")]
+        faults.append(_along_fault("wall", self.wall, "m", positive=True))
         faults.append(number_fault("fiber_extension", self.fiber_extension, "1", least=1.0))
         if self.fiber_radius is not None:
             faults.append(number_fault("fiber_radius", self.fiber_radius, "m", positive=True))
@@ -113,25 +138,28 @@ class Actuator:
 
     def _impossible(self):
         """Faults of numbers that are each fine alone."""
+        alpha, beta = self.angles(np.linspace(0.0, 1.0, SAMPLES))
         faults = [
-            f"{name}: found {angle:g} degree; it has to lie between -90 and 90, both excluded"
-            for name, angle in (("alpha", self.alpha), ("beta", self.beta))
-            if not abs(angle) < LARGEST_ANGLE
+            f"{name}: found {angle[np.argmax(np.abs(angle))]:g} degree; it has to lie between -90 and 90, both excluded"
+            for name, angle in (("alpha", alpha), ("beta", beta))
+            if not np.all(np.abs(angle) < LARGEST_ANGLE)
         ]
-        if self.alpha == self.beta:
+        closest = np.argmin(np.abs(alpha - beta))
+        if alpha[closest] == beta[closest]:
             faults.append(
-                f"alpha, beta: both are {self.alpha:g} degree (line DF of Figure 1-2): one fiber family leaves the shape"
+                f"alpha, beta: both are {alpha[closest]:g} degree (line DF of Figure 1-2): one fiber family leaves the shape"
                 f" free; choose angles at least {SMALLEST_DIFFERENCE:g} degree apart"
             )
-        elif abs(self.alpha - self.beta) < SMALLEST_DIFFERENCE:
+        elif abs(alpha[closest] - beta[closest]) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
             faults.append(
-                f"alpha, beta: {self.alpha:g} and {self.beta:g} degree are less than {SMALLEST_DIFFERENCE:g} degree apart:"
-                " nearly one fiber family, without a finite locked shape"
+                f"alpha, beta: {alpha[closest]:g} and {beta[closest]:g} degree are less than {SMALLEST_DIFFERENCE:g} degree"
+                " apart (or cross along the tube): nearly one fiber family, without a finite locked shape"
             )
-        if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= self.radius + self.wall:
+        outer = self.radius + float(np.min(as_profile(self.wall).samples()))
+        if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= outer:
             faults.append(
                 f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
-                f" {self.radius:g} to {self.radius + self.wall:g} m"
+                f" {self.radius:g} to {outer:g} m"
             )
         if not faults and not self.clamped_stretch() > 0.0:
             faults.append(
@@ -142,7 +170,16 @@ class Actuator:
 
     def clamped_stretch(self) -> float:
         """Squared meridional stretch at the clamped ends [-] (G at y = 1): positive if the fibers can meet them."""
-        return clamped_stretch(self.alpha, self.beta, self.fiber_extension)
+        return min(clamped_stretch(a, b, self.fiber_extension) for a, b in zip(*self.angles(np.array([0.0, 1.0]))))
+
+    @property
+    def varies(self) -> bool:
+        """Whether a fiber angle or the wall is a profile along the tube."""
+        return any(is_profile(value) for value in (self.alpha, self.beta, self.wall))
+
+    def angles(self, share):
+        """Both fiber angles [degree] at shares x/l of the length; on a jump the left ones."""
+        return as_profile(self.alpha).at(share), as_profile(self.beta).at(share)
 
     @property
     def fiber_surface(self) -> float:
@@ -150,13 +187,14 @@ class Actuator:
         return self.radius if self.fiber_radius is None else self.fiber_radius
 
     def design(self) -> dict:
-        """The numbers that a sweep would vary: name -> value in SI units and degrees."""
+        """The numbers that a sweep would vary: name -> value in SI units and degrees; of a profile, the middle's."""
+        alpha, beta = self.angles(0.5)
         return {
-            "alpha": self.alpha,
-            "beta": self.beta,
+            "alpha": alpha.item(),
+            "beta": beta.item(),
             "length": self.length,
             "radius": self.radius,
-            "wall": self.wall,
+            "wall": as_profile(self.wall).at(0.5).item(),
             "fiber_radius": self.fiber_surface,
             "fiber_extension": self.fiber_extension,
             "c10": self.material.c10,

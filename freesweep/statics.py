@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from . import status
+from . import profiles, status
 from .actuator import Actuator, ActuatorError, number_fault
 from .atlas.schema import PROFILES, attributes
 from .scaling import ACCURACIES, OUTPUTS, output_scales, problem_rows, wall_volume_inside
@@ -121,15 +121,23 @@ def _solve(tube, loads, stations, accuracy):
     count, steps = len(force), len(pressure)
     design = {name: np.full(count, value) for name, value in tube.design().items()}
     rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy)
-    half = _halves(stations, tube)
-    unique = np.unique(half)
+    if tube.varies:
+        try:
+            course, edges, places = profiles.course(tube)
+        except profiles.ProfileError as error:
+            raise ActuatorError([f"alpha, beta, wall: {error}"]) from None
+        near = stations / tube.fiber_surface
+    else:
+        course, edges, places = np.zeros((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2)
+        near = np.clip(np.minimum(stations, tube.length - stations), 0.0, None) / tube.fiber_surface
+    unique = np.unique(near)
     values, bounds = np.empty((count * steps, 5)), np.empty((count * steps, 5))
     codes, slack = np.empty(count * steps, np.int64), np.empty(count * steps, np.int64)
-    limits, profiles = np.empty((count, 2)), np.empty((count * steps, FIELDS, len(unique)))
+    limits, fields = np.empty((count, 2)), np.empty((count * steps, FIELDS, len(unique)))
     first = np.arange(count + 1, dtype=np.int64) * steps
     walk_many(
-        rows, first, np.tile(pressure[order] / tube.material.c10, count), BASE_CELLS, float(accuracy), values, bounds,
-        codes, slack, limits, unique, profiles,
+        rows, first, np.tile(pressure[order] / tube.material.c10, count), course, edges, places, float(accuracy), values,
+        bounds, codes, slack, limits, unique, fields,
     )  # fmt: skip
 
     back = np.argsort(order)
@@ -139,7 +147,7 @@ def _solve(tube, loads, stations, accuracy):
         return array.reshape(count, steps, *array.shape[1:])[:, back].reshape(*shape, *array.shape[1:])
 
     codes, values, bounds, slack = grid(codes), grid(values), grid(bounds), grid(slack)
-    profiles = grid(profiles)[..., np.searchsorted(unique, half)]
+    fields = grid(fields)[..., np.searchsorted(unique, near)]
     data = dict(zip(("status", "slack_fiber", "stable"), (codes, slack, np.isin(codes, status.VALUED))))
     data = {name: (LOADS, array.astype(np.int8)) for name, array in data.items()}
     scale = output_scales(tube.design())
@@ -151,7 +159,10 @@ def _solve(tube, loads, stations, accuracy):
     data["limit_pressure"], data["limit_pressure_error"] = (LOADS[:2], limits[..., 0]), (LOADS[:2], limits[..., 1])
     data["limit_found"] = (LOADS[:2], np.isfinite(limits[..., 0]).astype(np.int8))
     whole = {"axial_position": values[..., 0], "twist": values[..., 2]}
-    for name, array in _profiles(tube, profiles, stations > 0.5 * tube.length, whole).items():
+    mirrored = (stations > 0.5 * tube.length) & (not tube.varies)
+    at_rest = _at_rest(tube, loads, stations)
+    for name, array in _profiles(tube, fields, mirrored, whole, stations / tube.length).items():
+        array = np.where(at_rest[..., None], _rest(tube, stations)[name], array)
         data[name] = ((*LOADS, "x"), array)
     coordinates = {name: (name, np.atleast_1d(loads[name])) for name in LOADS} | {"x": ("x", stations)}
     dataset = xr.Dataset(data, coordinates)
@@ -163,13 +174,30 @@ def _solve(tube, loads, stations, accuracy):
     return dataset
 
 
-def _halves(stations, tube):
-    """Distance of each station from the nearer end, in radii."""
-    return np.clip(np.minimum(stations, tube.length - stations), 0.0, None) / tube.fiber_surface
+def _at_rest(tube, loads, stations):
+    """Where nothing is applied: the undeformed cylinder, by definition."""
+    force, torque, pressure = np.meshgrid(*(loads[name] for name in LOADS), indexing="ij")
+    return (force == 0.0) & (torque == 0.0) & (pressure == 0.0)
 
 
-def _profiles(tube, fields, mirrored, whole):
-    """Profiles in SI units and degrees; the far half mirrors the near one."""
+def _rest(tube, stations):
+    """Profiles of the undeformed tube."""
+    alpha, beta = tube.angles(stations / tube.length)
+    zero = np.zeros_like(stations)
+    return {
+        "deformed_radius": zero + tube.fiber_surface,
+        "axial_position": stations,
+        "twist": zero,
+        "alpha_deformed": alpha,
+        "beta_deformed": beta,
+        "fiber_tension_alpha": zero,
+        "fiber_tension_beta": zero,
+    }
+
+
+def _profiles(tube, fields, mirrored, whole, share):
+    """Profiles in SI units and degrees; the far half of a tube that is the same all along mirrors the near one."""
+    alpha, beta = tube.angles(share)
     r = tube.fiber_surface
     z = np.where(mirrored, 2.0 * whole["axial_position"][..., None] - fields[..., 1, :], fields[..., 1, :])
     twist = np.where(mirrored, 2.0 * whole["twist"][..., None] - fields[..., 2, :], fields[..., 2, :])
@@ -180,8 +208,8 @@ def _profiles(tube, fields, mirrored, whole):
         "twist": np.degrees(twist),
         "alpha_deformed": np.degrees(np.arctan(fields[..., 3, :])),
         "beta_deformed": np.degrees(np.arctan(fields[..., 4, :])),
-        "fiber_tension_alpha": tension / np.cos(np.radians(tube.alpha)) * fields[..., 5, :],
-        "fiber_tension_beta": tension / np.cos(np.radians(tube.beta)) * fields[..., 6, :],
+        "fiber_tension_alpha": tension / np.cos(np.radians(alpha)) * fields[..., 5, :],
+        "fiber_tension_beta": tension / np.cos(np.radians(beta)) * fields[..., 6, :],
     }
 
 

@@ -33,8 +33,9 @@ class Walks:
         self.limits = np.empty((len(problems), 2))
         self.profiles = np.empty((count, FIELDS, len(stations)))
         branch.walk_many(
-            np.array(problems, float), self.first, np.concatenate(pressures).astype(float), 24, accuracy,
-            self.values, self.bounds, self.status, self.slack, self.limits, np.asarray(stations, float), self.profiles,
+            np.array(problems, float), self.first, np.concatenate(pressures).astype(float), np.zeros((0, 1, 3, 4)),
+            np.array([0, 24]), np.zeros(2), accuracy, self.values, self.bounds, self.status, self.slack, self.limits,
+            np.asarray(stations, float), self.profiles,
         )  # fmt: skip
         self.values *= WHOLE
         self.bounds *= WHOLE

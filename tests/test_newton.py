@@ -103,9 +103,12 @@ def on_nested_meshes(x, y, cell, load=REST, goal=nested.PLAIN, direction=REST, t
     """``(status, unstable, doublings, values, bounds, table)`` of nested.solve."""
     size = ((len(x) - 1) << nested.MAX_DOUBLINGS) + 2
     out, table = np.zeros((4, nested.OUTPUTS)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
+    course, last = np.zeros((1, 1, 3, 4)), len(x) - 1
+    course[0, 0, 0, 0] = cell
+    tube = (course, np.array([0, last]), np.zeros((1, 3)), True, last, np.array([0.0, X]))
     status, unstable, doublings, _ = nested.solve(
-        density, conjugate, integrands, scales, x, y, True, np.array([[cell, 0.0, 0.0]]), load, goal, direction, target, mu, 2,
-        accuracy, np.zeros((5, size)), np.zeros((13, size)), table, out,
+        density, conjugate, integrands, scales, x, y, tube, load, goal, direction, target, mu, 2, accuracy,
+        np.zeros((5, size)), np.zeros((13, size)), table, out,
     )  # fmt: skip
     return status, unstable, doublings, out[0], out[1], table
 

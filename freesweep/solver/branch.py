@@ -9,16 +9,14 @@ rises through a turning point: no jump to another branch is possible, and the tu
 Here physics and numerics are bound together.
 """
 
-from math import exp, sqrt
-
 import numpy as np
 
-from . import lagrangian, mesh, nested, newton, uniform
+from . import guide, lagrangian, nested, newton, uniform
 from .climb import CLIMB_CHANGE, climb, creep
-from .held import loaded
+from .course import fill
 from .jit import entry_point, inlined, kernel
 from .mesh import cell_at
-from .profile import FIELDS, at_stations, rest_profile
+from .profile import FIELDS, at_stations
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK
 
 # columns of a problem: what one design is, dimensionless
@@ -27,79 +25,39 @@ H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH = range(PROBLEM_SIZE)
 
 COLD_REGRADES, WARM_REGRADES = 3, 1
 WARM, COLD, SLOW, LAST_STEP = 0, 1, 2, 3
-STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u
-FIRST_STRAIN = 0.02  # |u - 1| at which a climb starts
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def first_shape(u, rate, x, y):
-    """First guess: an exponential end layer whose slope can be met."""
-    rate = min(rate, 0.9 / max(abs(u - 1.0), 1e-9))
-    for i in range(len(x)):
-        y[i] = 1.0 + (u - 1.0) * (1.0 - exp(-rate * x[i]))
-
-
-@kernel
-def start_shape(u, cells, load, half_length, x, y):
-    """Mesh and first guess from the uniform stretch ``u``."""
-    _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell_at(cells, 0), load)
-    rate = sqrt(L_yy / L_vv)
-    mesh.layer_mesh(half_length, rate, len(x) - 1, x)
-    first_shape(u, rate, x, y)
-
-
-@kernel
-def strays(y, u):
-    """Whether the shape leaves the interval from 1 to the uniform stretch: another branch."""
-    slack = STRAY * abs(u - 1.0) + 1e-6
-    low, high = min(1.0, u) - slack, max(1.0, u) + slack
-    for i in range(len(y)):
-        if not low <= y[i] <= high:
-            return True
-    return False
-
-
-@kernel
-def slack_fibers(x, y, n, cells, load):
+def slack_fibers(x, y, n, base, tube, load):
     """Bit 1: the alpha family would have to push somewhere; bit 2: the beta family."""
+    course, edges, cells, free, _, _ = tube
+    own = fill(course, edges, x, n, base, cells)
     flag = 0
-    for j in range(-1, n):
-        if j < 0:  # the clamped end itself, with the slope carried on from the first two cells
-            near = (y[1] - y[0]) / (x[1] - x[0])
-            next_ = (y[2] - y[1]) / (x[2] - x[1])
-            v, middle = near + (near - next_) * (x[1] - x[0]) / (x[2] - x[0]), y[0]
-            if not v * v < 1.0 + lagrangian.kinematics(middle, cell_at(cells, 0), load)[3]:
-                continue
-        else:
+    for j in range(-1, n + 1):
+        if 0 <= j < n:
             v, middle = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (y[j] + y[j + 1])
-        alpha, beta = lagrangian.fiber_multipliers(middle, v, cell_at(cells, max(j, 0)), load)
-        flag |= (1 if alpha < 0.0 else 0) | (2 if beta < 0.0 else 0)
+        elif j == n and free:
+            continue
+        else:  # a clamped end itself, with the slope carried on from the two cells next to it
+            i, k = (0, 1) if j < 0 else (n - 1, n - 2)
+            near, after = (y[i + 1] - y[i]) / (x[i + 1] - x[i]), (y[k + 1] - y[k]) / (x[k + 1] - x[k])
+            h = x[i + 1] - x[i]
+            v, middle = near + (near - after) * h / (h + x[k + 1] - x[k]), y[0 if j < 0 else n]
+        cell = cell_at(own, min(max(j, 0), n - 1))
+        if v * v < 1.0 + lagrangian.kinematics(middle, cell, load)[3]:
+            alpha, beta = lagrangian.fiber_multipliers(middle, v, cell, load)
+            flag |= (1 if alpha < 0.0 else 0) | (2 if beta < 0.0 else 0)
     return flag
 
 
 @inlined
-def begin(x, y, cells, load, half_length):
-    """A small part of the way to ``load`` and its first shape; returns that part, 0 where there is none."""
-    rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-    part, u, reached = 1.0, 1.0, 0.0
-    for _ in range(80):
-        now = uniform.between(rest, load, part)
-        u, reached = uniform.follow(lagrangian.density, 1.0, cell_at(cells, 0), rest, now)
-        if reached == 1.0 and abs(u - 1.0) < FIRST_STRAIN:
-            start_shape(u, cells, now, half_length, x, y)
-            return part
-        part *= 0.5
-    return 0.0
-
-
-@inlined
-def reach(x, y, last_x, last_y, u, reached, started, cells, before, load, half, accuracy, space, out):
+def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load, accuracy, space, out):
     """The state at ``load``, from the last one at ``before``: the quick ways first, then the slow one.
 
     Returns ``(status, doublings, limit pressure, its bound)``.
     """
-    fine, work, table, _ = space
+    fine, work, table = space[0], space[1], space[2]
     start, way, goal, mu = before, WARM, nested.PLAIN, 0.0
     direction = FLAT
     limit, limit_bound = np.nan, np.nan
@@ -110,24 +68,24 @@ def reach(x, y, last_x, last_y, u, reached, started, cells, before, load, half, 
     while True:
         regrades = WARM_REGRADES
         if way == COLD:
-            start_shape(u, cells, load, half, x, y)
+            guide.start(tube, u, load, x, y)
             regrades = COLD_REGRADES
         elif way == SLOW:
             if started:
                 for i in range(len(x)):
                     x[i], y[i] = last_x[i], last_y[i]
             else:
-                part = begin(x, y, cells, load, half)
+                part = guide.begin(tube, load, scratch[0], scratch[1], x, y)
                 if part == 0.0:
                     return NOT_CONVERGED, 0, limit, limit_bound
                 start = uniform.between((1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0), load, part)
             status, mu = OK, 1.0
             if start[0] != load[0]:
-                status, _ = creep(x, y, True, cells, start, load, work)
+                status, _ = creep(x, y, tube, start, load, work)
                 if status == BEYOND_LIMIT:
                     return status, 0, limit, limit_bound
             else:
-                status, mu = climb(x, y, True, cells, start, load, work)
+                status, mu = climb(x, y, tube, start, load, work)
             if status == BEYOND_LIMIT:
                 goal = nested.TURNING_POINT
                 regrades = 0  # the climb has graded the mesh; close to a turning point no other is safe
@@ -138,7 +96,7 @@ def reach(x, y, last_x, last_y, u, reached, started, cells, before, load, half, 
                 last_x[i], last_y[i] = x[i], y[i]
         from_load = load if goal == nested.PLAIN else start
         status, unstable, doublings, _ = nested.solve(
-            lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, True, cells,
+            lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube,
             from_load, goal, direction, 0.0, mu if goal == nested.TURNING_POINT else 0.0, regrades, accuracy, fine,
             work, table, out,
         )  # fmt: skip
@@ -156,8 +114,8 @@ def reach(x, y, last_x, last_y, u, reached, started, cells, before, load, half, 
             continue
         if solved and unstable == 0:
             guided = way == WARM or way == COLD
-            if (guided and not strays(y, u)) or (
-                not guided and abs(y[len(y) - 1] / last_y[len(y) - 1] - 1.0) < 3.0 * CLIMB_CHANGE
+            if (guided and not guide.strays(y, u)) or (
+                not guided and abs(y[tube[4]] / last_y[tube[4]] - 1.0) < 3.0 * CLIMB_CHANGE
             ):
                 return (OK if status == newton.CONVERGED else INACCURATE), doublings, limit, limit_bound
         if way == SLOW or way == LAST_STEP:
@@ -166,30 +124,39 @@ def reach(x, y, last_x, last_y, u, reached, started, cells, before, load, half, 
 
 
 @inlined
-def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slack, limit, stations, profiles):
+def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slack, limit, stations, profiles):
     """Equilibria of one design at rising ``pressures``, on the branch that the module describes.
 
     Arguments
     ---------
     problem : (PROBLEM_SIZE,) the design, dimensionless
+    tube : what varies along it, and where its base mesh begins, bends and ends: see :func:`nested.solve`
     pressures : (n,) p = P/C10, ascending; infinity is the locked shape, where the wall no longer counts
-    x, y : (cells + 1,) scratch: base mesh of half the tube
     accuracy : bound to reach, scaled
-    values, bounds : (n, 5) length, volume, twist, energy of the half tube, stretch in the middle, and error bounds
+    values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds
     status, slack : (n,) codes; values are NaN unless the status is OK or INACCURATE
     limit : (2,) limit pressure and its bound, NaN if none was met
     stations, profiles : (m,), (n, FIELDS, m): see :func:`at_stations`; m = 0 for none
     """
-    fine = space[0]
-    out = np.zeros((4, nested.OUTPUTS))
-    cells = np.empty((1, 3))
-    cells[0, 0], cells[0, 1], cells[0, 2] = problem[H], problem[D], problem[AREA]
+    fine, shapes, guides = space[0], space[4], space[5]
+    base = tube[1][len(tube[1]) - 1]
+    x, y, last_x, last_y = shapes[0, : base + 1], shapes[1, : base + 1], shapes[2, : base + 1], shapes[3, : base + 1]
+    places = 1 if tube[0].shape[0] == 1 and tube[0].shape[1] == 1 else guide.PLACES
+    u, ahead, scratch = guides[0, :places], guides[1, :places], guides[2:, :places]
+    share = 1.0 if tube[3] else 0.5
     half = 0.5 * problem[LENGTH]
+    out = np.zeros((4, nested.OUTPUTS))
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
-    rest = (1.0, problem[RATIO], problem[SHEAR], 0.0, 0.0, 0.0, 1.0)
-    before, u, started, ended = rest, 1.0, False, OK
-    last_x, last_y = np.zeros(len(x)), np.zeros(len(x))
-    clamped = 1.0 + lagrangian.kinematics(1.0, cell_at(cells, 0), (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3]
+    before = (1.0, problem[RATIO], problem[SHEAR], 0.0, 0.0, 0.0, 1.0)
+    started, guided, ended = False, True, OK
+    clamped = 1.0
+    for end in range(2):
+        stretch = lagrangian.kinematics(1.0, guide.cell_along(tube, 1.0 * end), (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[
+            3
+        ]
+        clamped = min(clamped, 1.0 + stretch)
+    for k in range(places):
+        u[k] = 1.0
     limit[0], limit[1] = np.nan, np.nan
     for i in range(len(pressures)):
         p = pressures[i]
@@ -208,7 +175,6 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
             values[i, 0], values[i, 1], values[i, 2], values[i, 3], values[i, 4] = half, half, 0.0, 0.0, 1.0
             for k in range(5):
                 bounds[i, k] = 0.0
-            rest_profile(stations, cell_at(cells, 0), profiles[i])
             continue
         if not p + f > 0.0:
             status[i] = COMPRESSED
@@ -219,27 +185,29 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
         load = (gamma, problem[RATIO], problem[SHEAR], p, f, m, 1.0)
         if locked:
             load = (gamma, problem[RATIO], problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
-            ahead, reached, started = lagrangian.locked_stretch(cell_at(cells, 0), gamma), 1.0, False
-        elif u == u:
-            ahead, reached = uniform.follow(lagrangian.density, u, cell_at(cells, 0), before, load)
+            guide.locked(tube, gamma, ahead)
+            reached, started = 1.0, False
+        elif guided:
+            reached = guide.follow(tube, u, before, load, ahead)
         else:
-            ahead, reached = u, 0.0
-        if reached == 1.0 and started and abs(u - 1.0) > 1e-9:
-            for k in range(len(y)):
-                y[k] = 1.0 + (y[k] - 1.0) * (ahead - 1.0) / (u - 1.0)
+            reached = 0.0
+        if reached == 1.0 and started:
+            guide.carry(u, ahead, x[base], x, y)
         found, doublings, fold, fold_bound = reach(
-            x, y, last_x, last_y, ahead, reached, started, cells, before, load, half, accuracy, space, out
+            x, y, last_x, last_y, ahead, scratch, reached, started, tube, before, load, accuracy, space, out
         )
         status[i] = found
         if found == OK or found == INACCURATE:
             for k in range(5):
-                values[i, k], bounds[i, k] = out[0, k], out[1, k]
-            slack[i] = slack_fibers(fine[0], fine[1], (len(x) - 1) << doublings, cells, load)
+                whole = share if k < 4 else 1.0
+                values[i, k], bounds[i, k] = whole * out[0, k], whole * out[1, k]
+            slack[i] = slack_fibers(fine[0], fine[1], base << doublings, base, tube, load)
             if len(stations) > 0:
-                at_stations(stations, len(x) - 1, doublings, cells, load, fine, space[3], profiles[i])
-            before, started = load, True
-            u = ahead if reached == 1.0 else np.nan
-            for k in range(len(x)):
+                at_stations(stations, base, doublings, tube, load, fine, space[3], profiles[i])
+            before, started, guided = load, True, reached == 1.0
+            for k in range(places):
+                u[k] = ahead[k]
+            for k in range(base + 1):
                 last_x[k], last_y[k] = x[k], y[k]
         elif found == COMPRESSED and not started:
             continue  # a higher pressure may hold the wall
@@ -251,16 +219,53 @@ def walk(problem, pressures, x, y, accuracy, space, values, bounds, status, slac
 
 @entry_point
 def walk_many(
-    problems, first, pressures, base_cells, accuracy, values, bounds, status, slack, limits, stations, profiles
+    problems,
+    first,
+    pressures,
+    course,
+    edges,
+    places,
+    accuracy,
+    values,
+    bounds,
+    status,
+    slack,
+    limits,
+    stations,
+    profiles,
 ):
-    """:func:`walk` for each row of ``problems``; problem k owns rows ``first[k]`` to ``first[k + 1]`` of all others."""
-    size = (base_cells << nested.MAX_DOUBLINGS) + 2
+    """:func:`walk` for each row of ``problems``; problem k owns rows ``first[k]`` to ``first[k + 1]`` of all others.
+
+    Tubes that vary share one ``course`` (segments, pieces, 3, 4) with ``places`` (segments + 1,), in radii, where the
+    segments meet: one of them is the middle. A course without segments stands for tubes that are the same all along,
+    half of each solved. ``edges`` (segments + 1,) are the nodes of the base mesh at those places.
+    """
+    base = edges[len(edges) - 1]
+    size = (base << nested.MAX_DOUBLINGS) + 2
     table = np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
-    space = np.zeros((5, size)), np.zeros((13, size)), table, np.zeros((5, size))
-    x, y = np.zeros(base_cells + 1), np.zeros(base_cells + 1)
+    varying = course.shape[0] > 0
+    cells = np.zeros((size if varying else 1, 3))
+    space = (
+        np.zeros((5, size)), np.zeros((13, size)), table, np.zeros((5, size)), np.zeros((4, base + 1)),
+        np.zeros((4, guide.PLACES)),
+    )  # fmt: skip
+    own_course = course if varying else np.zeros((1, 1, 3, 4))
+    own_places = places.copy() if varying else np.zeros(2)
+    middle = base
+    for k in range(len(own_places)):
+        if (
+            varying
+            and abs(own_places[k] - 0.5 * own_places[len(own_places) - 1]) < 1e-9 * own_places[len(own_places) - 1]
+        ):
+            middle = edges[k]
     for k in range(len(problems)):
+        if not varying:
+            own_places[1] = 0.5 * problems[k, LENGTH]
+            for i in range(3):
+                own_course[0, 0, i, 0] = problems[k, i]
+        tube = (own_course, edges, cells, not varying, middle, own_places)
         own = slice(first[k], first[k + 1])
         walk(
-            problems[k], pressures[own], x, y, accuracy, space, values[own], bounds[own], status[own], slack[own],
+            problems[k], tube, pressures[own], accuracy, space, values[own], bounds[own], status[own], slack[own],
             limits[k], stations, profiles[own],
         )  # fmt: skip

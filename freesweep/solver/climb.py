@@ -6,7 +6,8 @@ For a rising pressure that quantity is the volume. Held at each step, it leaves 
 import numpy as np
 
 from . import lagrangian, nested, newton, uniform
-from .held import MOST_GAIN, hold, largest_change, loaded, solve_held, strayed
+from .course import fill
+from .held import hold, largest_change, loaded, solve_held, strayed
 from .jit import inlined, kernel
 from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
@@ -15,6 +16,10 @@ CLIMB_STEPS = 400
 TOLERANCE = 1e-10  # of states on the way
 CLOSING = 1.2  # times what is left of the way, by the linear prediction: the last step passes the end
 SMALLEST_SHRINK = 1e-3  # of a step, before the climb is given up
+NEARLY_FLAT = 1e-3  # of the first slope dmu/dC: as good as a turning point
+WELL_BEFORE = 0.05  # of the first slope: a safe start for the search of a turning point
+LEAST_SHARE = 0.02  # of a step, however close the slope's zero seems
+LEAST_GAIN, MOST_GAIN, ROUNDING_GAIN = 0.95, 1.05, 1e-9
 SMALLEST_CREEP = 1e-6  # of the way
 PUSHED = 0.02  # share of its largest part to which the resultant p y^2 + f has fallen where a climb ends in it
 
@@ -39,32 +44,44 @@ def largest_drift(y, other):
 
 
 @kernel
-def regraded(x, y, n, free, cells, load, work):
+def smooth(gain, first, last):
+    """Whether the multiplier's ``gain`` in a step lies between those that the slopes at its ends promise: where it does
+    not, the step may have passed over two turning points, a small snap.
+    """
+    slack = ROUNDING_GAIN * max(1.0, abs(gain))
+    return LEAST_GAIN * min(first, last) - slack <= gain <= MOST_GAIN * max(first, last) + slack
+
+
+@kernel
+def regraded(x, y, n, tube, load, work):
     """Adapt the mesh to the solution, unless that would leave the solution inadmissible."""
     old_x, old_y = work[10], work[11]
     for i in range(n + 1):
         old_x[i], old_y[i] = x[i], y[i]
-    if not nested.adapt(lagrangian.density, lagrangian.integrands, x, y, n, free, cells, load, work):
+    if not nested.adapt(lagrangian.density, lagrangian.integrands, x, y, n, tube, load, work):
         for i in range(n + 1):
             x[i], y[i] = old_x[i], old_y[i]
 
 
 @inlined
-def climb(x, y, free, cells, start, end, work):
+def climb(x, y, tube, start, end, work):
     """Follow the branch from load ``start`` (solved: x, y) toward ``end`` in steps of the conjugate quantity.
 
     Returns ``(status, fraction of the way)``: OK with y close to the solution at the end, BEYOND_LIMIT with a state well
     before a turning point, COMPRESSED where the meridional resultant falls to zero, NOT_CONVERGED otherwise.
     """
     n = len(x) - 1
+    course, edges, cells, free, _, _ = tube
     direction = (0.0, 0.0, 0.0, end[3] - start[3], end[4] - start[4], end[5] - start[5], 0.0)
     kept_x, kept_y, response = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
     safe_x, safe_y = np.empty(n + 1), np.empty(n + 1)
-    kept_mu, kept_target, kept_sigma, safe_mu = 0.0, 0.0, 0.0, 0.0
+    kept_mu, kept_target, kept_sigma, safe_mu = 0.0, 0.0, 1.0, 0.0
+    first_slope, trend = 1.0, 0.0
     mu, target, change, shrink, stepping, started = 0.0, 0.0, 0.0, 1.0, False, False
     for _ in range(CLIMB_STEPS):
+        own = fill(course, edges, x, n, n, cells)
         if not stepping:
-            target = hold(lagrangian.conjugate, x, y, n, cells, loaded(start, direction, mu), direction, work[8])
+            target = hold(lagrangian.conjugate, x, y, n, own, loaded(start, direction, mu), direction, work[8])
         status, unstable, mu, sigma = solve_held(
             lagrangian.density,
             lagrangian.conjugate,
@@ -86,18 +103,32 @@ def climb(x, y, free, cells, start, end, work):
                 x[i], y[i] = safe_x[i], safe_y[i]
             return (BEYOND_LIMIT if started else NOT_CONVERGED), safe_mu
         if solved and not stepping:
+            slope = 1.0 / sigma
+            if not started:
+                first_slope = slope
+            elif slope < NEARLY_FLAT * first_slope:
+                for i in range(n + 1):
+                    x[i], y[i] = safe_x[i], safe_y[i]
+                return BEYOND_LIMIT, safe_mu
+            if not started or slope > WELL_BEFORE * first_slope:
+                for i in range(n + 1):
+                    safe_x[i], safe_y[i] = x[i], y[i]
+                safe_mu = mu
+            trend = (slope - 1.0 / kept_sigma) / (target - kept_target) if started else 0.0
             for i in range(n + 1):
-                safe_x[i], safe_y[i] = (kept_x[i], kept_y[i]) if started else (x[i], y[i])
                 kept_x[i], kept_y[i], response[i] = x[i], y[i], work[9, i]
-            safe_mu = kept_mu if started else mu
             kept_mu, kept_target, kept_sigma, started = mu, target, sigma, True
-        elif solved and mu - kept_mu < MOST_GAIN * change and strayed(y, n, kept_y, response, change) < CLIMB_CHANGE:
+        elif (
+            solved
+            and smooth(mu - kept_mu, (target - kept_target) / kept_sigma, (target - kept_target) / sigma)
+            and (strayed(y, n, kept_y, response, change) < CLIMB_CHANGE)
+        ):
             if mu >= 1.0:
                 for i in range(n + 1):
                     y[i] = kept_y[i] + (y[i] - kept_y[i]) * (1.0 - kept_mu) / (mu - kept_mu)
                 return OK, 1.0
             shrink = min(1.0, 1.5 * shrink)
-            regraded(x, y, n, free, cells, loaded(start, direction, mu), work)
+            regraded(x, y, n, tube, loaded(start, direction, mu), work)
             stepping = False
             continue
         else:
@@ -112,6 +143,8 @@ def climb(x, y, free, cells, start, end, work):
                 return (COMPRESSED if pushed(kept_y, last) else BEYOND_LIMIT), safe_mu
         change = shrink * CLIMB_CHANGE / largest_change(kept_y, response, n)  # of mu, to first order
         change = min(change, CLOSING * (1.0 - kept_mu))
+        if trend < 0.0:  # mu may stop rising where the slope 1/sigma would reach zero: halve the way there, not pass it
+            change = min(change, max(-0.5 / (trend * kept_sigma * kept_sigma), LEAST_SHARE * change))
         for i in range(n + 1):
             y[i] = kept_y[i] + change * response[i]
         mu, target, stepping = kept_mu + change, kept_target + change * kept_sigma, True
@@ -119,9 +152,10 @@ def climb(x, y, free, cells, start, end, work):
 
 
 @inlined
-def creep(x, y, free, cells, start, end, work):
+def creep(x, y, tube, start, end, work):
     """As :func:`climb`, in steps along the line between two loads that differ in fiber extension too."""
     n = len(x) - 1
+    course, edges, cells, free, _, _ = tube
     kept_y = np.empty(n + 1)
     t, step = 0.0, 0.1
     while t < 1.0:
@@ -130,11 +164,11 @@ def creep(x, y, free, cells, start, end, work):
         ahead = min(1.0, t + step)
         now = uniform.between(start, end, ahead)
         status, unstable, _ = newton.solve(
-            lagrangian.density, x, y, n, free, cells, now, newton.UNKNOWN, TOLERANCE, work
+            lagrangian.density, x, y, n, free, fill(course, edges, x, n, n, cells), now, newton.UNKNOWN, TOLERANCE, work
         )
         if status == newton.CONVERGED and unstable == 0 and largest_drift(y, kept_y) < CLIMB_CHANGE:
             t, step = ahead, 1.5 * step
-            regraded(x, y, n, free, cells, uniform.between(start, end, t), work)
+            regraded(x, y, n, tube, uniform.between(start, end, t), work)
             continue
         for i in range(n + 1):
             y[i] = kept_y[i]

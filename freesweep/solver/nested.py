@@ -2,14 +2,15 @@
 
 A midpoint cell errs by even powers of its size, so results A on meshes of n/2, n, 2n, 4n cells extrapolate to fourth
 order, ``E = (4 A_2n - A_n)/3``. The difference of two successive E, divided by the 15 that the order allows, estimates the
-error of the second; the difference before it, divided by 225, guards against its passing through zero. The bound is
-``SAFETY`` times the larger of the two, plus a floor for rounding.
+error of the second; the difference before it, divided by 225, guards against its passing through zero, and so does what
+the two orders are to each other over all outputs. The bound is ``SAFETY`` times that, plus a floor for rounding.
 
 The rows of ``table`` belong to the meshes, coarsest first; its columns are the outputs: the four integrals, y in the
 middle, and the multiplier of a held integral.
 """
 
 from . import held, mesh, newton
+from .course import fill
 from .held import loaded
 from .jit import kernel
 
@@ -20,7 +21,7 @@ MAX_DOUBLINGS = 7  # of the base mesh: 3072 cells
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.0
-COMPANION = 0.01  # share of the largest scaled bound below which no other bound falls
+LIKELY = 0.4  # times what the step to second order was, times the ratio of the two orders over all outputs
 
 PLAIN, HELD, TURNING_POINT = 0, 1, 2
 UNREACHED = 3  # the accuracy was not met on the finest mesh
@@ -47,15 +48,20 @@ def integrate(integrands, x, y, n, cells, load, row):
 @kernel
 def extrapolate(table, level, scales, floors, values, bounds):
     """Fourth-order values and bounds from the last four rows; returns the largest scaled bound."""
-    largest = 0.0
+    largest, fourth, second_order = 0.0, 0.0, 1e-300
     for k in range(OUTPUTS):
         a, b, c, d = table[level - 3, k], table[level - 2, k], table[level - 1, k], table[level, k]
         first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
+        estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
         values[k] = third
-        bounds[k] = SAFETY * max(abs(third - second) / 15.0, abs(second - first) / 225.0)
-        largest = max(largest, bounds[k] / scales[k])
+        bounds[k] = SAFETY * estimate
+        fourth += estimate / scales[k]
+        second_order += abs(d - c) / scales[k]
     for k in range(OUTPUTS):
-        bounds[k] = max(bounds[k], COMPANION * largest * scales[k]) + floors[k]
+        likely = fourth / second_order * abs(table[level, k] - table[level - 1, k])
+        bounds[k] = max(bounds[k], LIKELY * likely)
+        largest = max(largest, bounds[k] / scales[k])
+        bounds[k] += floors[k]
     return largest
 
 
@@ -71,18 +77,31 @@ def make_admissible(density, x, y, n, cells, load):
 
 
 @kernel
-def adapt(density, integrands, x, y, n, free, cells, load, work):
-    """Move the nodes of one mesh to where the solution bends, and carry the solution over; returns whether it is
+def adapt(density, integrands, x, y, n, tube, load, work):
+    """Move the nodes of the base mesh to where the solution bends, and carry the solution over; returns whether it is
     admissible there.
     """
+    course, edges, cells, free, _, _ = tube
+    own = fill(course, edges, x, n, n, cells)
     rate, nodes, new_x, new_y = work[2], work[3], work[4], work[5]
-    mesh.turning(integrands, x, y, n, free, cells, load, work, rate)
-    mesh.node_density(x, n, rate, nodes)
-    mesh.regrade(x, y, nodes, n, new_x, new_y, work[6])
-    fits = newton.admissible(density, new_x, new_y, n, cells, load)
+    for s in range(len(edges) - 1):  # each segment keeps its nodes: the jumps between them stay on the mesh
+        a, b = edges[s], edges[s + 1]
+        here = own[a:b] if len(own) > 1 else own
+        symmetric = free and s == len(edges) - 2
+        mesh.turning(integrands, x[a : b + 1], y[a : b + 1], b - a, symmetric, here, load, work, rate)
+        mesh.node_density(x[a : b + 1], b - a, rate, nodes)
+        mesh.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
     for i in range(n + 1):
         x[i], y[i] = new_x[i], new_y[i]
-    return fits
+    return newton.admissible(density, x, y, n, fill(course, edges, x, n, n, cells), load)
+
+
+@kernel
+def split(x, n, edges, factor, out):
+    """A finer mesh: each cell of the base mesh in ``factor``, smoothly within each segment."""
+    for s in range(len(edges) - 1):
+        a, b = edges[s], edges[s + 1]
+        mesh.split(x[a : b + 1], b - a, factor, out[a * factor : b * factor + 1])
 
 
 @kernel
@@ -105,48 +124,51 @@ def foresee(fine, n, y):
 
 @kernel
 def solve(
-    density, conjugate, integrands, scales, x, y, free, cells, load, goal, direction, target, mu, regrades, accuracy,
+    density, conjugate, integrands, scales, x, y, tube, load, goal, direction, target, mu, regrades, accuracy,
     fine, work, table, out,
 ):  # fmt: skip
     """Solve on nested meshes until every bound meets ``accuracy``.
 
-    ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
+    ``tube`` is (course, edges, cells, free, middle, places): what varies along the tube and a buffer for it, whether the last node
+    is a plane of symmetry, the node of the base mesh that lies in the middle, and where the segments begin and end. ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
     call's warm start. ``fine`` is scratch of shape (5, > 2 n) for the finer meshes: (x, y) of the last one in rows 0, 1,
     of the one before in rows 2, 4. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
 
     Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
     """
     n = len(x) - 1
+    course, edges, cells, free, middle, _ = tube
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     passes, level, count, on_base, first_mu = 0, 1, n, mu, mu
     unstable, rate, shrunk = 0, newton.UNKNOWN, False
     xs, ys = x, y
     while True:
+        own = fill(course, edges, xs, count, n, cells)
         if goal == TURNING_POINT:
             mu = first_mu
         if goal == PLAIN:
-            status, unstable, rate = newton.solve(density, xs, ys, count, free, cells, load, rate, tolerance, work)
+            status, unstable, rate = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
         else:
             turning = goal == TURNING_POINT
             status, unstable, mu = held.solve(
-                density, conjugate, xs, ys, count, free, cells, load, direction, mu, target, turning, tolerance, work
+                density, conjugate, xs, ys, count, free, own, load, direction, mu, target, turning, tolerance, work
             )
         if status == newton.INFEASIBLE and not shrunk:
             shrunk = True
-            if make_admissible(density, xs, ys, count, cells, loaded(load, direction, mu)):
+            if make_admissible(density, xs, ys, count, own, loaded(load, direction, mu)):
                 continue
         if status != newton.CONVERGED:
             return status, unstable, max(level - 1, 0), on_base
         shrunk = False
         now = loaded(load, direction, mu)
         if level == 1 and passes < regrades:
-            adapt(density, integrands, x, y, n, free, cells, now, work)
+            adapt(density, integrands, x, y, n, tube, now, work)
             passes += 1
             continue
 
         row = table[level]
-        integrate(integrands, xs, ys, count, cells, now, row)
-        row[MIDDLE], row[MULTIPLIER] = ys[count], mu
+        integrate(integrands, xs, ys, count, own, now, row)
+        row[MIDDLE], row[MULTIPLIER] = ys[middle * count // n], mu
         if level >= 3:
             scales(row, now, x[n] - x[0], tolerance, out[2], out[3])
             if extrapolate(table, level, out[2], out[3], out[0], out[1]) <= accuracy:
@@ -176,5 +198,5 @@ def solve(
             fine[1, i] = work[0, i]
         for i in range(count // 2 + 1):
             fine[3, i] = fine[4, i]
-        mesh.split(x, n, 1 << (level - 1), fine[0])
+        split(x, n, edges, 1 << (level - 1), fine[0])
         xs, ys = fine[0], fine[1]

@@ -10,6 +10,7 @@ FIRST_STEP = 0.25  # of the way from one load to the other
 SMALLEST_STEP = 1e-7  # below it the path is taken to end in a turning point
 LARGEST_CHANGE = 0.15  # relative change of the stretch in one step; a jump to another branch is larger
 ITERATIONS = 12
+SCAN = 0.015  # relative change of the stretch between two looks at the slope
 
 
 @kernel
@@ -24,6 +25,33 @@ def between(start, end, t):
         start[5] + t * (end[5] - start[5]),
         end[6],
     )
+
+
+@kernel
+def rising(density, u, trial, cell, start, end):
+    """Whether the load rises all the way from ``u`` to ``trial``: no small snap was passed over.
+
+    L_y is linear in pressure, force and torque, so the fraction t of the way at which a stretch is an equilibrium, and its
+    slope dt/du, are explicit; a dip of the slope below zero between samples shows in the parabola through three of them.
+    """
+    if start[0] != end[0] or abs(trial - u) < 1e-9 * u:
+        return True
+    count = 2 + int(abs(trial - u) / (SCAN * min(u, trial)))
+    first, second = 0.0, 0.0
+    for i in range(count + 1):
+        here = u + (trial - u) * i / count
+        before = density(here, 0.0, cell, start)[1]
+        drive = density(here, 0.0, cell, end)[1] - before
+        L_yy = density(here, 0.0, cell, between(start, end, -before / drive))[3]
+        slope = -L_yy / drive * (1.0 if trial > u else -1.0)
+        if not slope > 0.0:
+            return False
+        if i >= 2 and second < first and second < slope:
+            bend = first - 2.0 * second + slope
+            if second - (slope - first) * (slope - first) / (8.0 * bend) <= 0.0:
+                return False
+        first, second = second, slope
+    return True
 
 
 @kernel
@@ -46,7 +74,7 @@ def follow(density, u, cell, start, end):
                 arrived = True
                 break
             before = abs(change)
-        if arrived:
+        if arrived and rising(density, u, trial, cell, start, end):
             t, u, step = ahead, trial, 2.0 * step
         else:
             step *= 0.5

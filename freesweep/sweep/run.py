@@ -118,8 +118,8 @@ def solve_shard(problems, first, pressures, accuracy):
     }
     no_stations, no_profiles = np.empty(0), np.empty((count, 0, 0))
     walk_many(
-        problems, first - first[0], pressures, BASE_CELLS, accuracy, *(results[name] for name in FIELDS), no_stations,
-        no_profiles,
+        problems, first - first[0], pressures, np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2), accuracy,
+        *(results[name] for name in FIELDS), no_stations, no_profiles,
     )  # fmt: skip
     return results | {"status": results["status"].astype(np.int8), "slack": results["slack"].astype(np.int8)}
 

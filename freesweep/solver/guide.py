@@ -1,0 +1,127 @@
+"""The uniform tube as a guide: what each place along the tube would do if all of it were like that place.
+
+One number for a tube that is the same all along, else one for each of some places; first guesses of mesh and shape.
+"""
+
+from math import exp, sqrt
+
+from . import lagrangian, mesh, uniform
+from .course import at_point
+from .jit import inlined, kernel
+
+PLACES = 33  # along a tube that varies
+STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u
+FIRST_STRAIN = 0.02  # |u - 1| at which a climb starts
+
+
+@kernel
+def cell_along(tube, share):
+    """What varies along the tube at a ``share`` (0 to 1) of its length."""
+    course, _, _, _, _, places = tube
+    at = share * places[len(places) - 1]
+    segment = 0
+    while segment < len(places) - 2 and places[segment + 1] <= at:
+        segment += 1
+    return at_point(course, segment, (at - places[segment]) / (places[segment + 1] - places[segment]))
+
+
+@kernel
+def follow(tube, u, before, load, ahead):
+    """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached."""
+    reached = 1.0
+    for k in range(len(u)):
+        cell = cell_along(tube, k / max(len(u) - 1, 1))
+        ahead[k], part = uniform.follow(lagrangian.density, u[k], cell, before, load)
+        reached = min(reached, part)
+    return reached
+
+
+@kernel
+def locked(tube, gamma, ahead):
+    """The uniform locked stretches."""
+    for k in range(len(ahead)):
+        ahead[k] = lagrangian.locked_stretch(cell_along(tube, k / max(len(ahead) - 1, 1)), gamma)
+
+
+@kernel
+def stretch_at(u, share):
+    """The uniform stretch at a share of the length."""
+    at = min(max(share, 0.0), 1.0) * (len(u) - 1)
+    k = min(int(at), max(len(u) - 2, 0))
+    return u[k] + (at - k) * (u[min(k + 1, len(u) - 1)] - u[k])
+
+
+@kernel
+def start(tube, u, load, x, y):
+    """Mesh and first shape: exponential end layers, whose slope can be met, on the uniform stretches."""
+    _, edges, _, free, _, places = tube
+    rates = (0.0, 0.0)
+    for end in range(2):
+        cell, stretch = cell_along(tube, 1.0 * end), u[0 if end == 0 else len(u) - 1]
+        _, _, _, L_yy, _, L_vv = lagrangian.density(stretch, 0.0, cell, load)
+        rate = sqrt(max(L_yy / L_vv, 1e-12))
+        rates = (rate, rates[1]) if end == 0 else (rates[0], rate)
+    segments = len(edges) - 1
+    for s in range(segments):
+        a, n, length = edges[s], edges[s + 1] - edges[s], places[s + 1] - places[s]
+        own = x[a : a + n + 1]
+        at_end = s == segments - 1 and not free
+        mesh.layer_mesh(length, rates[0] if s == 0 else rates[1] if at_end else 0.0, n, own)
+        if at_end and s > 0:  # the layer lies at the other end
+            for i in range(n // 2 + 1):
+                own[i], own[n - i] = length - own[n - i], length - own[i]
+        for i in range(n + 1):
+            own[i] += places[s]
+        own[n] = places[s + 1]
+    total = places[segments]
+    largest = 1e-9
+    for k in range(len(u)):
+        largest = max(largest, abs(u[k] - 1.0))
+    near, far = min(rates[0], 0.9 / largest), min(rates[1], 0.9 / largest)
+    for i in range(len(x)):
+        layer = 1.0 - exp(-near * x[i])
+        if not free:
+            layer *= 1.0 - exp(-far * (total - x[i]))
+        y[i] = 1.0 + (stretch_at(u, x[i] / total) - 1.0) * layer
+
+
+@kernel
+def carry(u, ahead, total, x, y):
+    """Scale a shape from the uniform stretches ``u`` to those ``ahead``."""
+    for i in range(len(y)):
+        old, new = stretch_at(u, x[i] / total), stretch_at(ahead, x[i] / total)
+        if abs(old - 1.0) > 1e-9:
+            y[i] = 1.0 + (y[i] - 1.0) * (new - 1.0) / (old - 1.0)
+
+
+@kernel
+def strays(y, u):
+    """Whether the shape leaves the interval from 1 to the uniform stretch: another branch."""
+    if len(u) > 1:
+        return False  # neighbouring places pull a shape beyond what each would do alone
+    slack = STRAY * abs(u[0] - 1.0) + 1e-6
+    low, high = min(1.0, u[0]) - slack, max(1.0, u[0]) + slack
+    for i in range(len(y)):
+        if not low <= y[i] <= high:
+            return True
+    return False
+
+
+@inlined
+def begin(tube, load, u, ahead, x, y):
+    """A small part of the way to ``load`` and its first shape; returns that part, 0 where there is none."""
+    rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
+    part = 1.0
+    for _ in range(80):
+        now = uniform.between(rest, load, part)
+        for k in range(len(u)):
+            u[k] = 1.0
+        reached = follow(tube, u, rest, now, ahead)
+        largest = 0.0
+        for k in range(len(u)):
+            largest = max(largest, abs(ahead[k] - 1.0))
+        if reached == 1.0 and largest < FIRST_STRAIN:
+            start(tube, ahead, now, x, y)
+            return part
+        part *= 0.5
+    return 0.0
