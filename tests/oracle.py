@@ -26,8 +26,20 @@ from scipy.optimize import brentq, minimize_scalar
 
 PARAMETERS = sp.symbols("H D a g c k p f m e", real=True)
 Y, V = sp.symbols("y v", real=True)
-NODES, WEIGHTS = (np.asarray(part, np.longdouble) for part in np.polynomial.legendre.leggauss(16))
-NODES, WEIGHTS = 0.5 * (NODES + 1), 0.5 * WEIGHTS  # on 0..1, good to the rounding of doubles
+def _gauss(n):
+    """Gauss-Legendre nodes and weights on -1..1, to the rounding of extended precision."""
+    x = np.asarray(np.polynomial.legendre.leggauss(n)[0], np.longdouble)
+    for _ in range(3):
+        before, here = np.ones_like(x), x.copy()
+        for k in range(2, n + 1):
+            before, here = here, ((2 * k - 1) * x * here - (k - 1) * before) / k
+        slope = n * (x * here - before) / (x * x - 1)
+        x = x - here / slope
+    return x, 2 / ((1 - x * x) * slope**2)
+
+
+NODES, WEIGHTS = _gauss(16)
+NODES, WEIGHTS = 0.5 * (NODES + 1), 0.5 * WEIGHTS  # on 0..1
 DEEP = 34.0  # e-folds between end and middle beyond which the middle is uniform to rounding
 ENERGIES = {"principal": 0, "full": 1}
 
