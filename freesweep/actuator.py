@@ -156,7 +156,7 @@ class Actuator:
                 " apart (or cross along the tube): nearly one fiber family, without a finite locked shape"
             )
         outer = self.radius + float(np.min(as_profile(self.wall).samples()))
-        if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= outer:
+        if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):
             faults.append(
                 f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
                 f" {self.radius:g} to {outer:g} m"

@@ -11,6 +11,9 @@ DONE, BAD_INPUT, ENVIRONMENT, INTERRUPTED = 0, 2, 3, 130
 
 def main(arguments=None) -> int:
     """Run one command; returns the exit code."""
+    import warnings
+
+    warnings.showwarning = lambda message, *_: print(f"freesweep: warning: {message}", file=sys.stderr)
     options = parser().parse_args(_joined(sys.argv[1:] if arguments is None else arguments))
     try:
         return options.run(options) or DONE
@@ -164,9 +167,9 @@ def _one(commands, name, text, run):
         command.add_argument(f"--{angle}", required=True, metavar="A", help="fiber angle from the axis")
     for size in ("length", "radius", "wall"):
         command.add_argument(f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'")
-    command.add_argument(
-        "--c10", required=name == "inflate", default="0.1 MPa", metavar="C", help="Mooney-Rivlin constant"
-    )
+    needed = name == "inflate"
+    without = "" if needed else "; without it no strain energy is given"
+    command.add_argument("--c10", required=needed, metavar="C", help=f"Mooney-Rivlin constant{without}")
     command.add_argument("--c01", default="0 MPa", metavar="C", help="Mooney-Rivlin constant")
     command.add_argument("--fiber-extension", default=1.0, metavar="G", help="stretch of the fibers, 1 or more")
     command.add_argument("--fiber-radius", metavar="L", help="where the fibers lie; default: the inner radius")
@@ -212,13 +215,26 @@ def _run_inflate(options):
     from .units import quantity
 
     tube = _tube(options)
-    pressure = np.array([quantity(text, "Pa") for text in options.pressure])
+    loads, faults = {}, []
+    for name, texts, unit in (
+        ("pressure", options.pressure, "Pa"),
+        ("force", [options.force], "N"),
+        ("torque", [options.torque], "N m"),
+    ):
+        for text in texts:
+            try:
+                loads.setdefault(name, []).append(quantity(text, unit))
+            except ValueError as error:
+                faults.append(f"--{name}: {error}")
+    if faults:
+        raise ValueError("\n".join(["cannot read this load:", *(f"  - {fault}" for fault in faults)]))
+    pressure = np.array(loads["pressure"])
     if options.steps is not None:
         if len(pressure) != 2 or not 2 <= options.steps <= 100_000:
             raise ValueError("--steps: give two pressures, first and last, and 2 to 100000 steps between them")
         pressure = np.linspace(*pressure, options.steps)
     pressure = pressure[0] if len(pressure) == 1 else pressure
-    _show(inflate(tube, pressure, quantity(options.force, "N"), quantity(options.torque, "N m")), options)
+    _show(inflate(tube, pressure, loads["force"][0], loads["torque"][0]), options)
 
 
 def _show(dataset, options):

@@ -5,6 +5,8 @@ A profile is a list of pairs ``(x/l, value)``, linear between them, where a repe
 pieces of each such segment, fine enough that nothing is lost.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 PIECES = (16, 64, 256, 1024, 4096)  # of a segment, until the splines fit
@@ -44,7 +46,7 @@ class Profile:
         """Values at shares of the length; on a jump the left one."""
         share = np.atleast_1d(np.asarray(share, float))
         out = np.empty(share.shape)
-        for low, high in zip(self.breaks[:-1], self.breaks[1:]):
+        for low, high in pairwise(self.breaks):
             here = (share >= low if low == 0.0 else share > low) & (share <= high)
             out[here] = self.within(low, high, (share[here] - low) / (high - low))
         return out
@@ -52,7 +54,7 @@ class Profile:
     def samples(self):
         """Values at enough places to check them."""
         inner = np.linspace(0.0, 1.0, SAMPLES)
-        return np.concatenate([self.within(low, high, inner) for low, high in zip(self.breaks[:-1], self.breaks[1:])])
+        return np.concatenate([self.within(low, high, inner) for low, high in pairwise(self.breaks)])
 
 
 def _pairs(value):
@@ -95,7 +97,7 @@ def course(tube):
         return np.stack([0.5 * (ta + tb), 0.5 * (ta - tb), area])
 
     for pieces in PIECES:
-        segments, error = zip(*(_splines(numbers, low, high, pieces) for low, high in zip(breaks[:-1], breaks[1:])))
+        segments, error = zip(*(_splines(numbers, low, high, pieces) for low, high in pairwise(breaks)))
         if max(error) < FIT:
             break
     else:

@@ -67,10 +67,13 @@ def _load(name, value, unit, faults):
         faults += [fault] if fault else []
         return None if fault else float(value)
     try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+        array = np.asarray(value)
+    except ValueError:  # ragged
+        array = np.array(None)
+    if array.dtype.kind not in "iuf":
         faults.append(f"{name}: found {value!r:.60}; give a number or a 1-D array of numbers in [{unit}]")
         return None
+    array = array.astype(float)
     if array.ndim == 0:
         return _load(name, array.item(), unit, faults)
     if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):

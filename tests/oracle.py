@@ -26,6 +26,8 @@ from scipy.optimize import brentq, minimize_scalar
 
 PARAMETERS = sp.symbols("H D a g c k p f m e", real=True)
 Y, V = sp.symbols("y v", real=True)
+
+
 def _gauss(n):
     """Gauss-Legendre nodes and weights on -1..1, to the rounding of extended precision."""
     x = np.asarray(np.polynomial.legendre.leggauss(n)[0], np.longdouble)

@@ -106,7 +106,6 @@ def test_fibers_lie_in_the_wall():
         assert fault.startswith("fiber_radius: found")
 
 
-@pytest.mark.xfail(strict=True, reason="radius + wall is compared without room for rounding, unlike in a sweep")
 def test_the_outer_radius_as_a_person_writes_it_is_in_the_wall():
     """The sum of radius and wall in floating point may fall one digit short of the number that a person writes."""
     for micrometres in range(1600, 9000, 7):

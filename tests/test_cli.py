@@ -74,7 +74,6 @@ def test_lock_prints_and_keeps_the_locked_shape(capsys, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["locked.nc"]
 
 
-@pytest.mark.xfail(strict=True, reason="an invented c10 stands in: --c10 has a default, so its absence is never seen")
 def test_lock_without_a_material_gives_no_energy(capsys):
     assert run("lock", *TUBE) == DONE
     assert "energy" not in capsys.readouterr().out
@@ -115,7 +114,6 @@ def test_wrong_quantities_are_refused_all_at_once(words, says, capsys):
     assert all(sentence in err for sentence in says)
 
 
-@pytest.mark.xfail(strict=True, reason="loads are read one by one, and the option is not named")
 def test_wrong_loads_are_refused_all_at_once_by_name(capsys):
     err = refused(capsys, "inflate", *TUBE, *RUBBER, "--pressure", "1 mm", "--force", "x", "--torque", "3 N")
     assert [f"--{name}:" in err for name in ("pressure", "force", "torque")] == [True] * 3

@@ -132,7 +132,6 @@ def test_slack_fibers_are_flagged_and_keep_their_values():
     assert (muscle["fiber_tension_alpha"] > 0).all()
 
 
-@pytest.mark.xfail(strict=True, reason="a tension that is exactly zero at the clamped end is flagged by rounding")
 def test_a_fiber_without_tension_is_not_slack():
     """Straight alpha fibers: the beta family is free of tension at the very end, and pulls everywhere else."""
     for beta in (60, 70, 80):
@@ -213,7 +212,6 @@ def test_only_actuators_are_solved():
         lock("tube")
 
 
-@pytest.mark.xfail(strict=True, reason="an array of texts or truth values is converted without a word")
 @pytest.mark.parametrize("pressure", [["1"], [True], np.array([True])])
 def test_arrays_of_texts_and_truth_values_are_refused(pressure):
     with pytest.raises(ActuatorError, match="pressure"):

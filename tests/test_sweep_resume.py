@@ -36,7 +36,7 @@ def replace(source, target):
     kill() if len(done) == moment else rename(source, target)
 os.replace = replace
 if moment == 0:
-    shards.Shards.remove = kill
+    shards.Shards.clear = kill
 run.SHARD_EQUILIBRIA = int(sys.argv[3])
 run.run_sweep(parse(sys.stdin.read()), out, threads=2, progress=False)
 """
@@ -99,9 +99,6 @@ def test_a_killed_sweep_goes_on_to_the_same_bits(moment, reference, tmp_path, mo
         same_bits(reference, make(out, SWEEP))
 
 
-@pytest.mark.xfail(
-    strict=True, reason="shards of a finished atlas, and temporary files of a killed run, are left behind"
-)
 @pytest.mark.parametrize("left", ["atlas.nc.parts", ".atlas.nc.abcdefgh.part"])
 def test_what_a_killed_run_left_is_cleared(left, tmp_path):
     sweep = parse(spec(SMALL))
@@ -144,10 +141,12 @@ def test_a_damaged_shard_is_solved_again(damage, reference, tmp_path, monkeypatc
     only(tmp_path, "atlas.nc")
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="the manifest does not say how the work was split")
 def test_shards_of_another_size_are_not_mixed_in(reference, tmp_path, monkeypatch):
     interrupted(tmp_path / "atlas.nc", SWEEP, 3, monkeypatch)
     monkeypatch.setattr(run, "SHARD_EQUILIBRIA", SHARD // 3)
+    with pytest.raises(SweepError, match="whose plan_sha256 differs"):
+        make(tmp_path / "atlas.nc", SWEEP)
+    monkeypatch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
     same_bits(reference, make(tmp_path / "atlas.nc", SWEEP))
 
 
@@ -159,8 +158,9 @@ def test_shards_of_another_specification_are_refused_by_name(tmp_path, monkeypat
     ):
         make(out, parse(spec(SMALL)))
     assert sorted(Path(f"{out}.parts").glob("shard-*.npz")) == before
-    monkeypatch.setattr("freesweep.solver.jit.source_hash", lambda: "other")
-    with pytest.raises(SweepError, match=r"whose kernels_sha256 differs: .* there, 'other' now"):
+    other = run.identify(SWEEP) | {"code_sha256": "other"}
+    monkeypatch.setattr(run, "identify", lambda sweep: other)
+    with pytest.raises(SweepError, match=r"whose code_sha256 differs: .* there, 'other' now"):
         make(out, SWEEP)
 
 

@@ -25,6 +25,8 @@ H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH = range(PROBLEM_SIZE)
 
 COLD_REGRADES, WARM_REGRADES = 3, 1
 WARM, COLD, SLOW, LAST_STEP = 0, 1, 2, 3
+TENSIONLESS = 1e-9  # of the load: a fiber family without tension does not push
+TENSIONLESS_END = 1e-3  # at a clamped end, where the slope is carried on from the cells beside
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -47,7 +49,8 @@ def slack_fibers(x, y, n, base, tube, load):
         cell = cell_at(own, min(max(j, 0), n - 1))
         if v * v < 1.0 + lagrangian.kinematics(middle, cell, load)[3]:
             alpha, beta = lagrangian.fiber_multipliers(middle, v, cell, load)
-            flag |= (1 if alpha < 0.0 else 0) | (2 if beta < 0.0 else 0)
+            least = -(TENSIONLESS if 0 <= j < n else TENSIONLESS_END) * (load[3] + abs(load[4]))
+            flag |= (1 if alpha < least else 0) | (2 if beta < least else 0)
     return flag
 
 

@@ -129,8 +129,9 @@ def solve(
 ):  # fmt: skip
     """Solve on nested meshes until every bound meets ``accuracy``.
 
-    ``tube`` is (course, edges, cells, free, middle, places): what varies along the tube and a buffer for it, whether the last node
-    is a plane of symmetry, the node of the base mesh that lies in the middle, and where the segments begin and end. ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
+    ``tube`` is (course, edges, cells, free, middle, places): what varies along the tube and a buffer for it, whether the
+    last node is a plane of symmetry, the node of the base mesh that lies in the middle, and where segments begin and end.
+    ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
     call's warm start. ``fine`` is scratch of shape (5, > 2 n) for the finer meshes: (x, y) of the last one in rows 0, 1,
     of the one before in rows 2, 4. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
 

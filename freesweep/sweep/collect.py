@@ -6,6 +6,7 @@ from .. import closed_form, status
 from ..atlas.schema import FLAG_OF, STATUS_OF, VARIABLES, attributes
 from ..scaling import OUTPUTS, output_scales, wall_volume_inside
 
+SAME_PROBLEM = 5e-13  # relative: two problems that agree to plan.DIGITS digits are solved as one
 CLOSED_FORM_ERROR = 4e-15  # relative to the sum of the terms: rounding
 
 
@@ -50,7 +51,7 @@ def _outputs(plan, results, rows):
         if name == "volume":
             value = value - wall_volume_inside(design)
         bound = np.where(valued, _at(results["bounds"][:, k], rows, np.nan), np.nan) * scales[name]
-        arrays[name], arrays[f"{name}_error"] = value, upward(bound)
+        arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
     return arrays
 
 

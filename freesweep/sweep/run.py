@@ -4,6 +4,7 @@ import os
 import platform
 import time
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ..atlas.store import Atlas, AtlasError, open_atlas, save_atlas
 from ..status import STATUSES
 from .collect import collect
+from .identity import fingerprint, identify
 from .plan import plan as make_plan
 from .shards import FIELDS, Shards, SweepError
 from .spec import Sweep, read_file
@@ -36,15 +38,20 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
     begun = time.perf_counter()
     sweep = spec if isinstance(spec, Sweep) else read_file(spec)
     out = Path(out)
-    identity = _identity(sweep)
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
+    identity = identify(sweep)
     if out.exists() and not overwrite and (atlas := _finished(out, identity)):
+        Shards(out, identity).clear()
         if progress:
             print(f"{out} is complete already, from this specification and this code")
         return atlas
     plan = make_plan(sweep)
-    shards = Shards(out, identity)
-    done = shards.open()
     parts = split(plan)
+    shards = Shards(out, identity | {"plan_sha256": fingerprint(plan, parts)})
+    if overwrite:
+        shards.clear(only_others=True)
+    done = shards.open()
     results = _solve_all(plan, parts, done, shards, sweep.accuracy, threads or _cores(), progress)
     solving = time.perf_counter() - begun
     dataset = collect(sweep, plan, results)
@@ -63,19 +70,11 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
         "numpy": np.__version__,
     }
     save_atlas(dataset, out)
-    shards.remove()
+    shards.clear()
     atlas = open_atlas(out)
     if progress:
         print(summary(atlas, plan, solving, time.perf_counter() - begun))
     return atlas
-
-
-def _identity(sweep):
-    """What makes two sweeps the same: the specification and the code that solves it."""
-    from .. import __version__
-    from ..solver.jit import source_hash
-
-    return {"specification_sha256": sweep.sha256, "kernels_sha256": source_hash(), "version": __version__}
 
 
 def _finished(out, identity):
@@ -101,7 +100,7 @@ def split(plan):
         if plan.first[k] - last >= SHARD_EQUILIBRIA or k == len(plan.problems):
             edges.append(k)
             last = plan.first[k]
-    return list(zip(edges[:-1], edges[1:]))
+    return list(pairwise(edges))
 
 
 def solve_shard(problems, first, pressures, accuracy):

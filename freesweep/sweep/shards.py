@@ -26,6 +26,7 @@ class Shards:
     """The shards of one sweep beside its output file."""
 
     def __init__(self, out, identity):
+        self.out = Path(out)
         self.folder = Path(f"{out}.parts")
         self.identity = identity
         self.started = None
@@ -72,6 +73,16 @@ class Shards:
         digest = hashlib.sha256(content).hexdigest()[:32]
         write_whole(self.folder / f"shard-{index:06d}-{digest}.npz", content)
 
-    def remove(self):
-        """The atlas is whole: the shards may go."""
+    def clear(self, only_others=False):
+        """Remove the folder and what a killed write of the atlas left: the atlas is whole, or is to be made anew.
+
+        ``only_others``: unless the folder is this sweep's own.
+        """
+        manifest = self.folder / "manifest.json"
+        if only_others and manifest.exists():
+            found = json.loads(manifest.read_text())
+            if all(found.get(key) == wanted for key, wanted in self.identity.items()):
+                return
         shutil.rmtree(self.folder, ignore_errors=True)
+        for left in self.out.parent.glob(f".{self.out.name}.*.part"):
+            left.unlink(missing_ok=True)

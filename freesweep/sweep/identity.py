@@ -1,0 +1,27 @@
+"""What makes two sweeps the same: the specification, and the code whose change could change a number."""
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+
+SOURCES = ("solver/*.py", "sweep/*.py", "scaling.py", "closed_form.py", "status.py", "atlas/schema.py")
+
+
+def identify(sweep) -> dict:
+    """Hashes of specification and code, and the version."""
+    from .. import __version__
+
+    root = Path(__file__).parent.parent
+    digest = hashlib.sha256()
+    for path in sorted(path for pattern in SOURCES for path in root.glob(pattern)):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return {"specification_sha256": sweep.sha256, "code_sha256": digest.hexdigest(), "version": __version__}
+
+
+def fingerprint(plan, parts) -> str:
+    """Hash of what is solved, and of how it is split: shards of another split are not this sweep's."""
+    digest = hashlib.sha256()
+    for array in (plan.problems, plan.first, plan.pressures, np.array(parts, np.int64)):
+        digest.update(repr(array.shape).encode() + np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
