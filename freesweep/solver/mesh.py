@@ -134,11 +134,21 @@ def split(x, n, factor, out):
 
 
 @kernel
-def prolong(y, n, out):
-    """First guess on twice as many cells: cubic through four neighbours in z (dx/dz is smooth)."""
+def prolong(x, y, n, fine_x, out):
+    """First guess on twice as many cells: the cubic through four neighbours. In x and not by number of node: where cell
+    sizes are uneven, that guess would be rough, and Newton's method slow.
+    """
     for j in range(n):
-        before = y[j - 1] if j > 0 else 3.0 * (y[0] - y[1]) + y[2]
-        after = y[j + 2] if j < n - 1 else 3.0 * (y[n] - y[n - 1]) + y[n - 2]
+        k = min(max(j - 1, 0), n - 3)
+        at = fine_x[2 * j + 1]
+        a, b, c, d = at - x[k], at - x[k + 1], at - x[k + 2], at - x[k + 3]
+        ab, ac, ad = x[k] - x[k + 1], x[k] - x[k + 2], x[k] - x[k + 3]
+        bc, bd, cd = x[k + 1] - x[k + 2], x[k + 1] - x[k + 3], x[k + 2] - x[k + 3]
         out[2 * j] = y[j]
-        out[2 * j + 1] = 0.5625 * (y[j] + y[j + 1]) - 0.0625 * (before + after)
+        out[2 * j + 1] = (
+            y[k] * (b * c * d / (ab * ac * ad))
+            - y[k + 1] * (a * c * d / (ab * bc * bd))
+            + y[k + 2] * (a * b * d / (ac * bc * cd))
+            - y[k + 3] * (a * b * c / (ad * bd * cd))
+        )
     out[2 * n] = y[n]

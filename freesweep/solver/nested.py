@@ -105,21 +105,18 @@ def split(x, n, edges, factor, out):
 
 
 @kernel
-def foresee(fine, n, y):
-    """First guess on twice as many cells: the solution on n cells in row 1 of ``fine``, carried on by the change from
-    n/2 cells (row 3), which doubling the cells will repeat at a quarter.
+def foresee(fine, n, work):
+    """First guess in row 1 of ``fine`` on twice as many cells, whose nodes are in row 0: the solution on n cells (rows 2,
+    4), carried on by the change from n/2 cells (row 3), which doubling the cells will repeat at a quarter.
     """
+    half_x, change, both = work[0], work[1], work[2]
     for i in range(n // 2 + 1):
-        change = 0.25 * (fine[1, 2 * i] - fine[3, i])
-        fine[3, i] = change
-    mesh.prolong(fine[1], n, y)
-    for i in range(n // 2):
-        a, b = fine[3, i], fine[3, i + 1]
-        y[4 * i] += a
-        y[4 * i + 1] += 0.75 * a + 0.25 * b
-        y[4 * i + 2] += 0.5 * (a + b)
-        y[4 * i + 3] += 0.25 * a + 0.75 * b
-    y[2 * n] += fine[3, n // 2]
+        half_x[i] = fine[2, 2 * i]
+        change[i] = 0.25 * (fine[4, 2 * i] - fine[3, i])
+    mesh.prolong(half_x, change, n // 2, fine[2], both)
+    for i in range(n + 1):
+        both[i] += fine[4, i]
+    mesh.prolong(fine[2], both, n, fine[0], fine[1])
 
 
 @kernel
@@ -193,11 +190,9 @@ def solve(
         count = n << (level - 1)
         for i in range(count + 1):
             fine[2, i], fine[4, i] = fine[0, i], fine[1, i]
-        foresee(fine, count, work[0])
         level, count = level + 1, 2 * count
-        for i in range(count + 1):
-            fine[1, i] = work[0, i]
+        split(x, n, edges, 1 << (level - 1), fine[0])
+        foresee(fine, count // 2, work)
         for i in range(count // 2 + 1):
             fine[3, i] = fine[4, i]
-        split(x, n, edges, 1 << (level - 1), fine[0])
         xs, ys = fine[0], fine[1]

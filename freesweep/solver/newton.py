@@ -122,8 +122,7 @@ def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
     g, d, e, inverse, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
     first, last = 1, n if free else n - 1
     for i in range(n + 1):
-        trial[i] = y[i]
-        least[i] = 0.0
+        trial[i], least[i] = y[i], 0.0
     convex, negative, halvings, iterations = False, 0, 0, 0
     size, before, fraction, slope = 1e300, 1e300, 0.0, 0.0
     while iterations < MAX_ITERATIONS and halvings < MAX_HALVINGS:
@@ -131,11 +130,13 @@ def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
         if iterations == 0 and not admitted:
             return INFEASIBLE, 0, rate
         if iterations > 0 and not convex:
-            # shorten the step until its slope says that the valley's floor was not overshot by much
-            after = 0.0
-            for i in range(first, last + 1):
-                after += g[i] * step[i]
-            if not admitted or (size >= SMALL_STEP and after > -0.9 * slope):
+            # shorten a long step until its slope says that the valley's floor was not overshot by much
+            after = -1.0
+            if size >= SMALL_STEP:
+                after = 0.0
+                for i in range(first, last + 1):
+                    after += g[i] * step[i]
+            if not admitted or after > -0.9 * slope:
                 fraction *= 0.5
                 halvings += 1
                 for i in range(n + 1):
@@ -153,14 +154,16 @@ def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
         substitute(inverse, e, first, last, g, step)
         step[0] = 0.0
         step[n] = step[n] if free else 0.0
-        size, slope = 0.0, 0.0
+        size, slope, largest = 0.0, 0.0, y[0]
         for i in range(1, n + 1):
-            step[i] = -step[i]
-            size = max(size, abs(step[i]) / y[i])
-            slope += g[i] * step[i] if i <= last else 0.0
+            change = -step[i]
+            step[i] = change
+            trial[i] = y[i] + change
+            size = max(size, abs(change))
+            largest = max(largest, y[i])
+            slope += g[i] * change if i <= last else 0.0
+        size /= largest
         rate = new_rate(rate, size, before)
-        for i in range(n + 1):
-            trial[i] = y[i] + step[i]
         if negative == 0 and settled(size, before, rate, tolerance):
             for i in range(n + 1):
                 y[i] = trial[i]
