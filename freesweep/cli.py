@@ -64,6 +64,13 @@ def parser() -> argparse.ArgumentParser:
     inflate.add_argument("--steps", type=int, metavar="N", help="that many pressures from the first to the last given")
     inflate.add_argument("--force", default=0.0, metavar="F", help="axial force, positive in tension (default 0)")
     inflate.add_argument("--torque", default=0.0, metavar="M", help="torque toward growing rotation (default 0)")
+    block = _one(commands, "block", "the force or torque that holds the length or the rotation", _run_block)
+    block.add_argument("--pressure", required=True, nargs="+", metavar="P", help='"0.1 MPa", or several')
+    block.add_argument("--hold", choices=("length", "rotation"), required=True, help="what is held; the other is free")
+    block.add_argument("--at", metavar="VALUE", help="held length or rotation (default: the undeformed one)")
+    block.add_argument("--force", default=0.0, metavar="F", help="axial force while the rotation is held (default 0)")
+    block.add_argument("--torque", default=0.0, metavar="M", help="torque while the length is held (default 0)")
+    block.add_argument("--buckled", action="store_true", help="the state beside the unstable cylinder (rotation held)")
     return top
 
 
@@ -167,7 +174,7 @@ def _one(commands, name, text, run):
         command.add_argument(f"--{angle}", required=True, metavar="A", help="fiber angle from the axis")
     for size in ("length", "radius", "wall"):
         command.add_argument(f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'")
-    needed = name == "inflate"
+    needed = name != "lock"
     without = "" if needed else "; without it no strain energy is given"
     command.add_argument("--c10", required=needed, metavar="C", help=f"Mooney-Rivlin constant{without}")
     command.add_argument("--c01", default="0 MPa", metavar="C", help="Mooney-Rivlin constant")
@@ -208,26 +215,31 @@ def _run_lock(options):
     _show(dataset, options)
 
 
-def _run_inflate(options):
-    import numpy as np
-
-    from .statics import inflate
+def _quantities(faults, **texts):
+    """Texts as numbers by option name: ``name=(texts, unit)``; what cannot be read goes to ``faults``."""
     from .units import quantity
 
-    tube = _tube(options)
-    loads, faults = {}, []
-    for name, texts, unit in (
-        ("pressure", options.pressure, "Pa"),
-        ("force", [options.force], "N"),
-        ("torque", [options.torque], "N m"),
-    ):
-        for text in texts:
+    numbers = {}
+    for name, (given, unit) in texts.items():
+        for text in given:
             try:
-                loads.setdefault(name, []).append(quantity(text, unit))
+                numbers.setdefault(name, []).append(quantity(text, unit))
             except ValueError as error:
                 faults.append(f"--{name}: {error}")
     if faults:
         raise ValueError("\n".join(["cannot read this load:", *(f"  - {fault}" for fault in faults)]))
+    return numbers
+
+
+def _run_inflate(options):
+    import numpy as np
+
+    from .statics import inflate
+
+    tube = _tube(options)
+    loads = _quantities(
+        [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m")
+    )
     pressure = np.array(loads["pressure"])
     if options.steps is not None:
         if len(pressure) != 2 or not 2 <= options.steps <= 100_000:
@@ -235,6 +247,33 @@ def _run_inflate(options):
         pressure = np.linspace(*pressure, options.steps)
     pressure = pressure[0] if len(pressure) == 1 else pressure
     _show(inflate(tube, pressure, loads["force"][0], loads["torque"][0]), options)
+
+
+def _run_block(options):
+    import numpy as np
+
+    from .holding import blocked_force, blocked_torque
+
+    tube = _tube(options)
+    length = options.hold == "length"
+    unused = "force" if length else "torque"
+    if getattr(options, unused) != 0.0:
+        raise ValueError(
+            f"--{unused}: it is what holds the {options.hold}, so it cannot be given. With length and rotation both held,"
+            " force and torque are not separately determined"
+        )
+    if length and options.buckled:
+        raise ValueError("--buckled: only a held rotation has a straight state to buckle from")
+    given = _quantities(
+        [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m"),
+        at=([options.at] if options.at is not None else [], "m" if length else "degree"),
+    )  # fmt: skip
+    pressure = given["pressure"][0] if len(given["pressure"]) == 1 else np.array(given["pressure"])
+    at = given.get("at", [None if length else 0.0])[0]
+    if length:
+        _show(blocked_force(tube, pressure, at, given["torque"][0]), options)
+    else:
+        _show(blocked_torque(tube, pressure, at, given["force"][0], buckled=options.buckled), options)
 
 
 def _show(dataset, options):

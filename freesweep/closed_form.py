@@ -88,6 +88,21 @@ def blocked_torque(alpha, beta, radius, pressure):
     return np.where(on_af | _on(alpha, beta), np.nan, torque)
 
 
+def critical_pressure(alpha, beta, length, radius, wall, c10, c01=0.0, energy="full"):
+    """Pressure [Pa] from which a cylinder whose rotation is held buckles: its first mode is antisymmetric.
+
+    Lengths in [m], constants in [Pa]; infinite where it never does. Linear stability of y = 1 under Eq. 2.20.
+    """
+    ta, tb = _tangents(alpha, beta)
+    half_sum, half_difference, q = 0.5 * (ta + tb), 0.5 * (ta - tb), ta * tb
+    area = ((radius + wall) ** 2 - radius**2) / radius**2
+    sheared = half_sum**2 if energy == "full" else 0.0
+    stiffness = 8.0 * (1.0 + c01 / c10) * (1.0 + q + q**2 + sheared)
+    bracket = 8.0 + 4.0 * half_sum**2 - 8.0 * half_difference**2 - q**2 - (2.0 * np.pi * radius / length) ** 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(bracket > 0.0, c10 * area * stiffness / bracket, np.inf)[()]
+
+
 def region(alpha, beta):
     """Name of the region of the design space (Figure 1-2) as an array of strings, one of REGIONS.
 

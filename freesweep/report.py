@@ -2,15 +2,23 @@
 
 from .status import STATUSES, VALUED
 
-COLUMNS = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
-SHOWN = {"m": ("mm", 1e3), "m3": ("ml", 1e6), "degree": ("deg", 1.0), "J": ("J", 1.0), "Pa": ("kPa", 1e-3)}
+COLUMNS = ("force", "torque", "deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
+SHOWN = {
+    "m": ("mm", 1e3),
+    "m3": ("ml", 1e6),
+    "degree": ("deg", 1.0),
+    "J": ("J", 1.0),
+    "Pa": ("kPa", 1e-3),
+    "N": ("N", 1.0),
+    "N m": ("N m", 1.0),
+}
 
 
 def table(dataset) -> str:
     """One line for each pressure: outputs in everyday units, status, slack fibers; then what the statuses mean."""
     heads, rows = [], []
     points = dataset.drop_dims("x")
-    columns = [name for name in COLUMNS if name in dataset]
+    columns = [name for name in COLUMNS if f"{name}_error" in dataset]
     if "pressure" in points.dims:
         heads.append("pressure [kPa]")
         states = [points.isel(pressure=k) for k in range(points.sizes["pressure"])]
@@ -24,7 +32,7 @@ def table(dataset) -> str:
         for name in columns:
             _, scale = SHOWN[dataset[name].attrs["units"]]
             row.append(_number(state[name].item() * scale, state[f"{name}_error"].item() * scale))
-        rows.append([*row, STATUSES[int(state["status"])].meaning + _slack(int(state["slack_fiber"]))])
+        rows.append([*row, STATUSES[int(state["status"])].meaning + _flags(state)])
     lines = _aligned([[*heads, "status"], *rows])
     seen = sorted({int(value) for value in dataset["status"].values.ravel()} - {0})
     lines += [f"{STATUSES[value].meaning}: {STATUSES[value].sentence}" for value in seen]
@@ -49,8 +57,10 @@ def _number(value, error):
     return f"{value:.7g}"
 
 
-def _slack(flag):
-    return ("", ", alpha fibers slack", ", beta fibers slack", ", fibers slack")[flag]
+def _flags(state):
+    """Slack fibers and instability, in words."""
+    slack = ("", ", alpha fibers slack", ", beta fibers slack", ", fibers slack")[int(state["slack_fiber"])]
+    return slack + (", unstable" if int(state["status"]) in VALUED and not int(state["stable"]) else "")
 
 
 def _aligned(rows):

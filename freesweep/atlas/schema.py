@@ -91,6 +91,9 @@ PROFILES = {
 
 def attributes(name: str) -> dict:
     """CF attributes of any variable or coordinate that a dataset may hold."""
+    if name.removesuffix("_error") in PARAMETERS and name not in PARAMETERS:
+        of = PARAMETERS[name.removesuffix("_error")]
+        return {"units": of.units, "long_name": f"error bound of {name.removesuffix('_error')}"}
     if name in PARAMETERS:
         return {"units": PARAMETERS[name].units, "long_name": PARAMETERS[name].long_name}
     if name == "x":

@@ -1,0 +1,148 @@
+"""Blocked force and blocked torque: the deformed length or the rotation of the free end is held (Eqs. 2.16 - 2.22)."""
+
+import numpy as np
+
+from .actuator import Actuator, ActuatorError, MooneyRivlin
+from .loads import read_load, read_stations
+from .results import dataset, near_stations
+from .scaling import problem_rows
+from .statics import inflate, read_course
+
+HALF_CELLS = 48  # of half a tube that is the same all along
+CORRECTION_STATIONS = 2001
+
+
+def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *, x=None, accuracy=1e-6):
+    """The axial force that holds the deformed length, the free end being free to rotate (Eqs. 2.16, 2.18).
+
+    Parameters
+    ----------
+    tube : the actuator; any profile and fiber extension
+    pressure, torque : number or 1-D array [Pa, N m]
+    deformed_length : held length [m], number or 1-D array (a force-stroke curve); default: the undeformed length
+    x, accuracy : as in :func:`freesweep.lock`
+
+    Returns a Dataset with ``force`` [N], positive in tension, on the coordinate ``deformed_length``, and what else deforms.
+    Where the wall would have to be pushed (region I, low pressure with fiber extension) there is no result: status 3.
+    Raises :class:`ActuatorError`.
+    """
+    held = tube.length if deformed_length is None and isinstance(tube, Actuator) else deformed_length
+    return _hold(tube, "deformed_length", held, "torque", torque, "force", pressure, x, accuracy)
+
+
+def blocked_torque(tube: Actuator, pressure, rotation=0.0, force=0.0, *, buckled=False, x=None, accuracy=1e-6):
+    """The torque that holds the rotation of the free end, the length being free (Eqs. 2.19, 2.20).
+
+    Parameters
+    ----------
+    tube : the actuator; any profile and fiber extension, but alpha = -beta has no rotation to hold
+    pressure, force : number or 1-D array [Pa, N]
+    rotation : held rotation [degree], number or 1-D array (a torque-rotation curve)
+    buckled : beyond the critical pressure (:func:`freesweep.closed_form.critical_pressure`) the straight cylinder is
+        unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation"
+    x, accuracy : as in :func:`freesweep.lock`
+
+    Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``
+    counts every mode of the whole tube while the rotation stays held. Raises :class:`ActuatorError`.
+    """
+    if isinstance(tube, Actuator):
+        alpha, beta = tube.angles(np.linspace(0.0, 1.0, 257))
+        if np.all(alpha == -beta):
+            raise ActuatorError(
+                ["rotation: a tube with alpha = -beta does not rotate, so no torque holds it; use blocked_force"]
+            )
+        if buckled and tube.varies:
+            raise ActuatorError(["buckled: only a tube that is the same all along has a straight state to buckle from"])
+    return _hold(tube, "rotation", rotation, "force", force, "torque", pressure, x, accuracy, buckled)
+
+
+def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False):
+    from .solver.hold import HELD_LENGTH, HELD_ROTATION, hold_many
+    from .solver.profile import FIELDS
+
+    faults = []
+    units = {"deformed_length": "m", "rotation": "degree", "force": "N", "torque": "N m", "pressure": "Pa"}
+    axes = {
+        name: read_load(name, value, units[name], faults)
+        for name, value in ((held_name, held), (load_name, load), ("pressure", pressure))
+    }
+    for name in ("pressure", "deformed_length"):
+        value = axes.get(name)
+        if value is not None and not np.all(np.asarray(value) > 0.0):
+            faults.append(f"{name}: found {np.min(value):g}; it has to be above 0")
+    stations = read_stations(tube, x, accuracy, faults)
+    grid = np.meshgrid(*axes.values(), indexing="ij")
+    shape, count = grid[0].shape, grid[0].size
+    targets, others, pressures = (array.ravel() for array in grid)
+    r, c10 = tube.fiber_surface, tube.material.c10
+    design = {name: np.full(1, value) for name, value in tube.design().items()}
+    row = problem_rows(design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy)[0]
+    whole = tube.varies or buckled
+    if tube.varies:
+        course, edges, places = read_course(tube)
+    else:
+        segments = 2 if buckled else 1
+        course = np.zeros((segments, 1, 3, 4))
+        course[:, 0, :, 0] = row[:3]
+        edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
+    unique, index = near_stations(tube, stations, whole)
+    values, bounds = np.empty((count, 6)), np.empty((count, 6))
+    codes, stable, slack = (np.empty(count, np.int64) for _ in range(3))
+    fields = np.empty((count, FIELDS, len(unique)))
+    held_is_length = held_name == "deformed_length"
+    hold_many(
+        row, pressures / c10, others / (np.pi * r ** (3 if held_is_length else 2) * c10),
+        targets / r if held_is_length else np.radians(targets), HELD_LENGTH if held_is_length else HELD_ROTATION, buckled,
+        course, edges, places, float(accuracy), values, bounds, codes, stable, slack, unique, fields,
+    )  # fmt: skip
+    scale = np.pi * r ** (2 if held_is_length else 3) * c10
+    found = {
+        "status": codes.reshape(shape),
+        "stable": stable.reshape(shape),
+        "slack_fiber": slack.reshape(shape),
+        "values": values[:, :5].reshape(*shape, 5),
+        "bounds": bounds[:, :5].reshape(*shape, 5),
+        "fields": (fields.reshape(*shape, FIELDS, -1)[..., index], whole),
+        "extra": {
+            unknown: (tuple(axes), values[:, 5].reshape(shape) * scale),
+            f"{unknown}_error": (tuple(axes), bounds[:, 5].reshape(shape) * scale),
+        },
+    }
+    result = dataset(tube, axes, stations, found, without=(held_name,))
+    result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": float(accuracy), "buckled": int(buckled)}
+    return result
+
+
+def corrected_torque(tube: Actuator, pressure):
+    """Blocked torque with the source's superposed contraction [N m] (Eqs. 2.21, 2.22); ``pressure`` number or array [Pa].
+
+    For a straight family and another (alpha = 0): the stretch y_c of the McKibben muscle (Eq. 2.15) at angle beta and the
+    same pressure takes the place of 1, ``M = -P int (V_y - dV_y'/dx) dx / int delta_y dx`` at y = y_c. It tends to Eq. 2.20
+    as the pressure falls. The exact held state is ``blocked_torque(..., buckled=True)``. Raises :class:`ActuatorError`.
+    """
+    from scipy.interpolate import CubicSpline
+
+    if not isinstance(tube, Actuator) or tube.varies or tube.alpha != 0.0:
+        raise ActuatorError(["tube: the source's correction is for alpha = 0 and a constant beta"])
+    material = MooneyRivlin(tube.material.c10, tube.material.c01)
+    muscle = Actuator(
+        alpha=tube.beta, beta=-tube.beta, length=tube.length, radius=tube.radius, wall=tube.wall, material=material,
+        fiber_radius=tube.fiber_radius, energy=tube.energy,
+    )  # fmt: skip
+    stations = (
+        0.5 * tube.length * (1.0 - np.cos(np.linspace(0.0, np.pi, CORRECTION_STATIONS)))
+    )  # dense in the end layers
+    shape = inflate(muscle, pressure, x=stations)["deformed_radius"] / tube.fiber_surface
+    xi = stations / tube.fiber_surface
+    tb = np.tan(np.radians(tube.beta))
+    half_sum, half_difference = 0.5 * tb, -0.5 * tb
+    y = CubicSpline(xi, shape.values, axis=-1)
+    stretch, slope = y(xi), y(xi, 1)
+    squared = 1.0 + half_sum**2 + half_difference**2 - half_difference**2 * stretch**2 - half_sum**2 / stretch**2
+    s = np.sqrt(squared - slope**2)
+    squared_y = -2.0 * half_difference**2 * stretch + 2.0 * half_sum**2 / stretch**3
+    volume_y = CubicSpline(xi, 2.0 * stretch * s + stretch**2 * squared_y / (2.0 * s), axis=-1).integrate(xi[0], xi[-1])
+    volume_v = -(stretch**2) * slope / s
+    twist_y = CubicSpline(xi, -2.0 * half_sum / stretch**3, axis=-1).integrate(xi[0], xi[-1])
+    ends = volume_v[..., -1] - volume_v[..., 0]
+    return -np.asarray(pressure) * np.pi * tube.fiber_surface**3 * (volume_y - ends) / twist_y

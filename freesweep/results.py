@@ -1,0 +1,70 @@
+"""From what the kernels return for one actuator to a Dataset in SI units and degrees."""
+
+import warnings
+
+import numpy as np
+
+from . import status
+from .atlas.schema import attributes
+from .scaling import OUTPUTS, output_scales, wall_volume_inside
+
+
+def dataset(tube, axes, stations, found, without=()):
+    """The Dataset of one actuator.
+
+    ``axes`` maps each dimension to its numbers, a single number to a scalar coordinate; ``found`` maps ``status``,
+    ``stable``, ``slack_fiber``, ``values``, ``bounds`` and ``fields`` to arrays over the axes; ``extra``, if there, to
+    further variables: name -> (dimensions, array). ``without`` names outputs that are coordinates here.
+    """
+    import xarray as xr
+
+    names = tuple(axes)
+    data = {name: (names, found[name].astype(np.int8)) for name in ("status", "slack_fiber", "stable")}
+    scale = output_scales(tube.design())
+    for k, name in enumerate(OUTPUTS):
+        if name in without:
+            continue
+        value = found["values"][..., k] * scale[name]
+        data[name] = (names, value - wall_volume_inside(tube.design()) if name == "volume" else value)
+        data[f"{name}_error"] = (names, found["bounds"][..., k] * scale[name])
+    data |= found.get("extra", {})
+    for name, array in profiles(tube, found["fields"], found["values"], stations).items():
+        data[name] = ((*names, "x"), array)
+    coordinates = {name: (name, np.atleast_1d(value)) for name, value in axes.items()} | {"x": ("x", stations)}
+    result = xr.Dataset(data, coordinates)
+    result = result.isel({name: 0 for name, value in axes.items() if np.ndim(value) == 0})
+    for name in result.variables:
+        result[name].attrs = attributes(name)
+    if np.any(result["status"] == status.NOT_CONVERGED):
+        warnings.warn(status.STATUSES[status.NOT_CONVERGED].sentence, stacklevel=4)
+    return result
+
+
+def near_stations(tube, stations, whole):
+    """``(unique, index)``: stations as the kernels take them, in radii, and where each station's result is found.
+
+    Of a tube that is the same all along, half was solved (unless the ``whole``): a station belongs to its nearer end.
+    """
+    near = stations if whole else np.clip(np.minimum(stations, tube.length - stations), 0.0, None)
+    return np.unique(near / tube.fiber_surface, return_inverse=True)
+
+
+def profiles(tube, fields, values, stations):
+    """Profiles along x from the kernels' fields; where only half was solved (``fields`` says so), the far half mirrors."""
+    share = stations / tube.length
+    alpha, beta = tube.angles(share)
+    r = tube.fiber_surface
+    fields, whole = fields
+    mirrored = (share > 0.5) & (not whole)
+    z = np.where(mirrored, 2.0 * values[..., 0, None] - fields[..., 1, :], fields[..., 1, :])
+    twist = np.where(mirrored, 2.0 * values[..., 2, None] - fields[..., 2, :], fields[..., 2, :])
+    tension = 2.0 * np.pi * r**2 * tube.material.c10
+    return {
+        "deformed_radius": r * fields[..., 0, :],
+        "axial_position": r * z,
+        "twist": np.degrees(twist),
+        "alpha_deformed": np.degrees(np.arctan(fields[..., 3, :])),
+        "beta_deformed": np.degrees(np.arctan(fields[..., 4, :])),
+        "fiber_tension_alpha": tension / np.cos(np.radians(alpha)) * fields[..., 5, :],
+        "fiber_tension_beta": tension / np.cos(np.radians(beta)) * fields[..., 6, :],
+    }
