@@ -6,7 +6,7 @@ value is a scalar coordinate. Every float output has ``<name>_error`` beside it,
 
 from typing import NamedTuple
 
-from ..status import FLAGS, flag_attributes, status_attributes
+from ..status import flag_attributes, status_attributes
 
 
 class Parameter(NamedTuple):
@@ -58,6 +58,8 @@ VARIABLES = {
         for name, (units, long_name) in _SHAPE.items()
     },
     "locked_strain_energy": Variable("J", "strain energy of the wall, locked", LOADS),
+    "blocked_force": Variable("N", "force that holds the undeformed length, free to rotate", ("force",)),
+    "blocked_torque": Variable("N m", "torque that holds the free end from rotating, length free", ("torque",)),
     "ideal_blocked_force": Variable(
         "N", "blocked force of inextensible fibers (Eq. 2.16)", ("length", *MATERIAL, "force", "torque")
     ),
@@ -69,12 +71,16 @@ VARIABLES = {
 STATUS_OF = {
     "status": ("status of the equilibrium", ()),
     "locked_status": ("status of the locked state", VARIABLES["locked_strain_energy"].without),
+    "blocked_force_status": ("status of the blocked force", ("force",)),
+    "blocked_torque_status": ("status of the blocked torque", ("torque",)),
     "ideal_blocked_force_status": ("status of the blocked force", VARIABLES["ideal_blocked_force"].without),
     "ideal_blocked_torque_status": ("status of the blocked torque", VARIABLES["ideal_blocked_torque"].without),
 }
 FLAG_OF = {
     "stable": ("whether the equilibrium is stable", ()),
     "slack_fiber": ("fiber family that would have to push somewhere", ()),
+    "blocked_force_stable": ("whether the tube of blocked length is stable", ("force",)),
+    "blocked_torque_stable": ("whether the tube of blocked rotation is stable", ("torque",)),
     "limit_found": ("whether a limit pressure was met", ("pressure",)),
 }
 
@@ -103,8 +109,9 @@ def attributes(name: str) -> dict:
         return {"units": units, "long_name": long_name}
     if name in STATUS_OF:
         return {"long_name": STATUS_OF[name][0], **status_attributes()}
-    if name in FLAGS:
-        return {"long_name": FLAG_OF[name][0], **flag_attributes(name)}
+    if name in FLAG_OF:
+        kind = "stable" if name.endswith("stable") else name
+        return {"long_name": FLAG_OF[name][0], **flag_attributes(kind)}
     if name.endswith("_error"):
         of = VARIABLES[name.removesuffix("_error")]
         return {"units": of.units, "long_name": f"error bound of {name.removesuffix('_error')}"}

@@ -16,6 +16,8 @@ def collect(sweep, plan, results):
 
     arrays = _states(plan, results, plan.rows) | _limits(plan, results) | _ideal(plan)
     arrays |= {f"locked_{name}": array for name, array in _outputs(plan, results, plan.locked_rows[:, None]).items()}
+    if sweep.blocked:
+        arrays |= _blocked(plan, results)
     dataset = xr.Dataset({name: _placed(plan, name, array) for name, array in arrays.items()})
     dataset = dataset.assign_coords(plan.coordinates | {"pressure": ("pressure", plan.pressure)})
     if "pressure" not in sweep.axes:
@@ -75,6 +77,27 @@ def _limits(plan, results):
         "limit_pressure_error": upward(found[:, 1:]),
         "limit_found": np.isfinite(found[:, :1]).astype(np.int8),
     }
+
+
+def _blocked(plan, results):
+    """Blocked force and torque from the solver: arrays (d, p)."""
+    arrays = {}
+    r, c10 = plan.design["fiber_radius"][:, None], plan.design["c10"][:, None]
+    good = (plan.status == status.OK)[:, None]
+    for kind, name in enumerate(("blocked_force", "blocked_torque")):
+        found = _at(results["blocked_status"][:, kind], plan.rows, status.NOT_CONVERGED)
+        codes = np.where(good, found, plan.status[:, None])
+        valued = np.isin(codes, status.VALUED)
+        scale = np.pi * r ** (2 + kind) * c10
+        value = np.where(valued, _at(results["blocked"][:, kind], plan.rows, np.nan), np.nan) * scale
+        if name == "blocked_torque":
+            value = np.where(plan.mirrored[:, None], -value, value) + 0.0
+        bound = np.where(valued, _at(results["blocked_bounds"][:, kind], plan.rows, np.nan), np.nan) * scale
+        arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
+        arrays[f"{name}_status"] = codes.astype(np.int8)
+        stable = np.where(valued, _at(results["blocked_stable"][:, kind], plan.rows, 0), 0)
+        arrays[f"{name}_stable"] = stable.astype(np.int8)
+    return arrays
 
 
 def _at(column, rows, empty):

@@ -14,7 +14,7 @@ from ..status import STATUSES
 from .collect import collect
 from .identity import fingerprint, identify
 from .plan import plan as make_plan
-from .shards import FIELDS, Shards, SweepError
+from .shards import BLOCKED, FIELDS, Shards, SweepError
 from .spec import Sweep, read_file
 
 SHARD_EQUILIBRIA = 8192  # a fraction of a second of work: what an interruption can cost, for each thread
@@ -52,7 +52,7 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
     if overwrite:
         shards.clear(only_others=True)
     done = shards.open()
-    results = _solve_all(plan, parts, done, shards, sweep.accuracy, threads or _cores(), progress)
+    results = _solve_all(plan, parts, done, shards, (sweep.accuracy, sweep.blocked), threads or _cores(), progress)
     solving = time.perf_counter() - begun
     dataset = collect(sweep, plan, results)
     dataset.attrs = {
@@ -103,7 +103,7 @@ def split(plan):
     return list(pairwise(edges))
 
 
-def solve_shard(problems, first, pressures, accuracy):
+def solve_shard(problems, first, pressures, accuracy, blocked=False):
     """Solve some problems: the results of the kernels as a dictionary of arrays."""
     from ..solver.branch import walk_many
 
@@ -120,19 +120,25 @@ def solve_shard(problems, first, pressures, accuracy):
         problems, first - first[0], pressures, np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2), accuracy,
         *(results[name] for name in FIELDS), no_stations, no_profiles,
     )  # fmt: skip
-    return results | {"status": results["status"].astype(np.int8), "slack": results["slack"].astype(np.int8)}
+    if blocked:
+        from ..solver.hold import block_many
+
+        results |= {"blocked": np.empty((count, 2)), "blocked_bounds": np.empty((count, 2))}
+        results |= {"blocked_status": np.empty((count, 2), np.int64), "blocked_stable": np.empty((count, 2), np.int64)}
+        block_many(
+            problems, first - first[0], pressures, BASE_CELLS, accuracy, *(results[name] for name in BLOCKED)
+        )  # fmt: skip
+    return {name: array.astype(np.int8) if array.dtype == np.int64 else array for name, array in results.items()}
 
 
-def _solve_all(plan, parts, done, shards, accuracy, threads, progress):
+def _solve_all(plan, parts, done, shards, asked, threads, progress):
     """Results of all shards, those found on disk among them, in order."""
     bar = _bar(plan.equilibria, progress)
     todo = [index for index in range(len(parts)) if index not in done]
     for index in done:
         bar.update(int(plan.first[parts[index][1]] - plan.first[parts[index][0]]))
-    if todo:
-        solve_shard(
-            plan.problems[:0], plan.first[:1], plan.pressures[:0], accuracy
-        )  # compiles, or loads what is compiled
+    none = (plan.problems[:0], plan.first[:1], plan.pressures[:0])
+    empty = solve_shard(*none, *asked)  # compiles, or loads what is compiled
     pool = ThreadPoolExecutor(threads)
     try:
         running = {}
@@ -144,7 +150,7 @@ def _solve_all(plan, parts, done, shards, accuracy, threads, progress):
                     plan.problems[a:b],
                     plan.first[a : b + 1],
                     plan.pressures[plan.first[a] : plan.first[b]],
-                    accuracy,
+                    *asked,
                 )
                 running[pool.submit(solve_shard, *job)] = index
             for future in wait(running, return_when=FIRST_COMPLETED).done:
@@ -155,9 +161,8 @@ def _solve_all(plan, parts, done, shards, accuracy, threads, progress):
     finally:
         pool.shutdown(cancel_futures=True)
         bar.close()
-    empty = solve_shard(plan.problems[:0], plan.first[:1], plan.pressures[:0], accuracy)
     ordered = [done[index] for index in range(len(parts))] or [empty]
-    return {name: np.concatenate([part[name] for part in ordered]) for name in FIELDS}
+    return {name: np.concatenate([part[name] for part in ordered]) for name in empty}
 
 
 def _bar(total, progress):

@@ -16,6 +16,7 @@ import numpy as np
 from ..atlas.files import EnvironmentFault, write_whole
 
 FIELDS = ("values", "bounds", "status", "slack", "limits")
+BLOCKED = ("blocked", "blocked_bounds", "blocked_status", "blocked_stable")
 
 
 class SweepError(ValueError):
@@ -63,7 +64,7 @@ class Shards:
             path.unlink()
             return None
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            return int(index), {name: arrays[name] for name in FIELDS}
+            return int(index), {name: arrays[name] for name in arrays.files}
 
     def save(self, index, results):
         """Store one finished shard."""

@@ -15,6 +15,7 @@
     beta = 50
     [solver]
     accuracy = 1e-6
+    blocked = true              # blocked force and torque too, with fiber extension and loads
 
 A design takes what it leaves out from [actuator] and [load].
 """
@@ -56,6 +57,7 @@ class Sweep:
     designs: dict | None
     accuracy: float
     text: str = field(repr=False)
+    blocked: bool = False
 
     @property
     def sha256(self) -> str:
@@ -94,6 +96,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
     title = faults.line("title", document.get("title", ""))
     energy = _energy(faults, tables["actuator"])
     accuracy = _accuracy(faults, tables["solver"])
+    blocked = _blocked(faults, tables["solver"])
     given = {}  # parameter: where it is given, faulty or not
     fixed = _fixed(faults, tables, given)
     axes = _axes(faults, tables["axes"], given)
@@ -116,7 +119,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
             "use coarser axes or several sweeps",
         )
     faults.check()
-    return Sweep(title, energy, fixed, axes, designs, accuracy, text)
+    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked)
 
 
 def _shape(axes, designs):
@@ -138,8 +141,15 @@ def _energy(faults, actuator):
     return energy
 
 
+def _blocked(faults, solver):
+    blocked = solver.get("blocked", False)
+    if not isinstance(blocked, bool):
+        faults.add("solver.blocked", f"found {shown(blocked)}; write true or false")
+    return blocked
+
+
 def _accuracy(faults, solver):
-    faults.unknown_keys(solver, ("accuracy",), "solver")
+    faults.unknown_keys(solver, ("accuracy", "blocked"), "solver")
     low, high = ACCURACIES
     try:
         accuracy = quantity(solver.get("accuracy", 1e-6), "1")
