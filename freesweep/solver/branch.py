@@ -12,7 +12,7 @@ Here physics and numerics are bound together.
 import numpy as np
 
 from . import guide, lagrangian, nested, newton, uniform
-from .climb import CLIMB_CHANGE, climb, creep
+from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep
 from .course import fill
 from .jit import entry_point, inlined, kernel
 from .mesh import cell_at
@@ -64,6 +64,9 @@ def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load
     start, way, goal, mu = before, WARM, nested.PLAIN, 0.0
     direction = FLAT
     limit, limit_bound = np.nan, np.nan
+    flat, shapes = NEARLY_FLAT, space[4]
+    for i in range(len(x)):
+        shapes[4, i], shapes[5, i] = last_x[i], last_y[i]
     if reached < 1.0:
         way = SLOW
     elif not started:
@@ -74,9 +77,10 @@ def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load
             guide.start(tube, u, load, x, y)
             regrades = COLD_REGRADES
         elif way == SLOW:
+            start = before
             if started:
                 for i in range(len(x)):
-                    x[i], y[i] = last_x[i], last_y[i]
+                    x[i], y[i] = shapes[4, i], shapes[5, i]
             else:
                 part = guide.begin(tube, load, scratch[0], scratch[1], x, y)
                 if part == 0.0:
@@ -88,7 +92,7 @@ def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load
                 if status == BEYOND_LIMIT:
                     return status, 0, limit, limit_bound
             else:
-                status, mu = climb(x, y, tube, start, load, work)
+                status, mu = climb(x, y, tube, start, load, flat, work)
             if status == BEYOND_LIMIT:
                 goal = nested.TURNING_POINT
                 regrades = 0  # the climb has graded the mesh; close to a turning point no other is safe
@@ -106,7 +110,10 @@ def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load
         solved = status == newton.CONVERGED or status == nested.UNREACHED
         if goal == nested.TURNING_POINT:
             if not solved:
-                return NOT_CONVERGED, 0, limit, limit_bound
+                if flat == 0.0:
+                    return NOT_CONVERGED, 0, limit, limit_bound
+                goal, direction, way, flat = nested.PLAIN, FLAT, SLOW, 0.0  # hardly rising, but no turning point: go on
+                continue
             if out[0, nested.MULTIPLIER] < 1.0:
                 limit = start[3] + out[0, nested.MULTIPLIER] * direction[3]
                 return BEYOND_LIMIT, 0, limit, out[1, nested.MULTIPLIER] * direction[3]
@@ -249,7 +256,7 @@ def walk_many(
     varying = course.shape[0] > 0
     cells = np.zeros((size if varying else 1, 3))
     space = (
-        np.zeros((5, size)), np.zeros((13, size)), table, np.zeros((5, size)), np.zeros((4, base + 1)),
+        np.zeros((5, size)), np.zeros((13, size)), table, np.zeros((5, size)), np.zeros((6, base + 1)),
         np.zeros((4, guide.PLACES)),
     )  # fmt: skip
     own_course = course if varying else np.zeros((1, 1, 3, 4))

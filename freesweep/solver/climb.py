@@ -64,10 +64,11 @@ def regraded(x, y, n, tube, load, work):
 
 
 @inlined
-def climb(x, y, tube, start, end, work):
+def climb(x, y, tube, start, end, flat, work):
     """Follow the branch from load ``start`` (solved: x, y) toward ``end`` in steps of the conjugate quantity.
 
-    Returns ``(status, fraction of the way)``: OK with y close to the solution at the end, BEYOND_LIMIT with a state well
+    ``flat`` is the share of the first slope dmu/dC that counts as a turning point, NEARLY_FLAT or, where the search found
+    none there, 0. Returns ``(status, fraction of the way)``: OK with y close to the solution at the end, BEYOND_LIMIT with a state well
     before a turning point, COMPRESSED where the meridional resultant falls to zero, NOT_CONVERGED otherwise.
     """
     n = len(x) - 1
@@ -106,7 +107,7 @@ def climb(x, y, tube, start, end, work):
             slope = 1.0 / sigma
             if not started:
                 first_slope = slope
-            elif slope < NEARLY_FLAT * first_slope:
+            elif slope < flat * first_slope:
                 for i in range(n + 1):
                     x[i], y[i] = safe_x[i], safe_y[i]
                 return BEYOND_LIMIT, safe_mu
