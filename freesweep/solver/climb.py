@@ -67,9 +67,9 @@ def regraded(x, y, n, tube, load, work):
 def climb(x, y, tube, start, end, flat, work):
     """Follow the branch from load ``start`` (solved: x, y) toward ``end`` in steps of the conjugate quantity.
 
-    ``flat`` is the share of the first slope dmu/dC that counts as a turning point, NEARLY_FLAT or, where the search found
-    none there, 0. Returns ``(status, fraction of the way)``: OK with y close to the solution at the end, BEYOND_LIMIT with a state well
-    before a turning point, COMPRESSED where the meridional resultant falls to zero, NOT_CONVERGED otherwise.
+    ``flat`` is the share of the first slope dmu/dC that counts as a turning point: NEARLY_FLAT or, where the search found
+    none there, 0. Returns ``(status, fraction of the way)``: OK with y close to the solution at the end, BEYOND_LIMIT with
+    a state well before a turning point, COMPRESSED where the meridional resultant falls to zero, else NOT_CONVERGED.
     """
     n = len(x) - 1
     course, edges, cells, free, _, _ = tube

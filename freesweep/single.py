@@ -1,0 +1,138 @@
+"""The commands for one actuator: lock, inflate, block. They parse and call; a table goes to the screen."""
+
+
+def add_single(commands):
+    """Add the commands of this module to the command line."""
+    _one(commands, "lock", "the locked shape of one actuator", _run_lock)
+    inflate = _one(commands, "inflate", "one actuator under pressure, force and torque", _run_inflate)
+    inflate.add_argument(
+        "--pressure", required=True, nargs="+", metavar="P", help='"0.1 MPa", several, or START STOP --steps N'
+    )
+    inflate.add_argument("--steps", type=int, metavar="N", help="that many pressures from the first to the last given")
+    inflate.add_argument("--force", default=0.0, metavar="F", help="axial force, positive in tension (default 0)")
+    inflate.add_argument("--torque", default=0.0, metavar="M", help="torque toward growing rotation (default 0)")
+    block = _one(commands, "block", "the force or torque that holds the length or the rotation", _run_block)
+    block.add_argument("--pressure", required=True, nargs="+", metavar="P", help='"0.1 MPa", or several')
+    block.add_argument("--hold", choices=("length", "rotation"), required=True, help="what is held; the other is free")
+    block.add_argument("--at", metavar="VALUE", help="held length or rotation (default: the undeformed one)")
+    block.add_argument("--force", default=0.0, metavar="F", help="axial force while the rotation is held (default 0)")
+    block.add_argument("--torque", default=0.0, metavar="M", help="torque while the length is held (default 0)")
+    block.add_argument("--buckled", action="store_true", help="the state beside the unstable cylinder (rotation held)")
+
+
+def _one(commands, name, text, run):
+    command = commands.add_parser(name, help=text)
+    for angle in ("alpha", "beta"):
+        command.add_argument(f"--{angle}", required=True, metavar="A", help="fiber angle from the axis")
+    for size in ("length", "radius", "wall"):
+        command.add_argument(f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'")
+    needed = name != "lock"
+    without = "" if needed else "; without it no strain energy is given"
+    command.add_argument("--c10", required=needed, metavar="C", help=f"Mooney-Rivlin constant{without}")
+    command.add_argument("--c01", default="0 MPa", metavar="C", help="Mooney-Rivlin constant")
+    command.add_argument("--fiber-extension", default=1.0, metavar="G", help="stretch of the fibers, 1 or more")
+    command.add_argument("--fiber-radius", metavar="L", help="where the fibers lie; default: the inner radius")
+    command.add_argument(
+        "--energy", choices=("full", "principal"), default="full", help="principal: Eq. 2.5 as printed"
+    )
+    command.add_argument("-o", "--out", metavar="FILE.nc", help="keep everything, profiles too, as netCDF4")
+    command.set_defaults(run=run)
+    return command
+
+
+def _tube(options):
+    from .actuator import Actuator, MooneyRivlin
+    from .atlas.schema import PARAMETERS
+    from .units import quantity
+
+    names = ("alpha", "beta", "length", "radius", "wall", "c10", "c01", "fiber_extension", "fiber_radius")
+    values, faults = {}, []
+    for name in (name for name in names if getattr(options, name) is not None):
+        try:
+            values[name] = quantity(getattr(options, name), PARAMETERS[name].units)
+        except ValueError as error:
+            faults.append(f"--{name.replace('_', '-')}: {error}")
+    if faults:
+        raise ValueError("\n".join(["cannot read this actuator:", *(f"  - {fault}" for fault in faults)]))
+    material = MooneyRivlin(values.pop("c10", 1e5), values.pop("c01"))
+    return Actuator(**values, material=material, energy=options.energy)
+
+
+def _run_lock(options):
+    from .statics import lock
+
+    dataset = lock(_tube(options))
+    if options.c10 is None:
+        dataset = dataset.drop_vars(["strain_energy", "strain_energy_error"])
+    _show(dataset, options)
+
+
+def _quantities(faults, **texts):
+    """Texts as numbers by option name: ``name=(texts, unit)``; what cannot be read goes to ``faults``."""
+    from .units import quantity
+
+    numbers = {}
+    for name, (given, unit) in texts.items():
+        for text in given:
+            try:
+                numbers.setdefault(name, []).append(quantity(text, unit))
+            except ValueError as error:
+                faults.append(f"--{name}: {error}")
+    if faults:
+        raise ValueError("\n".join(["cannot read this load:", *(f"  - {fault}" for fault in faults)]))
+    return numbers
+
+
+def _run_inflate(options):
+    import numpy as np
+
+    from .statics import inflate
+
+    tube = _tube(options)
+    loads = _quantities(
+        [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m")
+    )
+    pressure = np.array(loads["pressure"])
+    if options.steps is not None:
+        if len(pressure) != 2 or not 2 <= options.steps <= 100_000:
+            raise ValueError("--steps: give two pressures, first and last, and 2 to 100000 steps between them")
+        pressure = np.linspace(*pressure, options.steps)
+    pressure = pressure[0] if len(pressure) == 1 else pressure
+    _show(inflate(tube, pressure, loads["force"][0], loads["torque"][0]), options)
+
+
+def _run_block(options):
+    import numpy as np
+
+    from .holding import blocked_force, blocked_torque
+
+    tube = _tube(options)
+    length = options.hold == "length"
+    unused = "force" if length else "torque"
+    if getattr(options, unused) != 0.0:
+        raise ValueError(
+            f"--{unused}: it is what holds the {options.hold}, so it cannot be given. With length and rotation both held,"
+            " force and torque are not separately determined"
+        )
+    if length and options.buckled:
+        raise ValueError("--buckled: only a held rotation has a straight state to buckle from")
+    given = _quantities(
+        [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m"),
+        at=([options.at] if options.at is not None else [], "m" if length else "degree"),
+    )  # fmt: skip
+    pressure = given["pressure"][0] if len(given["pressure"]) == 1 else np.array(given["pressure"])
+    at = given.get("at", [None if length else 0.0])[0]
+    if length:
+        _show(blocked_force(tube, pressure, at, given["torque"][0]), options)
+    else:
+        _show(blocked_torque(tube, pressure, at, given["force"][0], buckled=options.buckled), options)
+
+
+def _show(dataset, options):
+    from .atlas.files import write_whole
+    from .report import table
+
+    print(table(dataset))
+    if options.out:
+        write_whole(options.out, dataset.to_netcdf(engine="netcdf4"))
+        print(options.out)
