@@ -1,13 +1,23 @@
 """Blocked force and torque against the theory's numbers and closed forms, the inflated tube and independent solutions."""
 
 import dataclasses
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from oracle import ENERGIES, NoState, compiled, first_integral, half_sum_and_difference
+from oracle import ENERGIES, NODES, WEIGHTS, NoState, compiled, first_integral, half_sum_and_difference
 from scipy.integrate import solve_bvp
 
-from freesweep import Actuator, MooneyRivlin, blocked_force, blocked_torque, closed_form, corrected_torque, inflate
+from freesweep import (
+    Actuator,
+    ActuatorError,
+    MooneyRivlin,
+    blocked_force,
+    blocked_torque,
+    closed_form,
+    corrected_torque,
+    inflate,
+)
 from freesweep.status import COMPRESSED, OK
 
 RUBBER = MooneyRivlin(c10=0.17e6, c01=0.08e6)  # of the source's prototypes A, B, C
@@ -65,7 +75,7 @@ def by_collocation(actuator, pressure, held, target, guess, other=0.0, shape=Non
 
     # jumps and bends: every piece between them is stretched over 0..1, all of them side by side
     breaks = sorted({0.0, 1.0, *(q[0] for value in profiles.values() if isinstance(value, list) for q in value)})
-    pieces = list(zip(breaks[:-1], breaks[1:]))
+    pieces = list(pairwise(breaks))
 
     def rates(t, z, parameters):
         f, m = (parameters[0], other) if held == "length" else (other, parameters[0])
@@ -150,13 +160,41 @@ def test_corrected_torque_of_the_source():
             assert corrected / ideal == pytest.approx(ratios, abs=6e-3 if ratios[0] > 1 else 6e-4)
 
 
+def corrected_by_quadrature(actuator, pressure):
+    """Eqs. 2.21 and 2.22 on the first integral's shape of the McKibben muscle; the end slopes are exact."""
+    r, _, unit, c10 = scales(actuator)
+    area, ratio, p = ((R0 + WALL) ** 2 - R0**2) / r**2, actuator.material.c01 / c10, pressure / c10
+    half, tb = 0.5 * actuator.length / r, np.tan(np.radians(actuator.beta))
+    edges = half * np.concatenate([[0], np.geomspace(1e-5, 1, 24)])
+    nodes = np.concatenate([a + (b - a) * np.asarray(NODES, float) for a, b in pairwise(edges)])
+    weights = (np.diff(edges)[:, None] * np.asarray(WEIGHTS, float)).ravel()
+    shape = first_integral(actuator.beta, -actuator.beta, 2 * half, area, ratio, p, stations=nodes)
+
+    def muscle(y):
+        G = 1 + tb**2 * (1 - y**2)
+        return G, area * (G + y**2 + 1 / (G * y**2) - 3 + ratio * (G * y**2 + 1 / y**2 + 1 / G - 3))
+
+    G, w = muscle(shape.middle)
+    constant, y = p * shape.middle**2 * np.sqrt(G) - w, shape.y
+    G, w = muscle(y)
+    slope_squared = G - (p * y**2 * G / (constant + w)) ** 2
+    squared = 1 + 0.25 * tb**2 * (2 - y**2 - 1 / y**2)
+    s = np.sqrt(squared - slope_squared)
+    volume_y = 2 * np.sum(weights * (2 * y * s + y**2 * 0.25 * tb**2 * (1 / y**3 - y) / s))
+    twist_y = 2 * np.sum(weights * -tb / y**3)
+    at_end = np.sign(shape.middle - 1) * np.sqrt(1 - (p / constant) ** 2) / (p / constant)
+    return -p * (volume_y - 2 * at_end) / twist_y * unit
+
+
 @pytest.mark.parametrize("actuator", [B, C, tube(0, -45)])
-def test_corrected_torque_tends_to_the_ideal_one(actuator):
-    pressures = np.array([100.0, 200.0, 400.0])
+def test_corrected_torque_is_the_quadrature_and_tends_to_the_ideal_one(actuator):
+    pressures = np.array([5e4, 200.0])
     ideal = closed_form.blocked_torque(actuator.alpha, actuator.beta, R0, pressures)
-    excess = np.array([corrected_torque(actuator, p) for p in pressures]) / ideal - 1
-    assert 0 < abs(excess[0]) < 5e-4
-    assert excess[1:] / excess[:-1] == pytest.approx([2, 2], rel=0.02)  # proportional to the pressure
+    corrected = corrected_torque(actuator, pressures)
+    assert corrected / ideal == pytest.approx(
+        [corrected_by_quadrature(actuator, p) for p in pressures] / ideal, rel=1e-7
+    )
+    assert 0 < abs(corrected[1] / ideal[1] - 1) < 4e-4 < abs(corrected[0] / ideal[0] - 1)
 
 
 # --- closed forms
@@ -243,7 +281,7 @@ def test_buckled_state_is_shorter_and_twists_harder(energy, pressure):
     assert np.count_nonzero(np.diff(inside)) == 1  # one half swells, the other thins
     assert min(y.max() - 1, 1 - y.min()) > 0.15
     # an equilibrium, by collocation on the whole tube from a nearby shape
-    r, unit_force, unit_torque, c10 = scales(actuator)
+    r, _, unit_torque, c10 = scales(actuator)
     nearby = CubicSpline(held["x"].values / r, 1 + 1.002 * (y - 1))
     m, length, volume, _, energy_, sol = by_collocation(
         actuator, pressure, "rotation", 0.0, held["torque"].item() / unit_torque, shape=nearby
@@ -285,7 +323,7 @@ def test_the_returned_force_inflates_to_the_held_length(actuator):
         allowed = free["deformed_length_error"] + slope * one["force_error"] + 1e-11 * actuator.length
         assert abs(free["deformed_length"] - length) <= allowed
         for name in ("volume", "rotation", "strain_energy", "mid_radius"):
-            size = max(abs(free[name].item()), 1.0 if name == "rotation" else 0.0)
+            size = max(abs(free[name].item()), {"rotation": 1.0, "strain_energy": 1e-4}.get(name, 0.0))
             assert abs(free[name] - one[name]) < 3e-6 * size, name
         assert free["deformed_radius"].values == pytest.approx(one["deformed_radius"].values, abs=3e-6 * R0)
 
@@ -302,14 +340,16 @@ def test_the_returned_torque_inflates_to_the_held_rotation(actuator):
         assert abs(free["rotation"] - angle) <= free["rotation_error"] + slope * one["torque_error"] + 1e-9
         assert one["twist"][-1] == pytest.approx(angle, abs=1e-5)
         for name in ("volume", "deformed_length", "strain_energy", "mid_radius"):
-            assert abs(free[name] - one[name]) < 3e-6 * abs(free[name]), name
+            assert abs(free[name] - one[name]) < 3e-6 * max(
+                abs(free[name].item()), 1e-4 if name == "strain_energy" else 0
+            ), name
 
 
 @pytest.mark.parametrize("held_name", ["length", "rotation"])
 @pytest.mark.parametrize("actuator", VARYING)
 def test_held_states_of_varying_tubes_are_the_independent_ones(actuator, held_name):
     pressure = 6e4
-    r, unit_force, unit_torque, c10 = scales(actuator)
+    r, unit_force, unit_torque, _ = scales(actuator)
     size_force, size_torque = sized(actuator, pressure)
     length = held_name == "length"
     held = (
@@ -318,7 +358,7 @@ def test_held_states_of_varying_tubes_are_the_independent_ones(actuator, held_na
     target = 0.99 * actuator.length / r if length else np.radians(1.0)
     name, unit = ("force", unit_force) if length else ("torque", unit_torque)
     guess = held[name].item() / unit * 1.01
-    multiplier, long, volume, rotation, energy, sol = by_collocation(actuator, pressure, held_name, target, guess)
+    multiplier, long, volume, rotation, energy, _ = by_collocation(actuator, pressure, held_name, target, guess)
     close(held, name, multiplier * unit, max(size_force if length else size_torque, abs(multiplier * unit)), 1e-7)
     inside = np.pi * (r**2 - actuator.radius**2) * actuator.length
     close(held, "volume", volume * np.pi * r**3 - inside, volume * np.pi * r**3, 1e-7)
@@ -334,7 +374,7 @@ def test_held_states_of_varying_tubes_are_the_independent_ones(actuator, held_na
 )
 def test_the_quadrature_meets_the_held_length(actuator):
     held = blocked_force(actuator, 6e4, 0.98 * actuator.length)
-    r, unit_force, unit_torque, c10 = scales(actuator)
+    r, unit_force, _, c10 = scales(actuator)
     area = ((R0 + WALL) ** 2 - R0**2) / r**2
     shape = first_integral(
         actuator.alpha, actuator.beta, actuator.length / r, area, actuator.material.c01 / c10, 6e4 / c10,
@@ -347,31 +387,119 @@ def test_the_quadrature_meets_the_held_length(actuator):
 
 def test_held_energy_changes_by_the_work_of_the_multiplier():
     """E = P V - W + (other load) x (its displacement) at a held length: dE = -F dl; at a held rotation dE = -M d(delta)."""
-    nodes, weights = np.polynomial.legendre.leggauss(6)
-    share = np.concatenate([[0.0], 0.5 * (nodes + 1), [1.0]])
-    for random, actuator in random_designs(24, 5):
+    nodes, weights = np.polynomial.legendre.leggauss(14)
+    share, counted = np.concatenate([[0.0], 0.5 * (nodes + 1), [1.0]]), 0
+    for random, actuator in random_designs(30, 5):
         actuator = dataclasses.replace(actuator, fiber_extension=random.uniform(1.0, 1.01))
-        pressure, size = random.uniform(0.15, 0.5) * actuator.material.c10, np.pi * actuator.radius**2
-        lengths = actuator.length * (0.97 + 0.03 * share)
-        torque = random.uniform(-0.05, 0.05) * size * actuator.radius * pressure
-        force = random.uniform(-0.1, 0.1) * size * pressure
+        product = np.prod(np.tan(np.radians([actuator.alpha, actuator.beta])))
+        pressure, section = random.uniform(0.15, 0.5) * actuator.material.c10, np.pi * actuator.radius**2
+        lengths = actuator.length * (1 + np.sign(-2 - product) * 0.03 * share)  # the way it deforms by itself
+        torque = random.uniform(-0.05, 0.05) * section * actuator.radius * pressure
+        force = random.uniform(-0.1, 0.1) * section * pressure
         angles = np.sign(actuator.alpha + actuator.beta) * -3 * share
-        for held, target, name, other in (
-            (blocked_force(actuator, pressure, lengths, torque, x=0.0, accuracy=1e-8), lengths, "force", "rotation"),
-            (
-                blocked_torque(actuator, pressure, angles, force, x=0.0, accuracy=1e-8),
-                np.radians(angles),
-                "torque",
-                "deformed_length",
-            ),
+        by_length = blocked_force(actuator, pressure, lengths, torque, x=0.0, accuracy=1e-8)
+        by_angle = blocked_torque(actuator, pressure, angles, force, x=0.0, accuracy=1e-8)
+        for held, target, name, work in (
+            (by_length, lengths, "force", torque * np.radians(by_length["rotation"])),
+            (by_angle, np.radians(angles), "torque", force * by_angle["deformed_length"]),
         ):
-            if not (held["status"] == OK).all():
-                assert held["status"].isin([OK, COMPRESSED]).all()
+            if (held["status"] == COMPRESSED).any():
                 continue
-            load = torque * np.radians(1.0) if name == "force" else force
-            energy = pressure * held["volume"] - held["strain_energy"] + load * held[other]
-            change = energy.values[-1] - energy.values[0]
-            width = target[-1] - target[0]
-            work = 0.5 * width * np.sum(weights * held[name].values[1:-1])
-            scale = abs(width) * np.abs(held[name]).max().item()
-            assert change == pytest.approx(-work, abs=1e-6 * scale), (name, actuator)
+            assert (held["status"] == OK).all()
+            energy = (pressure * held["volume"] - held["strain_energy"] + work).values
+            width, multiplier = target[-1] - target[0], held[name].values
+            expected = -0.5 * width * np.sum(weights * multiplier[1:-1])
+            assert energy[-1] - energy[0] == pytest.approx(expected, abs=1e-6 * abs(width) * np.abs(multiplier).max())
+            counted += 1
+    assert counted > 45
+
+
+# --- what has no result, and what is refused
+
+
+def test_a_wall_that_would_have_to_be_pushed_has_no_blocked_force():
+    """Region I at any pressure; extensible fibers below a pressure (theory, section 5)."""
+    for held in (blocked_force(tube(10, 50), [1e3, 1e5]), blocked_force(MUSCLE, [2e3, 6e3])):
+        assert (held["status"] == COMPRESSED).all()
+        assert np.isnan(held["force"]).all()
+        assert np.isnan(held["deformed_radius"]).all()
+    above = blocked_force(MUSCLE, 8.3e3)
+    assert above["status"] == OK
+    assert -SECTION * 8.3e3 < above["force"] < 0  # pushed, but not the wall: p + f > 0
+
+
+@pytest.mark.xfail(
+    strict=True, reason="'defect of the solver' (or ok with p + f < 0) where the wall's tension vanishes"
+)
+@pytest.mark.parametrize(("actuator", "pressure", "length"), [(MUSCLE, 7.95e3, 0.192), (MUSCLE, 7.968e3, 0.192)])
+def test_edge_of_compression_has_no_result(actuator, pressure, length):
+    assert blocked_force(actuator, pressure, length)["status"] == COMPRESSED
+
+
+@pytest.mark.xfail(strict=True, reason="the buckled state is lost as pressure rises")
+def test_buckled_state_goes_on_with_pressure():
+    held = blocked_torque(dataclasses.replace(B, energy="principal"), [0.24e6, 0.25e6], buckled=True, x=0.0)
+    assert (held["status"] == OK).all()
+
+
+@pytest.mark.xfail(
+    strict=True, reason="some pressures give the mirror image: first the thin half, then the swollen one"
+)
+def test_buckled_states_of_one_curve_belong_together():
+    held = blocked_torque(dataclasses.replace(B, energy="principal"), [0.207e6, 0.21e6], buckled=True, x=B.length / 4)
+    assert len(set(np.sign(held["deformed_radius"].values.ravel() - R0))) == 1
+
+
+def test_held_quantity_load_and_pressure_make_dimensions():
+    lengths, torques, pressures = [0.19, 0.192], [0.0, 1e-3], [5e4, 2e4, 8e4]
+    held = blocked_force(tube(20, -50, 0.192), pressures, lengths, torques, x=[0.0, 0.1])
+    assert held["force"].dims == ("deformed_length", "torque", "pressure")
+    assert held["twist"].dims == ("deformed_length", "torque", "pressure", "x")
+    assert "deformed_length_error" not in held
+    units = {
+        "force": "N",
+        "force_error": "N",
+        "deformed_length": "m",
+        "rotation": "degree",
+        "torque": "N m",
+        "pressure": "Pa",
+    }
+    assert {name: held[name].attrs["units"] for name in units} == units
+    one = blocked_force(tube(20, -50, 0.192), 2e4, 0.19, 1e-3)
+    assert set(one.dims) == {"x"}
+    same = held["force"].sel(deformed_length=0.19, torque=1e-3, pressure=2e4)
+    assert abs(one["force"] - same) <= 2 * one["force_error"] + 1e-12
+    turned = blocked_torque(B, 2e4, [0.0, 5.0], [0.0, 1.0])
+    assert turned["torque"].dims == ("rotation", "force")
+    assert turned["torque"].attrs["units"] == turned["torque_error"].attrs["units"] == "N m"
+    assert turned["twist"][:, :, -1].values == pytest.approx(np.array([[0, 0], [5, 5]]), abs=1e-5)
+
+
+@pytest.mark.parametrize("muscle", [tube(30, -30), tube([(0, 20), (1, 40)], [(0, -20), (1, -40)])])
+def test_muscles_have_no_rotation_to_hold(muscle):
+    with pytest.raises(ActuatorError, match=r"rotation: a tube with alpha = -beta does not rotate.*use blocked_force"):
+        blocked_torque(muscle, 1e4)
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (
+            lambda: blocked_force(B, -1.0, [0.1, 0.1], "x", x=[0.2], accuracy=1.0),
+            ["deformed_length: a value is given twice", "torque: found the text 'x'", "pressure: found -1",
+             "accuracy: found 1", "x: give ascending stations"],
+        ),
+        (lambda: blocked_force(B, 0.0, 0.0), ["pressure: found 0; it has to be above 0", "deformed_length: found 0"]),
+        (lambda: blocked_torque(B, [1e4], np.nan, [[1]]), ["rotation: found nan", "force: found an array of shape (1, 1)"]),
+        (lambda: blocked_torque("tube", 1e4), ["tube: found str; give an Actuator"]),
+        (lambda: blocked_torque(VARYING[0], 1e4, buckled=True), ["buckled: only a tube that is the same all along"]),
+        (lambda: corrected_torque(tube(10, 50), 1e4), ["tube: the source's correction is for alpha = 0"]),
+        (lambda: corrected_torque(B, -1e4), ["pressure: found a negative value"]),
+    ],
+)  # fmt: skip
+def test_every_fault_of_a_held_state_is_listed(call, says):
+    with pytest.raises(ActuatorError) as caught:
+        call()
+    assert len(caught.value.faults) == len(says)
+    for start in says:
+        assert any(fault.startswith(start) for fault in caught.value.faults), start
