@@ -19,7 +19,7 @@ class ActuatorError(ValueError):
 
     def __init__(self, faults):
         self.faults = list(faults)
-        super().__init__("\n".join(["cannot describe this actuator:", *(f"  - {fault}" for fault in self.faults)]))
+        super().__init__("\n".join(["faults in what was given:", *(f"  - {fault}" for fault in self.faults)]))
 
 
 def number_fault(name, value, unit, positive=False, least=None):

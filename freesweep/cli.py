@@ -99,9 +99,26 @@ def _run_sweep(options):
         return
     from .sweep.run import run_sweep
 
+    if options.map:
+        _check_map(sweep, options.map)
     atlas = run_sweep(sweep, out, threads=options.threads, progress=not options.quiet, overwrite=options.overwrite)
     if options.map:
         _draw_map(atlas, options.map, "rotation", {})
+
+
+def _check_map(sweep, path):
+    """Refuse a map that could not be drawn before anything is solved."""
+    from pathlib import Path
+
+    from .plot.style import SUFFIXES
+
+    faults = []
+    if Path(path).suffix.lower() not in SUFFIXES:
+        faults.append(f"the suffix of {Path(path).name!r} must be one of {', '.join(SUFFIXES)}")
+    if any(len(sweep.axes.get(name, ())) < 2 for name in ("alpha", "beta")):
+        faults.append("a map needs alpha and beta as axes of two values or more")
+    if faults:
+        raise ValueError(f"--map: {'; '.join(faults)}")
 
 
 def _plot(commands):

@@ -17,7 +17,7 @@ STATUSES = (
     Status(
         2,
         "beyond_limit_pressure",
-        "the branch from zero pressure ended at a lower pressure (see limit_pressure); stay below it",
+        "the branch from zero pressure ended at a lower pressure (limit_pressure; NaN: at part of the other loads)",
     ),
     Status(
         3,

@@ -102,7 +102,9 @@ def test_nearest_grid_values_are_taken_and_named(whole):
     ax = design_map(whole, "rotation", paths=False, examples=False, length=0.19, radius=1.0, pressure=3e4)
     stored = whole["rotation"].sel(length=0.2, radius=5e-3, pressure=2e4).transpose("beta", "alpha").values
     np.testing.assert_array_equal(mesh_of(ax).filled(np.nan), stored)
-    assert drawn(ax, "chosen")[0].get_text() == "length 200 mm, radius 5 mm, pressure 20 kPa"
+    assert drawn(ax, "chosen")[0].get_text() == "length 200 mm, radius 5 mm, pressure 20 kPa".replace(
+        " ", "\u00a0"
+    ).replace(",\u00a0", ", ")
     assert ax.get_title(loc="left") == "Rotation of the free end under pressure"
 
 
@@ -189,7 +191,7 @@ def test_limit_pressure_tells_none_from_failed(whole):
     expected = whole["status"].isel(length=0, radius=0, pressure=-1).transpose("beta", "alpha").values
     np.testing.assert_array_equal(~np.ma.getmaskarray(values), expected == status.BEYOND_LIMIT)
     labels = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert "no limit up to pressure 100 kPa" in labels
+    assert "no limit up to pressure\u00a0100\u00a0kPa" in labels
     assert "beyond limit pressure" not in labels
     assert "meridional compression" in labels
 

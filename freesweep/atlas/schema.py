@@ -1,7 +1,7 @@
 """One table of everything a dataset holds: name, units, long name, and in which parameters it varies.
 
 Datasets of single actuators and atlases share it. A parameter that takes several values is a dimension; one with a single
-value is a scalar coordinate. Every float output has ``<name>_error`` beside it, a bound that holds.
+value is a scalar coordinate. Every scalar output has ``<name>_error`` beside it, a bound that holds.
 """
 
 from typing import NamedTuple
@@ -77,11 +77,11 @@ STATUS_OF = {
     "ideal_blocked_torque_status": ("status of the blocked torque", VARIABLES["ideal_blocked_torque"].without),
 }
 FLAG_OF = {
-    "stable": ("whether the equilibrium is stable", ()),
+    "stable": ("whether the equilibrium is stable, where there is one", ()),
     "slack_fiber": ("fiber family that would have to push somewhere", ()),
     "blocked_force_stable": ("whether the tube of blocked length is stable", ("force",)),
     "blocked_torque_stable": ("whether the tube of blocked rotation is stable", ("torque",)),
-    "limit_found": ("whether a limit pressure was met", ("pressure",)),
+    "limit_found": ("whether a limit pressure was met, where a branch was followed", ("pressure",)),
 }
 
 PROFILES = {

@@ -39,6 +39,8 @@ _SHOWN = {
     "volume": Display("volume of the cavity", "mL", _scaled(1e6), None),
     "strain_energy": Display("strain energy of the wall", "mJ", _scaled(1e3), None),
     "limit_pressure": Display("limit pressure", "kPa", _scaled(1e-3), None),
+    "blocked_force": Display("blocked force", "N", _scaled(1.0), 0.0),
+    "blocked_torque": Display("blocked torque", "mN m", _scaled(1e3), 0.0),
     "ideal_blocked_force": Display("blocked force", "N", _scaled(1.0), 0.0),
     "ideal_blocked_torque": Display("blocked torque", "mN m", _scaled(1e3), 0.0),
 }
@@ -68,4 +70,5 @@ def title(variable: str) -> str:
 def describe(name: str, value: float) -> str:
     """One parameter in words, such as ``pressure 100 kPa``; ``value`` in its stored unit."""
     units, factor = PARAMETER_UNITS.get(name, (schema.PARAMETERS[name].units, 1.0))
-    return f"{name.replace('_', ' ')} {factor * value:.4g} {units}".removesuffix(" 1")
+    text = f"{name.replace('_', ' ')} {factor * value:.4g} {units}".removesuffix(" 1")
+    return text.replace(" ", "\u00a0")  # a title breaks between two of them, not within

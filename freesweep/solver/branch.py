@@ -219,12 +219,14 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
                 u[k] = ahead[k]
             for k in range(base + 1):
                 last_x[k], last_y[k] = x[k], y[k]
-        elif found == COMPRESSED and not started:
-            continue  # a higher pressure may hold the wall
+        elif not started and (found == COMPRESSED or found == NOT_CONVERGED):
+            continue  # a higher pressure may hold the wall, or be easier to reach
         else:
             ended = found
             if found == BEYOND_LIMIT:
-                limit[0], limit[1] = fold, fold_bound
+                # a turning point of the first leg, of part of the load, is no limit pressure
+                alone = f == 0.0 and m == 0.0 and gamma == 1.0
+                limit[0], limit[1] = (fold, fold_bound) if started or alone else (np.nan, np.nan)
 
 
 @entry_point

@@ -33,6 +33,11 @@ def _cache_folder() -> str:
     return str(Path(base) / "freesweep" / "kernels" / source_hash())
 
 
+def is_compiled() -> bool:
+    """Whether machine code of these very sources lies on disk."""
+    return any(Path(_cache_folder()).rglob("*.nbc"))
+
+
 def kernel(function):
     """Compile a kernel that other kernels call."""
     return numba.njit(**_POLICY)(function)

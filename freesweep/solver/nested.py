@@ -16,8 +16,7 @@ from .jit import kernel
 
 OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
 MIDDLE, MULTIPLIER = 4, 5
-BASE_CELLS = 24  # of the mesh that is graded; one coarser one (half) and two or more finer ones join it
-MAX_DOUBLINGS = 7  # of the base mesh: 3072 cells
+MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or more finer ones join
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.0

@@ -52,7 +52,7 @@ class Plan:
     @property
     def locked_rows(self) -> np.ndarray:
         """Row of the results that holds each design's locked shape (d,)."""
-        return self.first[self.problem + 1] - 1
+        return self.first[np.minimum(self.problem + 1, len(self.first) - 1)] - 1
 
 
 def plan(sweep) -> Plan:

@@ -133,12 +133,15 @@ def solve_shard(problems, first, pressures, accuracy, blocked=False):
 
 def _solve_all(plan, parts, done, shards, asked, threads, progress):
     """Results of all shards, those found on disk among them, in order."""
-    bar = _bar(plan.equilibria, progress)
-    todo = [index for index in range(len(parts)) if index not in done]
-    for index in done:
-        bar.update(int(plan.first[parts[index][1]] - plan.first[parts[index][0]]))
+    from ..solver.jit import is_compiled
+
+    if progress and not is_compiled():
+        print("compiling the kernels: half a minute, once for each version")
     none = (plan.problems[:0], plan.first[:1], plan.pressures[:0])
     empty = solve_shard(*none, *asked)  # compiles, or loads what is compiled
+    todo = [index for index in range(len(parts)) if index not in done]
+    finished = sum(int(plan.first[parts[index][1]] - plan.first[parts[index][0]]) for index in done)
+    bar = _bar(plan.equilibria, finished, progress)
     pool = ThreadPoolExecutor(threads)
     try:
         running = {}
@@ -165,10 +168,18 @@ def _solve_all(plan, parts, done, shards, asked, threads, progress):
     return {name: np.concatenate([part[name] for part in ordered]) for name in empty}
 
 
-def _bar(total, progress):
+def _bar(total, finished, progress):
     from tqdm import tqdm
 
-    return tqdm(total=total, unit=" equilibria", unit_scale=True, disable=not progress, dynamic_ncols=True, leave=True)
+    return tqdm(
+        total=total,
+        initial=finished,
+        unit=" equilibria",
+        unit_scale=True,
+        disable=not progress,
+        dynamic_ncols=True,
+        leave=True,
+    )
 
 
 def _cores():
