@@ -11,126 +11,16 @@ Here physics and numerics are bound together.
 
 import numpy as np
 
-from . import guide, lagrangian, nested, newton, uniform
-from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep
-from .course import fill
-from .jit import entry_point, inlined, kernel
-from .mesh import cell_at
+from . import guide, lagrangian, nested
+from .jit import entry_point, inlined
 from .profile import FIELDS, at_stations
+from .reach import reach
+from .slack import slack_fibers
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK
 
 # columns of a problem: what one design is, dimensionless
 PROBLEM_SIZE = 9
 H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH = range(PROBLEM_SIZE)
-
-COLD_REGRADES, WARM_REGRADES = 3, 1
-WARM, COLD, SLOW, LAST_STEP = 0, 1, 2, 3
-TENSIONLESS = 1e-9  # of the load: a fiber family without tension does not push
-TENSIONLESS_END = 1e-3  # at a clamped end, where the slope is carried on from the cells beside
-FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-@kernel
-def slack_fibers(x, y, n, base, tube, load):
-    """Bit 1: the alpha family would have to push somewhere; bit 2: the beta family."""
-    course, edges, cells, free, _, _ = tube
-    own = fill(course, edges, x, n, base, cells)
-    flag = 0
-    for j in range(-1, n + 1):
-        if 0 <= j < n:
-            v, middle = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (y[j] + y[j + 1])
-        elif j == n and free:
-            continue
-        else:  # a clamped end itself, with the slope carried on from the two cells next to it
-            i, k = (0, 1) if j < 0 else (n - 1, n - 2)
-            near, after = (y[i + 1] - y[i]) / (x[i + 1] - x[i]), (y[k + 1] - y[k]) / (x[k + 1] - x[k])
-            h = x[i + 1] - x[i]
-            v, middle = near + (near - after) * h / (h + x[k + 1] - x[k]), y[0 if j < 0 else n]
-        cell = cell_at(own, min(max(j, 0), n - 1))
-        if v * v < 1.0 + lagrangian.kinematics(middle, cell, load)[3]:
-            alpha, beta = lagrangian.fiber_multipliers(middle, v, cell, load)
-            least = -(TENSIONLESS if 0 <= j < n else TENSIONLESS_END) * (load[3] + abs(load[4]))
-            flag |= (1 if alpha < least else 0) | (2 if beta < least else 0)
-    return flag
-
-
-@inlined
-def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load, accuracy, space, out):
-    """The state at ``load``, from the last one at ``before``: the quick ways first, then the slow one.
-
-    Returns ``(status, doublings, limit pressure, its bound)``.
-    """
-    fine, work, table = space[0], space[1], space[2]
-    start, way, goal, mu = before, WARM, nested.PLAIN, 0.0
-    direction = FLAT
-    limit, limit_bound = np.nan, np.nan
-    flat, shapes = NEARLY_FLAT, space[4]
-    for i in range(len(x)):
-        shapes[4, i], shapes[5, i] = last_x[i], last_y[i]
-    if reached < 1.0:
-        way = SLOW
-    elif not started:
-        way = COLD
-    while True:
-        regrades = WARM_REGRADES
-        if way == COLD:
-            guide.start(tube, u, load, x, y)
-            regrades = COLD_REGRADES
-        elif way == SLOW:
-            start = before
-            if started:
-                for i in range(len(x)):
-                    x[i], y[i] = shapes[4, i], shapes[5, i]
-            else:
-                part = guide.begin(tube, load, scratch[0], scratch[1], x, y)
-                if part == 0.0:
-                    return NOT_CONVERGED, 0, limit, limit_bound
-                start = uniform.between((1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0), load, part)
-            status, mu = OK, 1.0
-            if start[0] != load[0]:
-                status, _ = creep(x, y, tube, start, load, work)
-                if status == BEYOND_LIMIT:
-                    return status, 0, limit, limit_bound
-            else:
-                status, mu = climb(x, y, tube, start, load, flat, work)
-            if status == BEYOND_LIMIT:
-                goal = nested.TURNING_POINT
-                regrades = 0  # the climb has graded the mesh; close to a turning point no other is safe
-                direction = (0.0, 0.0, 0.0, load[3] - start[3], load[4] - start[4], load[5] - start[5], 0.0)
-            elif status != OK:
-                return status, 0, limit, limit_bound
-            for i in range(len(x)):
-                last_x[i], last_y[i] = x[i], y[i]
-        from_load = load if goal == nested.PLAIN else start
-        status, unstable, doublings, _ = nested.solve(
-            lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube,
-            from_load, goal, direction, 0.0, mu if goal == nested.TURNING_POINT else 0.0, regrades, accuracy, fine,
-            work, table, out,
-        )  # fmt: skip
-        solved = status == newton.CONVERGED or status == nested.UNREACHED
-        if goal == nested.TURNING_POINT:
-            if not solved:
-                if flat == 0.0:
-                    return NOT_CONVERGED, 0, limit, limit_bound
-                goal, direction, way, flat = nested.PLAIN, FLAT, SLOW, 0.0  # hardly rising, but no turning point: go on
-                continue
-            if out[0, nested.MULTIPLIER] < 1.0:
-                limit = start[3] + out[0, nested.MULTIPLIER] * direction[3]
-                return BEYOND_LIMIT, 0, limit, out[1, nested.MULTIPLIER] * direction[3]
-            # the turning point lies just beyond: the state asked for is one step away
-            goal, direction, way = nested.PLAIN, FLAT, LAST_STEP
-            for i in range(len(x)):
-                x[i], y[i] = last_x[i], last_y[i]
-            continue
-        if solved and unstable == 0:
-            guided = way == WARM or way == COLD
-            if (guided and not guide.strays(y, u)) or (
-                not guided and abs(y[tube[4]] / last_y[tube[4]] - 1.0) < 3.0 * CLIMB_CHANGE
-            ):
-                return (OK if status == newton.CONVERGED else INACCURATE), doublings, limit, limit_bound
-        if way == SLOW or way == LAST_STEP:
-            return NOT_CONVERGED, 0, limit, limit_bound
-        way = COLD if way == WARM else SLOW
 
 
 @inlined
