@@ -55,7 +55,8 @@ def scales(actuator):
 def by_collocation(actuator, pressure, held, target, guess, other=0.0, shape=None):
     """The held state by SciPy's collocation with the multiplier as unknown parameter: results of the whole tube.
 
-    Dimensionless as in ``oracle.collocation``; returns ``(multiplier, length, volume, rotation, energy, y(x))``.
+    Dimensionless as in ``oracle.collocation``; without a ``target`` the multiplier is ``guess``.
+    Returns ``(multiplier, length, volume, rotation, energy, y(x))``.
     """
     canonical, state = compiled()["canonical"], compiled()["state"]
     r, c10 = actuator.fiber_surface, actuator.material.c10
@@ -94,7 +95,7 @@ def by_collocation(actuator, pressure, held, target, guess, other=0.0, shape=Non
 
     def ends(left, right, parameters):
         left, right = left.reshape(-1, 6), right.reshape(-1, 6)
-        kept = right[-1, 2 if held == "length" else 4] - target
+        kept = parameters[0] - guess if target is None else right[-1, 2 if held == "length" else 4] - target
         joints = (left[1:] - right[:-1]).ravel()  # stretch, meridional force and integrals go on
         return np.concatenate([[left[0, 0] - 1, right[-1, 0] - 1, kept], left[0, 2:], joints])
 
@@ -315,7 +316,7 @@ def test_the_returned_force_inflates_to_the_held_length(actuator):
     pressure, lengths = 6e4, actuator.length * np.array([1.01, 1.0, 0.97])
     held = blocked_force(actuator, pressure, lengths)
     assert (held["status"] == OK).all()
-    assert (np.diff(held["force"]) < 0).all() == (held["force"][0] > held["force"][-1])
+    assert (np.diff(held["force"]) < 0).all()  # a shorter tube pulls less
     for k, length in enumerate(lengths):
         one = held.isel(deformed_length=k)
         free = inflate(actuator, pressure, one["force"].item())
