@@ -7,7 +7,7 @@ from numbers import Real
 
 import numpy as np
 
-from .profiles import SAMPLES, ProfileError, as_profile, is_profile
+from .profiles import ProfileError, as_profile, is_profile, together
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
 SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
@@ -138,7 +138,7 @@ class Actuator:
 
     def _impossible(self):
         """Faults of numbers that are each fine alone."""
-        alpha, beta = self.angles(np.linspace(0.0, 1.0, SAMPLES))
+        alpha, beta = together(as_profile(self.alpha), as_profile(self.beta))
         faults = [
             f"{name}: found {angle[np.argmax(np.abs(angle))]:g} degree; it has to lie between -90 and 90, both excluded"
             for name, angle in (("alpha", alpha), ("beta", beta))
@@ -153,7 +153,8 @@ class Actuator:
         elif abs(alpha[closest] - beta[closest]) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
             faults.append(
                 f"alpha, beta: {alpha[closest]:g} and {beta[closest]:g} degree are less than {SMALLEST_DIFFERENCE:g} degree"
-                " apart (or cross along the tube): nearly one fiber family, without a finite locked shape"
+                " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"
+                " keep alpha above beta all along, or below"
             )
         outer = self.radius + float(np.min(as_profile(self.wall).samples()))
         if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):

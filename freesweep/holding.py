@@ -39,12 +39,15 @@ def blocked_torque(tube: Actuator, pressure, rotation=0.0, force=0.0, *, buckled
     pressure, force : number or 1-D array [Pa, N]
     rotation : held rotation [degree], number or 1-D array (a torque-rotation curve)
     buckled : beyond the critical pressure (:func:`freesweep.closed_form.critical_pressure`) the straight cylinder is
-        unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation"
+        unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Below
+        that pressure there is none: status 4
     x, accuracy : as in :func:`freesweep.lock`
 
     Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``
     counts every mode of the whole tube while the rotation stays held. Raises :class:`ActuatorError`.
     """
+    if not isinstance(buckled, bool):
+        raise ActuatorError([f"buckled: found {buckled!r:.40}; give True or False"])
     if isinstance(tube, Actuator):
         alpha, beta = tube.angles(np.linspace(0.0, 1.0, 257))
         if np.all(alpha == -beta):

@@ -82,6 +82,16 @@ def as_profile(value) -> Profile:
     return Profile(value) if is_profile(value) else Profile([(0.0, value), (1.0, value)])
 
 
+def together(first, second):
+    """Values of two profiles at the same places: everywhere along the tube, both sides of each jump among them."""
+    breaks = np.unique(np.concatenate([first.breaks, second.breaks]))
+    inner = np.linspace(0.0, 1.0, SAMPLES)
+    return tuple(
+        np.concatenate([profile.within(low, high, inner) for low, high in pairwise(breaks)])
+        for profile in (first, second)
+    )
+
+
 def course(tube):
     """``(course, edges, places)`` of a tube that varies, as the kernels take them; lengths in radii.
 

@@ -429,23 +429,16 @@ def test_a_wall_that_would_have_to_be_pushed_has_no_blocked_force():
     assert -SECTION * 8.3e3 < above["force"] < 0  # pushed, but not the wall: p + f > 0
 
 
-@pytest.mark.xfail(
-    strict=True, reason="'defect of the solver' (or ok with p + f < 0) where the wall's tension vanishes"
-)
 @pytest.mark.parametrize(("actuator", "pressure", "length"), [(MUSCLE, 7.95e3, 0.192), (MUSCLE, 7.968e3, 0.192)])
 def test_edge_of_compression_has_no_result(actuator, pressure, length):
     assert blocked_force(actuator, pressure, length)["status"] == COMPRESSED
 
 
-@pytest.mark.xfail(strict=True, reason="the buckled state is lost as pressure rises")
 def test_buckled_state_goes_on_with_pressure():
     held = blocked_torque(dataclasses.replace(B, energy="principal"), [0.24e6, 0.25e6], buckled=True, x=0.0)
     assert (held["status"] == OK).all()
 
 
-@pytest.mark.xfail(
-    strict=True, reason="some pressures give the mirror image: first the thin half, then the swollen one"
-)
 def test_buckled_states_of_one_curve_belong_together():
     held = blocked_torque(dataclasses.replace(B, energy="principal"), [0.207e6, 0.21e6], buckled=True, x=B.length / 4)
     assert len(set(np.sign(held["deformed_radius"].values.ravel() - R0))) == 1

@@ -228,7 +228,6 @@ def test_every_faulty_profile_is_listed():
     assert [fault.split(":")[0] for fault in caught.value.faults] == ["alpha", "beta", "wall"]
 
 
-@pytest.mark.xfail(strict=True, reason="angles are checked at 257 places, on a jump from the left only")
 @pytest.mark.parametrize(
     "given",
     [

@@ -26,6 +26,7 @@ STEP, SMALLEST_STEP = 0.1, 1e-4  # of a march
 LARGEST_STEP_CHANGE = 0.05  # relative change of y in one step of a march
 RAISES = 40  # of the pressure by a half, until the wall of the starting cylinder is under tension
 AMPLITUDES = (0.02, 0.04, 0.08, 0.15, 0.25, 0.35)  # of the antisymmetric mode, tried in turn
+LOWERING, LOWERINGS = 0.93, 16  # of the pressure, until the buckled state is found; then up again
 BUCKLED = 1e-4  # |y - 1| from which a state counts as buckled
 
 
@@ -81,6 +82,30 @@ def march(x, y, tube, course, cell, start, end, direction, mu, first, target, to
 
 
 @kernel
+def buckle(x, y, tube, load, direction, mu, target, work):
+    """A stable state beside the straight cylinder, swollen in its first half; returns ``(status, multiplier)``."""
+    course, edges, cells, free, _, places = tube
+    n = len(x) - 1
+    for amplitude in AMPLITUDES:
+        even_mesh(x, places, edges)
+        for i in range(n + 1):
+            y[i] = 1.0 + amplitude * sin(2.0 * pi * x[i] / x[n])
+        status, unstable, trial, _ = held.solve_held(
+            lagrangian.density, lagrangian.conjugate, x, y, n, free, fill(course, edges, x, n, n, cells), load, direction,
+            mu, target, 1e-11, work,
+        )  # fmt: skip
+        largest = 0.0
+        for i in range(n + 1):
+            largest = max(largest, abs(y[i] - 1.0))
+        if status == newton.CONVERGED and unstable == 0 and largest > BUCKLED:
+            if y[n // 4] < 1.0:  # the mirror image is as good a state: keep to one of the two
+                for i in range(n // 2):
+                    y[i], y[n - i] = y[n - i], y[i]
+            return OK, trial
+    return HELD_IMPOSSIBLE, mu
+
+
+@kernel
 def even_mesh(x, places, edges):
     """Equal cells within each segment."""
     for s in range(len(edges) - 1):
@@ -93,7 +118,7 @@ def even_mesh(x, places, edges):
 def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space, out):
     """One held state; returns ``(status, unstable directions, doublings, multiplier, load)``."""
     fine, work, table, shapes = space[0], space[1], space[2], space[4]
-    own, edges, _, free, _, places = tube
+    _, edges, _, _, _, places = tube
     base = edges[len(edges) - 1]
     x, y = shapes[0, : base + 1], shapes[1, : base + 1]
     total = places[len(places) - 1]
@@ -124,35 +149,37 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     first = lagrangian.conjugate(1.0, 0.0, cell, start, unit)[0] * total * scale
     wanted = target * scale
     found, regrades = OK, 1
-    if buckled:
-        for amplitude in AMPLITUDES:
-            for i in range(base + 1):
-                y[i] = 1.0 + amplitude * sin(2.0 * pi * x[i] / total)
-            status, unstable, trial, _ = held.solve_held(
-                lagrangian.density, lagrangian.conjugate, x, y, base, free, fill(own, edges, x, base, base, tube[2]), load,
-                direction, mu, wanted, 1e-11, work,
-            )  # fmt: skip
-            largest = 0.0
-            for i in range(base + 1):
-                largest = max(largest, abs(y[i] - 1.0))
+    for tries in range(2):  # a buckled shape that no mesh holds is come to from a lower pressure
+        if buckled:
+            lower, actual = load, guide.cell_along(tube, 0.5)
             found = HELD_IMPOSSIBLE
-            if status == newton.CONVERGED and unstable == 0 and largest > BUCKLED:
-                found, mu = OK, trial
-                break
-    else:
-        found, mu = march(x, y, tube, course, cell, start, start, direction, mu, first, wanted, 1e-10, work)
-        if found == OK and start[3] != p:
-            actual = guide.cell_along(tube, 0.5)
-            found, mu = march(x, y, tube, course, actual, start, load, direction, mu, wanted, wanted, 1e-10, work)
-    if found != OK:
-        return found, 0, 0, 0.0, load
-    status, _, doublings, _ = nested.solve(
-        lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube, load,
-        nested.HELD, direction, wanted, mu, regrades, accuracy, fine, work, table, out,
-    )  # fmt: skip
+            # close above the critical pressure the mode is small: there it is found
+            for attempt in range(tries, LOWERINGS):
+                lower = (gamma, problem[RATIO], problem[SHEAR], p * LOWERING**attempt, force, torque, 1.0)
+                found, mu = buckle(x, y, tube, lower, direction, mu, wanted, work)
+                if found == OK:
+                    break
+            if found == OK and lower[3] != p:
+                found, mu = march(x, y, tube, course, actual, lower, load, direction, mu, wanted, wanted, 1e-10, work)
+        else:
+            found, mu = march(x, y, tube, course, cell, start, start, direction, mu, first, wanted, 1e-10, work)
+            if found == OK and start[3] != p:
+                actual = guide.cell_along(tube, 0.5)
+                found, mu = march(x, y, tube, course, actual, start, load, direction, mu, wanted, wanted, 1e-10, work)
+        if found != OK:
+            return found, 0, 0, 0.0, load
+        status, _, doublings, _ = nested.solve(
+            lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube, load,
+            nested.HELD, direction, wanted, mu, regrades, accuracy, fine, work, table, out,
+        )  # fmt: skip
+        if status == newton.CONVERGED or status == nested.UNREACHED or not buckled:
+            break
     if status != newton.CONVERGED and status != nested.UNREACHED:
-        return NOT_CONVERGED, 0, 0, 0.0, load
+        vanishing = pushed(y, held.loaded(load, direction, mu))
+        return (COMPRESSED if vanishing else NOT_CONVERGED), 0, 0, 0.0, load
     now = held.loaded(load, direction, out[0, nested.MULTIPLIER])
+    if not now[3] + now[4] > 0.0:  # at the clamped ends, where y = 1
+        return COMPRESSED, 0, 0, 0.0, load
     unstable = unstable_directions(fine[0], fine[1], base << doublings, base, tube, now, direction, space[5], work)
     out[0, nested.MULTIPLIER] *= scale
     out[1, nested.MULTIPLIER] *= scale
