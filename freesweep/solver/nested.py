@@ -19,7 +19,7 @@ MIDDLE, MULTIPLIER = 4, 5
 MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or more finer ones join
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
-SAFETY = 3.0
+SAFETY = 3.3
 LIKELY = 0.4  # times what the step to second order was, times the ratio of the two orders over all outputs
 
 PLAIN, HELD, TURNING_POINT = 0, 1, 2
