@@ -24,7 +24,11 @@ STATUSES = (
         "meridional_compression",
         "the wall would have to be pushed along its length (p y^2 + f <= 0); raise the pressure or the axial force",
     ),
-    Status(4, "held_impossible", "the held length or rotation cannot be reached; hold another value"),
+    Status(
+        4,
+        "held_impossible",
+        "the held length or rotation cannot be reached, or is none (straight fibers, alpha = -beta); hold another",
+    ),
     Status(5, "inaccurate", "solved, but the error bound misses the accuracy asked for; the value and its bound stand"),
     Status(6, "not_converged", "a defect of the solver: please report the design"),
     Status(7, "invalid", "a parameter lies outside the domain of the model"),

@@ -83,11 +83,11 @@ def test_an_unstable_cylinder_is_called_so_and_the_buckled_state_is_not(capsys):
 
 
 def test_where_nothing_can_be_held_a_dash_and_the_reason(capsys):
-    """A straight fiber cannot stretch: no force holds the length by pulling (region I)."""
+    """A straight fiber cannot stretch: whatever the force, the length stays (a pole of Eq. 2.16)."""
     assert run(*ROTATOR, *LENGTH, "--pressure", "50 kPa") == DONE
     out = capsys.readouterr().out
     assert columns(out)[1][0][0] == "-"
-    assert "meridional_compression: the wall would have to be pushed along its length" in out
+    assert "held_impossible: the held length or rotation cannot be reached, or is none (straight fibers" in out
 
 
 @pytest.mark.parametrize(("held", "unused", "value"), [(LENGTH, "--force", "1 N"), (ROTATION, "--torque", "1 N m")])

@@ -65,6 +65,7 @@ def test_poles_and_region_one_are_statuses(data):
     force, torque = data["blocked_force_status"], data["blocked_torque_status"]
     assert np.all(force.sel(alpha=60, beta=30, fiber_extension=1.0) == COMPRESSED)
     assert np.all(torque.sel(alpha=30, beta=-30) == HELD_IMPOSSIBLE)
+    assert np.all(force.sel(alpha=0, beta=30, fiber_extension=1.0) == HELD_IMPOSSIBLE)
     assert np.all(torque.sel(alpha=60, beta=30, fiber_extension=1.0) == OK)
     assert np.all(force.sel(alpha=30, beta=30) == DEGENERATE)
     for name in ("blocked_force", "blocked_torque"):

@@ -121,7 +121,7 @@ def solve_shard(problems, first, pressures, accuracy, blocked=False):
         *(results[name] for name in FIELDS), no_stations, no_profiles,
     )  # fmt: skip
     if blocked:
-        from ..solver.hold import block_many
+        from ..solver.block import block_many
 
         results |= {"blocked": np.empty((count, 2)), "blocked_bounds": np.empty((count, 2))}
         results |= {"blocked_status": np.empty((count, 2), np.int64), "blocked_stable": np.empty((count, 2), np.int64)}
