@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from ..jit import entry_point
 from . import guide, lagrangian, nested
 from .branch import FORCE, GAMMA, LENGTH, TORQUE, H
 from .hold import HELD_LENGTH, HELD_ROTATION, find
-from .jit import entry_point
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK
 
 

@@ -11,8 +11,8 @@ Here physics and numerics are bound together.
 
 import numpy as np
 
+from ..jit import entry_point, inlined
 from . import guide, lagrangian, nested
-from .jit import entry_point, inlined
 from .profile import FIELDS, at_stations
 from .reach import reach
 from .slack import slack_fibers

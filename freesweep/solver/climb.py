@@ -5,10 +5,10 @@ For a rising pressure that quantity is the volume. Held at each step, it leaves 
 
 import numpy as np
 
+from ..jit import inlined, kernel
 from . import lagrangian, nested, newton, uniform
 from .course import fill
 from .held import hold, largest_change, loaded, solve_held, strayed
-from .jit import inlined, kernel
 from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
 CLIMB_CHANGE = 0.06  # relative change of y in one step

@@ -5,7 +5,7 @@ where a number jumps or bends; ``edges`` holds the nodes of the base mesh at whi
 A tube that is the same all along has one segment of one piece, and one row of cells.
 """
 
-from .jit import kernel
+from ..jit import kernel
 
 
 @kernel

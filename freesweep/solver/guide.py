@@ -5,9 +5,9 @@ One number for a tube that is the same all along, else one for each of some plac
 
 from math import exp, sqrt
 
+from ..jit import inlined, kernel
 from . import lagrangian, mesh, uniform
 from .course import at_point
-from .jit import inlined, kernel
 
 PLACES = 33  # along a tube that varies
 STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u

@@ -9,7 +9,7 @@ solved with two tridiagonal solutions. ``sigma = b^T H^-1 b = dC/dmu`` along the
 stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
 """
 
-from .jit import kernel
+from ..jit import kernel
 from .mesh import cell_at
 from .newton import (
     CONVERGED,

@@ -10,11 +10,11 @@ from math import pi, sin
 
 import numpy as np
 
+from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested, newton
 from .branch import GAMMA, RATIO, SHEAR
 from .climb import largest_drift, pushed, regraded
 from .course import fill
-from .jit import entry_point, kernel
 from .profile import FIELDS, at_stations
 from .slack import slack_fibers
 from .stability import unstable_directions

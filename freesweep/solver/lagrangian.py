@@ -28,7 +28,7 @@ plain arithmetic: they run on a float or on any number-like lane type.
 
 from math import sqrt
 
-from .jit import kernel
+from ..jit import kernel
 
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative: the state is refused, its numbers stay finite
 LAST_STEP = 10.0  # share of Newton's tolerance in every error bound

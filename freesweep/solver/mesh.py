@@ -9,7 +9,7 @@ that the error on nested meshes has an expansion in even powers of the cell size
 
 from math import exp, log, sqrt
 
-from .jit import kernel
+from ..jit import kernel
 
 FIRST_GRADING = 0.2  # first guess: nodes thin out as exp(-0.2 k x) behind an end layer exp(-k x)
 SMALLEST_DENSITY = 3e-3  # of that grading; caps the length of the last cell of a long tube

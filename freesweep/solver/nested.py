@@ -9,10 +9,10 @@ The rows of ``table`` belong to the meshes, coarsest first; its columns are the 
 middle, and the multiplier of a held integral.
 """
 
+from ..jit import kernel
 from . import held, mesh, newton
 from .course import fill
 from .held import loaded
-from .jit import kernel
 
 OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
 MIDDLE, MULTIPLIER = 4, 5

@@ -8,7 +8,7 @@ definite at a maximum. The pivots of its LDL^T factors count the directions in w
 and y > 0. ``y[0]`` is held; so is ``y[n]`` unless ``free`` (a plane of symmetry: the natural condition).
 """
 
-from .jit import kernel
+from ..jit import kernel
 from .mesh import cell_at
 
 MAX_ITERATIONS = 60  # a warm start takes 1 to 3, a bad first guess at a small angle 25

@@ -2,9 +2,9 @@
 
 from math import sqrt
 
+from ..jit import kernel
 from . import lagrangian
 from .course import at_point, fill
-from .jit import kernel
 from .mesh import cell_at
 
 FIELDS = 7  # stretch, axial position, twist, tangents of the deformed angles, fiber multipliers

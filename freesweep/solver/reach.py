@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from ..jit import inlined
 from . import guide, lagrangian, nested, newton, uniform
 from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep
-from .jit import inlined
 from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK
 
 COLD_REGRADES, WARM_REGRADES = 3, 1

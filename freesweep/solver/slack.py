@@ -1,8 +1,8 @@
 """Fibers that would have to push: where a state relies on them, physics does not stand behind it."""
 
+from ..jit import kernel
 from . import lagrangian
 from .course import fill
-from .jit import kernel
 from .mesh import cell_at
 
 TENSIONLESS = 1e-9  # of the load: a fiber family without tension does not push

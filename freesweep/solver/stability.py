@@ -1,8 +1,8 @@
 """Stability of a held state: the second variation on the whole tube, whichever half of it was solved."""
 
+from ..jit import kernel
 from . import held, lagrangian, newton
 from .course import fill
-from .jit import kernel
 
 
 @kernel

@@ -4,7 +4,7 @@ It is the guide of the walk: where the uniform stretch is carried from one load 
 the tube with clamped ends, and its stretch lies between 1 and the uniform one. Where it is not, the walk goes slowly.
 """
 
-from .jit import kernel
+from ..jit import kernel
 
 FIRST_STEP = 0.25  # of the way from one load to the other
 SMALLEST_STEP = 1e-7  # below it the path is taken to end in a turning point

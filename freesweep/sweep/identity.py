@@ -11,10 +11,10 @@ SOURCES = ("solver/*.py", "sweep/*.py", "scaling.py", "closed_form.py", "status.
 def identify(sweep) -> dict:
     """Hashes of specification and code, and the version."""
     from .. import __version__
-    from ..solver.jit import source_hash
+    from ..jit import source_hash
 
     root = Path(__file__).parent.parent
-    digest = hashlib.sha256(source_hash().encode())  # Numba and Python, too
+    digest = hashlib.sha256(source_hash("solver").encode())  # Numba and Python, too
     for path in sorted(path for pattern in SOURCES for path in root.glob(pattern)):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return {"specification_sha256": sweep.sha256, "code_sha256": digest.hexdigest(), "version": __version__}

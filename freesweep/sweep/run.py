@@ -133,9 +133,9 @@ def solve_shard(problems, first, pressures, accuracy, blocked=False):
 
 def _solve_all(plan, parts, done, shards, asked, threads, progress):
     """Results of all shards, those found on disk among them, in order."""
-    from ..solver.jit import is_compiled
+    from ..jit import is_compiled
 
-    if progress and not is_compiled():
+    if progress and not is_compiled("solver"):
         print("compiling the kernels: half a minute, once for each version")
     none = (plan.problems[:0], plan.first[:1], plan.pressures[:0])
     empty = solve_shard(*none, *asked)  # compiles, or loads what is compiled

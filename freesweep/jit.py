@@ -6,9 +6,10 @@
   two Python threads enter it).
 
 Entry points are cached on disk. Numba's cache knows only the file of the cached function, so editing the physics in
-another file would run stale code: the cache folder is therefore named after a hash of all kernel sources.
+another file would run stale code: the cache folder is therefore named after a hash of all sources in the kernel's room.
 """
 
+import functools
 import hashlib
 import os
 import sys
@@ -20,22 +21,24 @@ from numba.core import config
 _POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
 
 
-def source_hash() -> str:
-    """Hash of every kernel source, of Numba's version and of Python's: names the cache folder."""
+@functools.cache
+def source_hash(room: str) -> str:
+    """Hash of this file, of every source in one room ("solver", "atlas"), of Numba's version and of Python's."""
+    here = Path(__file__).parent
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    for path in sorted(Path(__file__).parent.glob("*.py")):
+    for path in [Path(__file__), *sorted((here / room).glob("*.py"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 
 
-def _cache_folder() -> str:
+def _cache_folder(room: str) -> str:
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return str(Path(base) / "freesweep" / "kernels" / source_hash())
+    return str(Path(base) / "freesweep" / "kernels" / f"{room}-{source_hash(room)}")
 
 
-def is_compiled() -> bool:
-    """Whether machine code of these very sources lies on disk."""
-    return any(Path(_cache_folder()).rglob("*.nbc"))
+def is_compiled(room: str) -> bool:
+    """Whether machine code of a room's very sources lies on disk."""
+    return any(Path(_cache_folder(room)).rglob("*.nbc"))
 
 
 def kernel(function):
@@ -51,7 +54,7 @@ def inlined(function):
 def entry_point(function):
     """Compile a kernel that Python calls, and keep its machine code on disk."""
     before = config.CACHE_DIR
-    config.CACHE_DIR = _cache_folder()
+    config.CACHE_DIR = _cache_folder(function.__module__.split(".")[1])
     try:
         return numba.njit(cache=True, **_POLICY)(function)
     except RuntimeError:  # no folder can be written here: compile anew in each process
