@@ -1,7 +1,7 @@
 """freesweep: the statics of fiber-reinforced soft actuators, solved exactly and swept over the design space.
 
 ``actuator`` describes a tube, ``statics`` solves one under loads, ``holding`` one that is
-blocked, ``closed_form`` holds the formulas of the uniform tube, ``sweep``
+blocked, ``sleeve`` one wound around an arm, ``closed_form`` holds the formulas of the uniform tube, ``sweep``
 solves grids of designs into atlases, ``atlas`` stores and opens them, ``plot`` draws them. ``solver`` holds the Numba
 kernels, dimensionless; nothing else compiles. Lengths in metres, pressures in pascals, angles in degrees.
 """
@@ -20,6 +20,8 @@ _HOMES = {
     "blocked_force": "holding",
     "blocked_torque": "holding",
     "corrected_torque": "holding",
+    "Helix": "sleeve",
+    "constriction": "sleeve",
     "run_sweep": "sweep.run",
     "open_atlas": "atlas.store",
     "Atlas": "atlas.store",
