@@ -6,6 +6,7 @@ Exit codes: 0 done, 2 bad input, 3 the environment (disk, memory, permissions), 
 import argparse
 import sys
 
+from .pictures import add_plot, check_map, draw_map
 from .single import add_single
 
 DONE, BAD_INPUT, ENVIRONMENT, INTERRUPTED = 0, 2, 3, 130
@@ -56,7 +57,7 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action=_Version, nargs=0, help="print the version")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _sweep(commands)
-    _plot(commands)
+    add_plot(commands)
     _info(commands)
     add_single(commands)
     return top
@@ -100,63 +101,10 @@ def _run_sweep(options):
     from .sweep.run import run_sweep
 
     if options.map:
-        _check_map(sweep, options.map)
+        check_map(sweep, options.map)
     atlas = run_sweep(sweep, out, threads=options.threads, progress=not options.quiet, overwrite=options.overwrite)
     if options.map:
-        _draw_map(atlas, options.map, "rotation", {})
-
-
-def _check_map(sweep, path):
-    """Refuse a map that could not be drawn before anything is solved."""
-    from pathlib import Path
-
-    from .plot.style import SUFFIXES
-
-    faults = []
-    if Path(path).suffix.lower() not in SUFFIXES:
-        faults.append(f"the suffix of {Path(path).name!r} must be one of {', '.join(SUFFIXES)}")
-    if any(len(sweep.axes.get(name, ())) < 2 for name in ("alpha", "beta")):
-        faults.append("a map needs alpha and beta as axes of two values or more")
-    if faults:
-        raise ValueError(f"--map: {'; '.join(faults)}")
-
-
-def _plot(commands):
-    kinds = commands.add_parser("plot", help="draw an atlas").add_subparsers(required=True, metavar="KIND")
-    command = kinds.add_parser("map", help="the design space of fiber angles, with one variable as filled contours")
-    command.add_argument("atlas", help="an atlas made by freesweep sweep")
-    command.add_argument("--variable", default="rotation", help="what to draw (default: rotation)")
-    command.add_argument(
-        "--at", nargs="+", default=[], metavar="NAME=VALUE", help='where in the other axes, such as pressure="0.1 MPa"'
-    )
-    command.add_argument("-o", "--out", metavar="FILE", help=".png, .svg or .pdf (default: named after ATLAS, here)")
-    command.set_defaults(run=_run_map)
-
-
-def _run_map(options):
-    from pathlib import Path
-
-    from .atlas.schema import PARAMETERS
-    from .atlas.store import open_atlas
-    from .units import quantity
-
-    select = {}
-    for item in options.at:
-        name, equals, value = item.partition("=")
-        if not equals:
-            raise ValueError(f'--at: found {item!r}; give NAME=VALUE, such as pressure="0.1 MPa"')
-        select[name] = quantity(value, PARAMETERS[name].units) if name in PARAMETERS else value
-    out = options.out or f"{Path(options.atlas).stem}-{options.variable}.png"
-    with open_atlas(options.atlas) as atlas:
-        _draw_map(atlas, out, options.variable, select)
-
-
-def _draw_map(atlas, out, variable, select):
-    from .plot.map import design_map
-    from .plot.style import save
-
-    save(design_map(atlas.data, variable, **select), out)
-    print(out)
+        draw_map(atlas.data, options.map, "rotation", {})
 
 
 def _info(commands):

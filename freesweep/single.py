@@ -3,44 +3,55 @@
 
 def add_single(commands):
     """Add the commands of this module to the command line."""
-    _one(commands, "lock", "the locked shape of one actuator", _run_lock)
-    inflate = _one(commands, "inflate", "one actuator under pressure, force and torque", _run_inflate)
-    inflate.add_argument(
-        "--pressure", required=True, nargs="+", metavar="P", help='"0.1 MPa", several, or START STOP --steps N'
-    )
-    inflate.add_argument("--steps", type=int, metavar="N", help="that many pressures from the first to the last given")
-    inflate.add_argument("--force", default=0.0, metavar="F", help="axial force, positive in tension (default 0)")
-    inflate.add_argument("--torque", default=0.0, metavar="M", help="torque toward growing rotation (default 0)")
-    block = _one(commands, "block", "the force or torque that holds the length or the rotation", _run_block)
+    _keep(add_actuator(commands, "lock", "the locked shape of one actuator", _run_lock, rubber=False))
+    inflate = add_actuator(commands, "inflate", "one actuator under pressure, force and torque", _run_inflate)
+    add_loads(inflate, required=True)
+    _keep(inflate)
+    block = add_actuator(commands, "block", "the force or torque that holds the length or the rotation", _run_block)
     block.add_argument("--pressure", required=True, nargs="+", metavar="P", help='"0.1 MPa", or several')
     block.add_argument("--hold", choices=("length", "rotation"), required=True, help="what is held; the other is free")
     block.add_argument("--at", metavar="VALUE", help="held length or rotation (default: the undeformed one)")
     block.add_argument("--force", default=0.0, metavar="F", help="axial force while the rotation is held (default 0)")
     block.add_argument("--torque", default=0.0, metavar="M", help="torque while the length is held (default 0)")
     block.add_argument("--buckled", action="store_true", help="the state beside the unstable cylinder (rotation held)")
+    _keep(block)
 
 
-def _one(commands, name, text, run):
+def add_loads(command, required):
+    """Options for pressure, force and torque."""
+    command.add_argument(
+        "--pressure", required=required, nargs="+", metavar="P", help='"0.1 MPa", several, or START STOP --steps N'
+    )
+    command.add_argument("--steps", type=int, metavar="N", help="that many pressures from the first to the last given")
+    command.add_argument("--force", default=0.0, metavar="F", help="axial force, positive in tension (default 0)")
+    command.add_argument("--torque", default=0.0, metavar="M", help="torque toward growing rotation (default 0)")
+
+
+def add_actuator(commands, name, text, run, rubber=True):
+    """A command whose options describe one actuator; ``rubber``: its constants have to be given."""
     command = commands.add_parser(name, help=text)
     for angle in ("alpha", "beta"):
         command.add_argument(f"--{angle}", required=True, metavar="A", help="fiber angle from the axis")
     for size in ("length", "radius", "wall"):
         command.add_argument(f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'")
-    needed = name != "lock"
-    without = "" if needed else "; without it no strain energy is given"
-    command.add_argument("--c10", required=needed, metavar="C", help=f"Mooney-Rivlin constant{without}")
+    without = "" if rubber else "; the locked shape needs none"
+    command.add_argument("--c10", required=rubber, metavar="C", help=f"Mooney-Rivlin constant{without}")
     command.add_argument("--c01", default="0 MPa", metavar="C", help="Mooney-Rivlin constant")
     command.add_argument("--fiber-extension", default=1.0, metavar="G", help="stretch of the fibers, 1 or more")
     command.add_argument("--fiber-radius", metavar="L", help="where the fibers lie; default: the inner radius")
     command.add_argument(
         "--energy", choices=("full", "principal"), default="full", help="principal: Eq. 2.5 as printed"
     )
-    command.add_argument("-o", "--out", metavar="FILE.nc", help="keep everything, profiles too, as netCDF4")
     command.set_defaults(run=run)
     return command
 
 
-def _tube(options):
+def _keep(command):
+    command.add_argument("-o", "--out", metavar="FILE.nc", help="keep everything, profiles too, as netCDF4")
+
+
+def tube_of(options):
+    """The actuator that the options describe; every quantity that cannot be read is named in one ValueError."""
     from .actuator import Actuator, MooneyRivlin
     from .atlas.schema import PARAMETERS
     from .units import quantity
@@ -61,13 +72,13 @@ def _tube(options):
 def _run_lock(options):
     from .statics import lock
 
-    dataset = lock(_tube(options))
+    dataset = lock(tube_of(options))
     if options.c10 is None:
         dataset = dataset.drop_vars(["strain_energy", "strain_energy_error"])
     _show(dataset, options)
 
 
-def _quantities(faults, **texts):
+def quantities(faults, **texts):
     """Texts as numbers by option name: ``name=(texts, unit)``; what cannot be read goes to ``faults``."""
     from .units import quantity
 
@@ -84,12 +95,17 @@ def _quantities(faults, **texts):
 
 
 def _run_inflate(options):
+    _show(inflated(options), options)
+
+
+def inflated(options):
+    """The Dataset of :func:`freesweep.inflate` that the options of ``add_actuator`` and ``add_loads`` ask for."""
     import numpy as np
 
     from .statics import inflate
 
-    tube = _tube(options)
-    loads = _quantities(
+    tube = tube_of(options)
+    loads = quantities(
         [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m")
     )
     pressure = np.array(loads["pressure"])
@@ -98,7 +114,7 @@ def _run_inflate(options):
             raise ValueError("--steps: give two pressures, first and last, and 2 to 100000 steps between them")
         pressure = np.linspace(*pressure, options.steps)
     pressure = pressure[0] if len(pressure) == 1 else pressure
-    _show(inflate(tube, pressure, loads["force"][0], loads["torque"][0]), options)
+    return inflate(tube, pressure, loads["force"][0], loads["torque"][0])
 
 
 def _run_block(options):
@@ -106,7 +122,7 @@ def _run_block(options):
 
     from .holding import blocked_force, blocked_torque
 
-    tube = _tube(options)
+    tube = tube_of(options)
     length = options.hold == "length"
     unused = "force" if length else "torque"
     if getattr(options, unused) != 0.0:
@@ -116,7 +132,7 @@ def _run_block(options):
         )
     if length and options.buckled:
         raise ValueError("--buckled: only a held rotation has a straight state to buckle from")
-    given = _quantities(
+    given = quantities(
         [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m"),
         at=([options.at] if options.at is not None else [], "m" if length else "degree"),
     )  # fmt: skip

@@ -86,5 +86,6 @@ def test_what_is_imported_at_run_time_is_declared():
     }
     declared = {text.split(">")[0] for text in PROJECT["project"]["dependencies"]}
     ours = {name for name in named if name.isidentifier() and name not in sys.stdlib_module_names} - {"freesweep"}
+    ours = {{"PIL": "pillow"}.get(name, name) for name in ours}
     assert ours <= declared
     assert {"numpy", "numba", "xarray"} <= ours

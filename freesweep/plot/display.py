@@ -41,11 +41,18 @@ _SHOWN = {
     "limit_pressure": Display("limit pressure", "kPa", _scaled(1e-3), None),
     "blocked_force": Display("blocked force", "N", _scaled(1.0), 0.0),
     "blocked_torque": Display("blocked torque", "mN m", _scaled(1e3), 0.0),
+    "force": Display("axial force", "N", _scaled(1.0), 0.0),
+    "torque": Display("torque", "mN m", _scaled(1e3), 0.0),
     "ideal_blocked_force": Display("blocked force", "N", _scaled(1.0), 0.0),
     "ideal_blocked_torque": Display("blocked torque", "mN m", _scaled(1e3), 0.0),
 }
+_ABSOLUTE = {
+    "deformed_length": Display("length", "mm", _scaled(1e3), None),
+    "mid_radius": Display("radius at half length", "mm", _scaled(1e3), None),
+}
+USUAL = {"fiber_extension": 1.0, "force": 0.0, "torque": 0.0}  # not worth a word below a title
 PARAMETER_UNITS = {  # shown unit and its factor, where it is not the stored one
-    **dict.fromkeys(("length", "radius", "wall", "fiber_radius"), ("mm", 1e3)),
+    **dict.fromkeys(("length", "radius", "wall", "fiber_radius", "deformed_length"), ("mm", 1e3)),
     **dict.fromkeys(("c10", "c01", "pressure"), ("kPa", 1e-3)),
     "torque": ("mN m", 1e3),
 }
@@ -54,6 +61,12 @@ PARAMETER_UNITS = {  # shown unit and its factor, where it is not the stored one
 def display(variable: str) -> Display:
     """How ``variable`` (a name of ``schema.VARIABLES``) is shown."""
     return _SHOWN[variable.removeprefix("locked_")]
+
+
+def absolute(variable: str) -> Display:
+    """The same for plots along one axis, where sizes need no scale: lengths and radii in [mm]."""
+    plain = variable.removeprefix("locked_")
+    return _ABSOLUTE.get(plain, _SHOWN[plain])
 
 
 def title(variable: str) -> str:
@@ -67,8 +80,15 @@ def title(variable: str) -> str:
     return label if variable == "limit_pressure" else f"{label} under pressure"
 
 
-def describe(name: str, value: float) -> str:
-    """One parameter in words, such as ``pressure 100 kPa``; ``value`` in its stored unit."""
-    units, factor = PARAMETER_UNITS.get(name, (schema.PARAMETERS[name].units, 1.0))
+def shown_units(name: str) -> tuple[str, float]:
+    """Unit in which a parameter is shown, and the factor from the stored one."""
+    return PARAMETER_UNITS.get(name) or (schema.attributes(name)["units"], 1.0)
+
+
+def describe(name: str, value: float | str) -> str:
+    """One parameter in words, such as ``pressure 100 kPa``; ``value`` in its stored unit, or the name of a design."""
+    if isinstance(value, str):
+        return f"{name} {value}"
+    units, factor = shown_units(name)
     text = f"{name.replace('_', ' ')} {factor * value:.4g} {units}".removesuffix(" 1")
     return text.replace(" ", "\u00a0")  # a title breaks between two of them, not within

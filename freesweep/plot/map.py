@@ -14,7 +14,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from .. import status
 from . import glyph, regions, style
-from .display import describe, display, title
+from .display import USUAL, describe, display, title
 from .plane import ALPHA, BETA, NO_VALUE, Plane, plane
 
 SIZE = (style.PAGE, 165.0)  # of a figure of its own [mm]
@@ -37,7 +37,6 @@ HATCH = {
     status.INVALID: "-----",
     status.NOT_INTERPOLABLE: "ooo",
 }
-USUAL = {"fiber_extension": 1.0, "force": 0.0, "torque": 0.0}  # not worth a word below the title
 
 
 def design_map(dataset, variable="rotation", ax=None, paths=True, examples=True, **select) -> Axes:

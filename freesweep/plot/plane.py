@@ -4,14 +4,13 @@ Swapping alpha and beta changes nothing; negating both mirrors the tube, so rota
 the two quadrants that the dataset does not store is taken from its mirror images, if one of them is stored.
 """
 
-import difflib
-from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
 
 from ..atlas import schema
 from ..status import OK, OUTSIDE, VALUED
+from .choice import check_name, choose
 
 ALPHA, BETA = (0.0, 90.0), (-90.0, 90.0)  # the two quadrants of Figure 1-2 [degree]
 ODD = ("rotation", "locked_rotation", "ideal_blocked_torque")  # change sign in the mirror
@@ -37,15 +36,6 @@ def status_of(variable: str) -> str:
     return own if own in schema.STATUS_OF else "locked_status" if variable.startswith("locked_") else "status"
 
 
-def check_name(name: str, available, what: str) -> None:
-    """Raises ValueError that lists ``available``, and names the nearest, if ``name`` is not among them."""
-    available = sorted(available)
-    if name not in available:
-        near = difflib.get_close_matches(str(name), available, n=1)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
-        raise ValueError(f"no {what} {name!r}{hint} (available: {', '.join(available) or 'none'})")
-
-
 def plane(dataset, variable: str, select: dict) -> Plane:
     """``variable`` of an xarray Dataset at the grid values nearest to ``select`` (name: value in stored units).
 
@@ -63,7 +53,7 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     check_name(variable, on_plane, "variable")
     check_name(status_of(variable), dataset.data_vars, "status variable")
 
-    point, index = _choose(dataset, select)
+    point, index = choose(dataset, select, ("alpha", "beta"))
     values = _sheet(dataset[variable], index)
     status = _sheet(dataset[status_of(variable)], index)
     free = schema.VARIABLES[variable].without
@@ -77,30 +67,6 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     if variable == "limit_pressure":
         reason[~none] = OK
     return Plane(alpha, beta, np.ma.array(values, mask=none), reason, {k: v for k, v in point.items() if k not in free})
-
-
-def _choose(dataset, select):
-    """Parameters of the point, and the index along each dimension other than alpha and beta."""
-    parameters = [name for name in schema.PARAMETERS if name in dataset.coords and name not in ("alpha", "beta")]
-    for name, value in select.items():
-        check_name(name, parameters, "dimension")
-        if not isinstance(value, Real) or not np.isfinite(value):
-            raise ValueError(f"{name} must be one finite number [{schema.PARAMETERS[name].units}], not {value!r}")
-    point, index = {}, {}
-    for name in parameters:
-        nodes = np.atleast_1d(dataset[name].values).astype(float)
-        if name in select:
-            at = np.abs(nodes - select[name]).argmin()
-        elif name == "pressure":
-            at = nodes.argmax()
-        elif name in schema.LOADS:
-            at = np.abs(nodes).argmin()
-        else:
-            at = np.argsort(nodes)[nodes.size // 2]
-        point[name] = float(nodes[at])
-        if name in dataset.dims:
-            index[name] = int(at)
-    return point, index
 
 
 def _sheet(array, index):

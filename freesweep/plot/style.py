@@ -11,7 +11,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, to_hex
 from matplotlib.figure import Figure
 
 INCH = 25.4  # [mm]
@@ -25,6 +25,13 @@ PAPER = "#ffffff"
 BLANK = "#e9e9ea"  # where there is no value
 LOCKED = "#1f4fe0"  # the locked manifold, blue as in the source
 FAMILIES = ("#c2187f", "#1d2b3a")  # the alpha and the beta family of fibers
+BEFORE = ("#0b3c7d", "#5590cf")  # alpha and beta family of the undeformed tube: blue, as in Figures 2-2 and 2-3
+AFTER = ("#8f1513", "#e0746a")  # and of the deformed one: red
+SERIES = ("#10664a", "#e09a1a", "#7c4fb0", "#5b2a12", "#3fb3cf", "#e07a5f")  # told apart by colour-blind eyes
+ENERGY = {"principal": "solid", "full": (0, (4.5, 1.8))}  # lines of the two strain energies
+EXTENDED = (0, (1.0, 1.3))  # the line of fibers that extend: dotted, as in Figure 2-8
+BAND = 0.25  # opacity of an error band
+THICK, THIN = 1.4, 0.7  # lines of data; where a fiber family would have to push [points]
 DESIGN = {"color": INK, "markerfacecolor": PAPER, "markersize": 3.4, "markeredgewidth": 0.8}  # the dot of a design
 
 SMALL, NORMAL, LARGE = 7.0, 8.0, 10.0  # type [points]
@@ -67,6 +74,28 @@ def new_axes(width: float, height: float) -> Axes:
 
     with context():
         return pyplot.figure(figsize=(width / INCH, height / INCH), layout="constrained").add_subplot()
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of ``width`` and ``height`` [mm] that no window shows."""
+    with context():
+        return Figure(figsize=(width / INCH, height / INCH), layout="constrained")
+
+
+def ramp(count: int) -> list[str]:
+    """``count`` colours of a growing quantity, such as pressure, from light to dark; none too light for a line."""
+    return [to_hex(colour) for colour in SEQUENTIAL(np.linspace(1.0, 0.28, count)[::-1])]
+
+
+def dress(ax: Axes, xlabel: str, ylabel: str, heading: str = "") -> Axes:
+    """Labels with units, a heading at the left, open axes with faint lines to read values from."""
+    ax.set_xlabel(xlabel)
+    ax.set_ylabel(ylabel)
+    ax.set_title(heading, loc="left", fontsize=NORMAL + 1.0, fontweight="bold")
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.grid(True, color=BLANK, linewidth=0.5)
+    ax.set_axisbelow(True)
+    return ax
 
 
 def _rgb(lab):

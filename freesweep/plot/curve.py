@@ -1,0 +1,199 @@
+"""Curves: a variable of a dataset along one of its dimensions, with its error bound as a band and its flags."""
+
+import textwrap
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from ..atlas import schema
+from ..status import VALUED
+from . import style
+from .choice import DESIGN, check_name, choose, dimensions
+from .display import USUAL, absolute, describe, shown_units
+from .plane import status_of
+
+SIZE = (style.PAGE * 0.75, 85.0)  # of a figure of its own [mm]
+MOST = 9  # lines in one plot
+LETTER = 1.2  # width of one below the heading [mm]
+BESIDE = 1.025  # where labels begin, in widths of the axes
+GAP = 1.15  # between two labels at the ends of lines, in heights of type
+MARKS = {"firm": "thin lines: a fiber family would have to push", "unstable": "open circles: unstable"}
+
+
+def draw_line(ax: Axes, x, y, *, error=None, slack=None, unstable=None, **how) -> Line2D:
+    """A line through ``(x, y)`` with ``error`` as a band; thin where fibers are ``slack``, none where ``unstable``.
+
+    Where a state is unstable its nodes are open circles. Arrays of one shape; ``how`` goes to the line. Returns the line,
+    which holds all of the data: the parts are drawn over it.
+    """
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    width = how.pop("linewidth", style.THICK)
+    weak = np.zeros(x.shape, bool) if slack is None else np.asarray(slack, bool)
+    loose = np.zeros(x.shape, bool) if unstable is None else np.asarray(unstable, bool)
+    (line,) = ax.plot(x, y, linewidth=style.THIN, **how)
+    firm = np.where(_joined(weak | loose), np.nan, y)
+    quiet = {key: how[key] for key in ("linestyle", "zorder") if key in how}
+    ax.plot(x, firm, linewidth=width, color=line.get_color(), gid="firm", **quiet)
+    if loose.any():
+        ax.plot(x[loose], y[loose], "o", markersize=2.6, markerfacecolor=style.PAPER, color=line.get_color(),
+                markeredgewidth=0.7, gid="unstable")  # fmt: skip
+    if error is not None:
+        band(ax, x, y, error, line.get_color())
+    return line
+
+
+def _joined(mask):
+    """Nodes that only touch others of the mask: a thick line runs up to the first of them."""
+    padded = np.pad(mask, 1, mode="edge")
+    return padded[:-2] & mask & padded[2:]
+
+
+def band(ax: Axes, x, y, error, colour) -> PolyCollection:
+    """The band ``y - error`` to ``y + error`` about a line."""
+    error = np.asarray(error, float)
+    return ax.fill_between(x, y - error, y + error, color=colour, alpha=style.BAND, linewidth=0.0, gid="error")
+
+
+def label_ends(ax: Axes, lines, texts) -> list:
+    """Writes ``texts`` in the colours of ``lines`` beside their right ends, pushed apart until none covers another.
+
+    They stand right of the axes, joined to ends that lie elsewhere. Lines without a finite value get none.
+    """
+    ends = []
+    for line, text in zip(lines, texts, strict=True):
+        data = np.asarray(line.get_xydata(), float)
+        data = data[np.all(np.isfinite(data), axis=1)]
+        if len(data) and text:
+            ends.append((*data[np.argmax(data[:, 0])], text, line.get_color()))
+    if not ends:
+        return []
+    ends.sort(key=lambda end: end[1])
+    (low, high), right = ax.get_ylim(), ax.get_xlim()[1]
+    height = max(ax.get_position().height * ax.figure.bbox.height / ax.figure.dpi * 72.0, 1.0)  # before the layout
+    step = GAP * style.NORMAL * (high - low) / height
+    places = spread(np.array([end[1] for end in ends]), step)
+    places += max(low - places[0], 0.0) if places[-1] - places[0] < high - low else 0.0
+    labels = []
+    for place, (x, y, text, colour) in zip(places, ends):
+        far = abs(place - y) > 0.4 * step or x < right - 1e-6 * abs(right)
+        joint = {"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 0.0}
+        labels.append(ax.annotate(
+            text, (x, y), xytext=(BESIDE, place), textcoords=ax.get_yaxis_transform(), va="center", color=colour, gid="end",
+            fontsize=style.NORMAL, annotation_clip=False, arrowprops={**joint, "relpos": (0.0, 0.5)} if far else None,
+        ))  # fmt: skip
+    return labels
+
+
+def spread(places, step):
+    """Ascending ``places`` moved as little as needed to lie ``step`` apart or more."""
+    groups = [[place, 1] for place in places]  # centre and size of runs of labels that touch
+    k = 0
+    while k + 1 < len(groups):
+        (low, m), (high, n) = groups[k], groups[k + 1]
+        if high - low < 0.5 * (m + n) * step * (1.0 - 1e-9):
+            groups[k : k + 2] = [[(low * m + high * n) / (m + n), m + n]]
+            k = max(k - 1, 0)
+        else:
+            k += 1
+    return np.concatenate([centre + step * (np.arange(size) - 0.5 * (size - 1)) for centre, size in groups])
+
+
+def curve(dataset, variable="deformed_length", along="pressure", each=None, ax=None, **select) -> Axes:
+    """Draws ``variable`` of a Dataset (an atlas, or one actuator) along one dimension, and returns the Axes.
+
+    ``each`` names a second dimension: one line per node of it, 9 at most, evenly chosen. ``select`` gives the others
+    (stored units, or the name of a ``design``); the nearest node is taken and named below the title. Not given: the largest
+    pressure, force and torque nearest zero, the middle of anything else. The error bound is a band, thin lines mark states
+    that need a fiber family to push, open circles unstable ones; lines end where there is no result.
+
+    Raises ValueError for unknown names, and where ``along`` or ``each`` is no dimension of the variable.
+    """
+    known = [name for name in (*schema.VARIABLES, "force", "torque") if name in dataset.data_vars]
+    check_name(variable, known, "variable")
+    dims = [name for name in dimensions(dataset) if name in dataset[variable].dims]
+    check_name(along, [name for name in dims if name != DESIGN], f"numeric dimension of {variable}")
+    if each is not None:
+        check_name(each, [name for name in dims if name != along], f"further dimension of {variable}")
+    point, index = choose(dataset, select, (along, each))
+    plane = dataset.isel(index)
+    nodes = [None] if each is None else _nodes(dataset.sizes[each])
+    shown = absolute(variable)
+    with style.context():
+        ax = style.new_axes(*SIZE) if ax is None else ax
+        colours = style.SERIES * 2 if each == DESIGN else style.ramp(len(nodes))
+        drawn = [
+            _draw(ax, plane if node is None else plane.isel({each: node}), variable, along, shown, colour)
+            for node, colour in zip(nodes, colours)
+        ]
+        _name_axes(ax, along, shown)
+        if each is not None:
+            label_ends(ax, drawn, _texts(plane[each].values[nodes], each))
+            units = "" if each == DESIGN else f" [{shown_units(each)[0]}]".replace(" [1]", "")
+            ax.annotate(each.replace("_", " ") + units, (1.0, 1.0), xycoords="axes fraction", xytext=(4.0, 9.0),
+                        textcoords="offset points", color=style.QUIET, gid="each")  # fmt: skip
+        relevant = {name: value for name, value in point.items() if name in dataset[variable].coords}
+        _name_choice(ax, relevant, [words for gid, words in MARKS.items() if _marked(ax, gid)])
+    return ax
+
+
+def _nodes(size):
+    return np.unique(np.linspace(0, size - 1, MOST).round().astype(int)).tolist()
+
+
+def _texts(values, each):
+    return [str(value) if each == DESIGN else f"{shown_units(each)[1] * float(value):.4g}" for value in values]
+
+
+def _draw(ax, one, variable, along, shown, colour):
+    value = one[variable]
+
+    def beside(name):
+        """An array that runs along the same dimension, or None."""
+        return one[name].values if name in one and one[name].dims == value.dims else None
+
+    status, slack, error = beside(status_of(variable)), beside("slack_fiber"), beside(f"{variable}_error")
+    held = variable if variable.startswith("blocked") else None
+    stable = beside(f"{held}_stable" if held else "stable")
+    valued = np.isfinite(value.values)
+    if status is not None and variable != "limit_pressure":
+        valued &= np.isin(status, VALUED)
+    return draw_line(
+        ax, shown_units(along)[1] * one[along].values, np.where(valued, shown.convert(value.values, {}), np.nan),
+        error=None if error is None else np.abs(shown.convert(error, {})),
+        slack=None if slack is None or held else valued & (slack > 0),
+        unstable=None if stable is None else valued & (stable == 0), color=colour, gid=variable,
+    )  # fmt: skip
+
+
+def _name_axes(ax, along, shown):
+    label = f"{along.replace('_', ' ')} [{shown_units(along)[0]}]".removesuffix(" [1]")
+    style.dress(ax, label, shown.axis_label, shown.label[0].upper() + shown.label[1:])
+    ax.xaxis.set_major_locator(MaxNLocator(7))
+    ax.margins(x=0.0)
+
+
+def _marked(ax, gid):
+    """Whether some line has nodes with a mark: drawn thin, or as circles."""
+    if gid == "unstable":
+        return any(line.get_gid() == gid for line in ax.lines)
+    pairs = zip(ax.lines, ax.lines[1:])
+    return any(
+        np.isnan(firm.get_ydata()).sum() > np.isnan(line.get_ydata()).sum()
+        for line, firm in pairs
+        if firm.get_gid() == gid
+    )
+
+
+def _name_choice(ax, point, marks):
+    """What was chosen and what marks mean, in words below the heading."""
+    words = [*(describe(name, value) for name, value in point.items() if USUAL.get(name) != value), *marks]
+    if words:
+        width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
+        below = textwrap.wrap(", ".join(words), max(int(width / LETTER), 30))
+        ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + 9.0 * len(below), fontsize=style.NORMAL + 1.0,
+                     fontweight="bold")  # fmt: skip
+        ax.annotate("\n".join(below), (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), gid="chosen",
+                    textcoords="offset points", color=style.QUIET, fontsize=style.SMALL, linespacing=1.0)  # fmt: skip

@@ -1,0 +1,218 @@
+"""Shapes of actuators in space: wall and both fiber families, undeformed in blue, deformed in red (Figures 2-2, 2-3).
+
+The drawing is a parallel projection along a slant: what lies in the plane through the axis keeps its true length, so axial
+positions and radii can be read from the axes; circles around the axis look as ellipses. With the axis along z, u = z - SLANT
+r cos(theta) and v = r sin(theta); theta = 0 faces the onlooker.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+
+from ..actuator import Actuator
+from . import style
+
+SLANT = 0.34  # half width of an ellipse over its half height
+AROUND = 61  # directions around the axis between the edges of what is seen
+ALONG = 181  # stations of the wall
+FINE = 1201  # stations of a fiber
+FIBERS = 14  # of a family of long pitch; steeper ones have fewer, in proportion to the cosine
+MM = 1e3
+WIDTH = style.PAGE  # of a figure of its own [mm]
+MARGIN = 0.02  # beside a shape, over its length
+END = "#d8d5ce"
+LIGHT = np.array([0.55, 0.75, 0.25]) / np.linalg.norm([0.55, 0.75, 0.25])  # from where it comes: depth, up, along
+
+
+class Shape(NamedTuple):
+    """A surface of revolution with fibers, at stations (n,): its radius and axial position [mm], its rotation from the fixed
+    end, and the angular position of the fiber of each family that starts at theta = 0 [radian].
+    """
+
+    radius: np.ndarray
+    position: np.ndarray
+    twist: np.ndarray
+    fibers: tuple
+    counts: tuple  # fibers of each family that are drawn
+
+
+def shape_of(tube: Actuator, state=None) -> Shape:
+    """The shape of ``tube`` undeformed, or in a ``state``: a Dataset of one load from ``lock``, ``inflate`` or the like.
+
+    Raises ValueError for a state with dimensions other than ``x``, without a result, or not of this tube.
+    """
+    share = np.linspace(0.0, 1.0, FINE)
+    turns = []
+    for angles in tube.angles(share):
+        slope = np.tan(np.radians(angles)) * tube.length / tube.fiber_surface
+        turns.append(np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * np.diff(share))]))
+    counts = tuple(max(2, round(FIBERS * np.cos(np.radians(np.abs(angles)).mean()))) for angles in tube.angles(share))
+    if state is None:
+        return Shape(
+            np.full(FINE, tube.fiber_surface * MM), share * tube.length * MM, np.zeros(FINE), tuple(turns), counts
+        )
+    free = [name for name in state["deformed_radius"].dims if name != "x"]
+    if free:
+        raise ValueError(f"a shape is drawn of one load; choose one of {', '.join(free)} with .sel or .isel")
+    x = state["x"].values / tube.length
+    if len(x) < 2 or abs(x[0]) > 1e-9 or abs(x[-1] - 1.0) > 1e-6:
+        raise ValueError(f"stations run from {x[0]:g} to {x[-1]:g} lengths of this tube; a shape needs 0 to 1")
+    radius, position, twist = (
+        np.interp(share, x, state[name].values) for name in ("deformed_radius", "axial_position", "twist")
+    )
+    if not np.all(np.isfinite(radius)):
+        raise ValueError(f"this state has no result (status {int(state['status'])}): there is no shape to draw")
+    twist = np.radians(twist)
+    return Shape(radius * MM, position * MM, twist, tuple(turn + twist for turn in turns), counts)
+
+
+def project(shape: Shape, theta):
+    """Points of the paper ``(u, v)`` [mm] of the surface at angular positions ``theta``, which broadcast with stations."""
+    return shape.position - SLANT * shape.radius * np.cos(theta), shape.radius * np.sin(theta)
+
+
+def seen(shape: Shape, theta):
+    """Whether the surface at ``theta`` faces the onlooker."""
+    return np.cos(theta) - SLANT * _slope(shape) > 0.0
+
+
+def _reach(shape):
+    """The angular position at which the surface turns away, at each station."""
+    return np.arccos(np.clip(SLANT * _slope(shape), -1.0, 1.0))
+
+
+def _slope(shape):
+    """dr/dz along the meridian; large where the wall stands across the axis."""
+    step = np.gradient(shape.position)
+    return np.gradient(shape.radius) / np.where(np.abs(step) < 1e-9, 1e-9, step)
+
+
+def draw_shape(ax: Axes, shape: Shape, colours=style.AFTER, lift: float = 0.0) -> list[LineCollection]:
+    """Draws a shape, its axis at the height ``lift`` [mm]; returns the lines of the alpha and the beta family."""
+    _draw_wall(ax, shape, colours, lift)
+    lines = [
+        _draw_family(ax, shape, turn, count, colour, lift)
+        for turn, count, colour in zip(shape.fibers, shape.counts, colours)
+    ]
+    _draw_end(ax, shape, lift)
+    return lines
+
+
+def draw_outline(ax: Axes, shape: Shape, colour, lift: float = 0.0, zorder: float = 3.0) -> list:
+    """The two edges of a shape and its fixed end, as thin lines."""
+    how = {"color": colour, "linewidth": 0.6, "zorder": zorder, "gid": "edge"}
+    reach = _reach(shape)
+    lines = []
+    for theta in (-reach, reach):
+        u, v = project(shape, theta)
+        lines += ax.plot(u, v + lift, **how)
+    theta = np.linspace(-reach[0], reach[0], 61)
+    z, r = shape.position[0], shape.radius[0]
+    return lines + ax.plot(z - SLANT * r * np.cos(theta), r * np.sin(theta) + lift, **how)
+
+
+def _draw_wall(ax, shape, colours, lift):
+    """Front half of the surface, lit from above, between the two edges where it turns away."""
+    coarse = np.linspace(0, len(shape.radius) - 1, ALONG).round().astype(int)
+    slope = _slope(shape)[coarse]
+    theta = _reach(shape)[coarse, None] * np.linspace(-1.0, 1.0, AROUND)
+    radius, position = shape.radius[coarse, None], shape.position[coarse, None]
+    u, v = position - SLANT * radius * np.cos(theta), radius * np.sin(theta) + lift
+    normal = np.stack([np.cos(theta), np.sin(theta), np.broadcast_to(-slope[:, None], theta.shape)])
+    normal /= np.linalg.norm(normal, axis=0)
+    bright = np.clip(np.tensordot(LIGHT, normal, 1), 0.0, 1.0)
+    gloss = LinearSegmentedColormap.from_list("wall", [_mixed(colours[1], 0.45), _mixed(colours[1], 0.86), style.PAPER])
+    ax.pcolormesh(u, v, 0.15 + 0.75 * bright**1.5, cmap=gloss, vmin=0.0, vmax=1.0, shading="gouraud", rasterized=True,
+                  zorder=2, gid="wall")  # fmt: skip
+    draw_outline(ax, shape, colours[0], lift)
+
+
+def _mixed(colour, white):
+    """The colour with a share of white."""
+    rgb = np.array([int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)])
+    return tuple(white + (1.0 - white) * rgb)
+
+
+def _draw_family(ax, shape, turn, count, colour, lift):
+    """What is seen of the fibers of one family, evenly around the tube."""
+    pieces = []
+    for start in 2.0 * np.pi * (np.arange(count) + 0.5) / count:
+        u, v = project(shape, turn + start)
+        front = seen(shape, turn + start)
+        for piece in np.split(np.arange(u.size), np.flatnonzero(np.diff(front)) + 1):
+            if front[piece[0]] and piece.size > 1:
+                pieces.append(np.stack([u[piece], v[piece] + lift], axis=1))
+    lines = LineCollection(pieces, colors=colour, linewidths=0.8, capstyle="butt", zorder=2.5, gid="fibers")
+    return ax.add_collection(lines, autolim=False)
+
+
+def _draw_end(ax, shape, lift):
+    """The free end as a disc, with a notch that shows how far it has turned: upright before deformation."""
+    theta = np.linspace(0.0, 2.0 * np.pi, 121)
+    z, r = shape.position[-1], shape.radius[-1]
+    disc = np.stack([z - SLANT * r * np.cos(theta), r * np.sin(theta) + lift], axis=1)
+    ax.add_patch(PathPatch(Path(disc, closed=True), facecolor=END, edgecolor=style.INK, linewidth=0.5, zorder=4))
+    turned, inner = 0.5 * np.pi + shape.twist[-1], np.array([0.25, 1.0]) * r
+    u, v = z - SLANT * inner * np.cos(turned), inner * np.sin(turned)
+    ax.plot(u, v + lift, color=style.INK, linewidth=1.0, zorder=5, solid_capstyle="butt", gid="notch")
+
+
+def shape_plot(tube: Actuator, *states, titles=(), ax=None) -> Axes:
+    """The undeformed actuator on top, in blue, and below it each of ``states`` in red; returns the Axes.
+
+    A state is a Dataset of one load, from ``lock``, ``inflate``, ``blocked_force`` or the like; ``titles`` names each.
+    Lengths along the axis and across are drawn to one scale. Raises ValueError, see :func:`shape_of`.
+    """
+    drawn = [shape_of(tube), *(shape_of(tube, state) for state in states)]
+    names = ["undeformed", *titles, *["deformed"] * (len(states) - len(titles))]
+    right = max(float(np.max(project(shape, np.pi)[0])) for shape in drawn)
+    left = min(float(np.min(project(shape, 0.0)[0])) for shape in drawn)
+    margin = MARGIN * (right - left)
+    words = (
+        2.0 * style.LARGE / 72.0 * style.INCH * (right - left + 2.0 * margin) / (WIDTH - 12.0)
+    )  # two lines [mm of data]
+    lifts, top = [], 0.0
+    for shape in drawn:
+        lifts.append(top - words - shape.radius.max())
+        top = lifts[-1] - shape.radius.max() - 0.35 * words
+    with style.context():
+        span = right - left + 2.0 * margin
+        ax = style.new_axes(WIDTH, -top / span * (WIDTH - 4.0) + 14.0) if ax is None else ax
+        for k, (shape, lift, name) in enumerate(zip(drawn, lifts, names)):
+            draw_shape(ax, shape, style.AFTER if k else style.BEFORE, lift)
+            _name(ax, shape, name, left, lift + shape.radius.max() + 0.25 * words, k)
+        _name_families(ax, tube, right, lifts[0] + drawn[0].radius.max() + 0.25 * words)
+        ax.set(xlim=(left - margin, right + margin), ylim=(top, 0.0), aspect="equal")
+        ax.set_xlabel("axial position [mm], radii to the same scale")
+        ax.yaxis.set_visible(False)
+        ax.spines[["left", "top", "right"]].set_visible(False)
+    return ax
+
+
+def _name(ax, shape, name, left, height, deformed):
+    turned = np.degrees(shape.twist[-1])
+    size = f": {shape.position[-1] - shape.position[0]:.1f} mm long, {2.0 * shape.radius.max():.1f} mm across"
+    size += f", turned by {turned:.0f}°".replace("-", "\N{MINUS SIGN}") if abs(turned) >= 0.5 else ""
+    colour = (style.AFTER if deformed else style.BEFORE)[0]
+    head = ax.text(left, height, name, color=colour, fontweight="bold", gid="name")
+    ax.annotate(size, (1.0, 0.0), xycoords=head, color=colour, va="bottom", annotation_clip=False, gid="size")
+
+
+def _name_families(ax, tube, right, height):
+    """The angles of both families in their colours, at the right."""
+    words = []
+    for name, angles in zip((r"$\alpha$", r"$\beta$"), tube.angles(np.linspace(0.0, 1.0, 257))):
+        first, last = f"{angles[0]:.4g}°", f"{angles[-1]:.4g}°"
+        words.append(
+            (f"{name} = {first}" if np.ptp(angles) == 0.0 else f"{name} from {first} to {last}").replace(
+                "-", "\N{MINUS SIGN}"
+            )
+        )
+    beta = ax.text(right, height, words[1], color=style.BEFORE[1], ha="right", gid="family")
+    ax.annotate(words[0] + "   ", (0.0, 0.0), xycoords=beta, color=style.BEFORE[0], ha="right", va="bottom",
+                annotation_clip=False, gid="family")  # fmt: skip
