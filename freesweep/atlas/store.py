@@ -7,6 +7,7 @@ import numpy as np
 
 from ..status import STATUSES
 from .files import write_whole
+from .seal import sealed
 
 FORMAT = "1"
 COMPRESSION = {"zlib": True, "complevel": 1, "shuffle": True}  # checksums come with it; higher levels gain 3 %
@@ -45,7 +46,7 @@ class Atlas:
 
 
 def save_atlas(dataset, path) -> None:
-    """Write a Dataset as an atlas: one netCDF4 file, whole or not at all.
+    """Write a Dataset as an atlas: one netCDF4 file with its seal, whole or not at all.
 
     Raises :class:`freesweep.atlas.files.EnvironmentFault`.
     """
@@ -55,7 +56,7 @@ def save_atlas(dataset, path) -> None:
         if variable.ndim > 0 and variable.dtype.kind in "fiu"
     }
     content = dataset.assign_attrs(freesweep_format=FORMAT).to_netcdf(engine="netcdf4", encoding=encoding)
-    write_whole(path, content)
+    write_whole(path, sealed(content))
 
 
 def open_atlas(path) -> Atlas:

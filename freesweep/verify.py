@@ -1,0 +1,98 @@
+"""Whether an atlas is what was written, and whole: its seal, its specification, its statuses."""
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+
+from .atlas.schema import FLAG_OF, PARAMETERS, STATUS_OF, VARIABLES
+from .atlas.seal import seal_fault
+from .atlas.store import AtlasError, open_atlas
+from .status import VALUED
+
+MANY = 1 << 24  # numbers read at once
+
+
+def faults(path) -> list:
+    """What is wrong with the atlas at ``path``, one sentence each. None: every bit is the one that was written, and the
+    content is what the specification in it asks for.
+
+    Raises FileNotFoundError; OSError where the file cannot be read.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"no atlas at {path}")
+    if fault := seal_fault(path):
+        return [fault]
+    try:
+        atlas = open_atlas(path)
+    except AtlasError as error:
+        return [str(error)]
+    with atlas:
+        return [*_of_specification(atlas.data), *_of_content(atlas.data)]
+
+
+def _of_specification(data):
+    """Faults of the grid against the specification that the atlas carries."""
+    from .sweep.spec import SpecificationError, parse
+
+    text = data.attrs.get("specification", "")
+    if hashlib.sha256(text.encode()).hexdigest() != data.attrs.get("specification_sha256"):
+        return ["its specification is not the one whose SHA-256 it carries"]
+    try:
+        sweep = parse(text)
+    except SpecificationError as error:
+        return [f"its specification cannot be read: {error}"]
+    wanted = sweep.fixed | sweep.axes | ((sweep.designs or {}).get("columns", {}))
+    found = [
+        f"{name} is not what its specification asks for"
+        for name, values in wanted.items()
+        if name not in data.coords or not np.array_equal(data[name].values, values)
+    ]
+    if dict(data.sizes) != dict(zip(sweep.dims, sweep.shape)):
+        found.append(
+            f"its axes are {dict(data.sizes)}; its specification asks for {dict(zip(sweep.dims, sweep.shape))}"
+        )
+    return found
+
+
+def _of_content(data):
+    """Faults of values against statuses, and of bounds."""
+    known = {*VARIABLES, *(f"{name}_error" for name in VARIABLES), *STATUS_OF, *FLAG_OF, *PARAMETERS}
+    found = [f"{name} is unknown to this version" for name in data.data_vars if name not in known]
+    found += [f"{name} is missing" for name in ("status", "locked_status") if name not in data]
+    for name in (name for name in VARIABLES if name in data):
+        judge = status_of(name)
+        lacking = [other for other in (f"{name}_error", judge) if other not in data]
+        if lacking:
+            found.append(f"{name} lacks {' and '.join(lacking)}")
+            continue
+        wrong = unbounded = 0
+        for part in _parts(data[name]):
+            value, codes = data[name].isel(part), data[judge].isel(part, missing_dims="ignore")
+            there = np.isfinite(value)
+            wrong += np.count_nonzero(there != (codes == 1 if judge in FLAG_OF else codes.isin(VALUED)))
+            bound = data[f"{name}_error"].isel(part)
+            unbounded += np.count_nonzero(there != (np.isfinite(bound) & (bound >= 0.0)))
+        if wrong:
+            found.append(f"{name}: {wrong:,} numbers where its status says none, or none where it says one")
+        if unbounded:
+            found.append(f"{name}: {unbounded:,} numbers without a bound, or bounds without a number")
+    return found
+
+
+def status_of(name) -> str:
+    """The variable that says where another has numbers."""
+    if name == "limit_pressure":
+        return "limit_found"
+    if f"{name}_status" in STATUS_OF:
+        return f"{name}_status"
+    return "locked_status" if name.startswith("locked_") else "status"
+
+
+def _parts(variable):
+    """Slices along the first dimension, of MANY numbers at most where that is possible."""
+    if not variable.ndim:
+        return [{}]
+    rows = max(1, MANY * len(variable) // max(variable.size, 1))
+    return [{variable.dims[0]: slice(k, k + rows)} for k in range(0, len(variable), rows)]
