@@ -6,6 +6,7 @@ Exit codes: 0 done, 2 bad input, 3 the environment (disk, memory, permissions), 
 import argparse
 import sys
 
+from .calibration.command import add_calibrate
 from .judging import add_judging
 from .pictures import add_plot, check_map, draw_map
 from .single import add_single
@@ -62,6 +63,7 @@ def parser() -> argparse.ArgumentParser:
     _info(commands)
     add_single(commands)
     add_judging(commands)
+    add_calibrate(commands)
     return top
 
 

@@ -33,7 +33,7 @@ def table(dataset) -> str:
             _, scale = SHOWN[dataset[name].attrs["units"]]
             row.append(_number(state[name].item() * scale, state[f"{name}_error"].item() * scale))
         rows.append([*row, STATUSES[int(state["status"])].meaning + _flags(state)])
-    lines = _aligned([[*heads, "status"], *rows])
+    lines = aligned([[*heads, "status"], *rows])
     seen = sorted({int(value) for value in dataset["status"].values.ravel()} - {0})
     lines += [f"{STATUSES[value].meaning}: {STATUSES[value].sentence}" for value in seen]
     if "limit_found" in dataset and bool(dataset["limit_found"]):
@@ -63,6 +63,7 @@ def _flags(state):
     return slack + (", unstable" if int(state["status"]) in VALUED and not int(state["stable"]) else "")
 
 
-def _aligned(rows):
+def aligned(rows):
+    """Rows of texts as lines, columns set flush right."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]

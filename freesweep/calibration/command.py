@@ -1,0 +1,71 @@
+"""The command `freesweep calibrate`: parses and calls."""
+
+NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
+
+
+def add_calibrate(commands):
+    """Add the command to the command line."""
+    command = commands.add_parser(
+        "calibrate",
+        help="material constants and fiber extension from measured curves",
+        description="Fits material constants and fiber extension to measured curves of length, rotation, force or torque."
+        " Each CSV file begins with a line of names and units, such as 'pressure [psi],deformed_length [mm]'; columns:"
+        " pressure, deformed_length, rotation, mid_radius, force, torque, their standard uncertainties as force_sigma, and"
+        " whatever describes the actuator, unless it is given as an option.",
+    )
+    command.add_argument("files", nargs="+", metavar="FILE.csv", help="measured curves, of one or more actuators")
+    for name in NUMBERS:
+        command.add_argument(
+            f"--{name.replace('_', '-')}", metavar="VALUE", help="of all actuators without such a column"
+        )
+    command.add_argument("--c10", metavar="C", help="first guess, or the value where it is not fitted")
+    command.add_argument("--c01", metavar="C", help="first guess, or the value where it is not fitted")
+    command.add_argument("--fit", nargs="+", metavar="NAME", help="what to fit (default: c10 c01 fiber_extension)")
+    command.add_argument(
+        "--measured",
+        nargs="+",
+        default=[],
+        metavar="NAME",
+        help="which columns were measured, in files that have them; the bench imposed the others",
+    )
+    command.add_argument(
+        "--own-extension", action="store_true", help="a fiber extension for each actuator instead of one for all"
+    )
+    command.add_argument(
+        "--energy", choices=("full", "principal"), default="full", help="principal: Eq. 2.5 as printed"
+    )
+    command.add_argument("-o", "--out", metavar="FILE.nc", help="keep parameters, covariance and curves as netCDF4")
+    command.set_defaults(run=_run)
+
+
+def _run(options):
+    from ..actuator import ActuatorError, MooneyRivlin
+    from ..atlas.files import write_whole
+    from ..atlas.schema import PARAMETERS
+    from ..units import quantity
+    from .csv_file import FIRST_GUESS, read_measurements
+    from .fit import calibrate
+    from .report import table, to_dataset
+
+    values, faults = {}, []
+    for name in (name for name in (*NUMBERS, "c10", "c01") if getattr(options, name) is not None):
+        try:
+            values[name] = quantity(getattr(options, name), PARAMETERS[name].units)
+        except ValueError as error:
+            faults.append(f"--{name.replace('_', '-')}: {error}")
+    guess = {name: values.pop(name, getattr(FIRST_GUESS, name)) for name in ("c10", "c01")}
+    if not faults:
+        try:
+            material = MooneyRivlin(**guess)
+            measurements = read_measurements(
+                options.files, measured=options.measured, material=material, energy=options.energy, **values
+            )
+        except ActuatorError as error:
+            faults = error.faults
+    if faults:
+        raise ValueError("\n".join(["cannot read these measurements:", *(f"  - {fault}" for fault in faults)]))
+    found = calibrate(measurements, options.fit, own_extension=options.own_extension)
+    print(table(found))
+    if options.out:
+        write_whole(options.out, to_dataset(found).to_netcdf(engine="netcdf4"))
+        print(options.out)

@@ -1,0 +1,147 @@
+"""What a test bench measured: states of actuators under pressure, as arrays in SI units and degrees."""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ..actuator import Actuator, ActuatorError
+
+COLUMNS = {"deformed_length": "m", "rotation": "degree", "mid_radius": "m", "force": "N", "torque": "N m"}
+LEAST = {"pressure": 0.0, "deformed_length": 1e-12, "mid_radius": 1e-12}  # [Pa, m, m]
+
+
+class Bench(NamedTuple):
+    """What a test bench can measure at once, and what it imposes meanwhile."""
+
+    measured: tuple
+    imposed: tuple
+
+
+FREE = Bench(("deformed_length", "rotation", "mid_radius"), ("force", "torque"))
+BENCHES = {  # by the load that is measured: it holds the length, or the rotation
+    "force": Bench(("force", "rotation", "mid_radius"), ("deformed_length", "torque")),
+    "torque": Bench(("torque", "deformed_length", "mid_radius"), ("rotation", "force")),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Measured states of one actuator: arrays of one length; a single number counts for all states.
+
+    Parameters
+    ----------
+    tube : the actuator; of what is fitted its numbers are a first guess, of the rest the truth
+    pressure : [Pa]
+    deformed_length, rotation, mid_radius, force, torque : [m, degree, m, N, N m], measured or imposed. Where ``force`` was
+        measured, the bench imposed length and torque (left out: the undeformed length, no torque); where ``torque`` was,
+        rotation and force (left out: none); where neither was, force and torque (left out: none)
+    measured : name or names of what was measured; may be left out where the columns leave no doubt
+    sigma : standard uncertainties by name, such as ``{"deformed_length": 5e-4}``; left out, the scatter tells them
+
+    Raises :class:`ActuatorError`, which lists every fault.
+    """
+
+    tube: Actuator
+    pressure: np.ndarray
+    deformed_length: np.ndarray | None = None
+    rotation: np.ndarray | None = None
+    mid_radius: np.ndarray | None = None
+    force: np.ndarray | None = None
+    torque: np.ndarray | None = None
+    measured: tuple = ()
+    sigma: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        faults = (
+            [] if isinstance(self.tube, Actuator) else [f"tube: found {type(self.tube).__name__}; give an Actuator"]
+        )
+        arrays = {"pressure": _array("pressure", self.pressure, "Pa", faults)}
+        for name, units in COLUMNS.items():
+            if getattr(self, name) is not None:
+                arrays[name] = _array(name, getattr(self, name), units, faults)
+        measured = (self.measured,) if isinstance(self.measured, str) else tuple(self.measured)
+        measured = measured or default_measured(arrays)
+        faults += measured_faults(measured, arrays)
+        sigma = {}
+        for name, value in dict(self.sigma).items():
+            if name not in measured:
+                faults.append(f"sigma: {name!r:.40} is not measured; measured: {', '.join(measured) or 'nothing'}")
+            else:
+                sigma[name] = _array(f"sigma of {name}", value, COLUMNS.get(name, "1"), faults, above=0.0)
+        columns = {name: len(array) for name, array in arrays.items() if array is not None}
+        columns |= {f"sigma of {name}": len(array) for name, array in sigma.items() if array is not None}
+        if len({n for n in columns.values() if n > 1}) > 1:
+            faults.append(f"columns differ in length: {', '.join(f'{name} {n}' for name, n in columns.items())}")
+        if faults:
+            raise ActuatorError(faults)
+        count = max(columns.values())
+        for name, array in arrays.items():
+            object.__setattr__(self, name, _read_only(array, count))
+        object.__setattr__(self, "sigma", {name: _read_only(array, count) for name, array in sigma.items()})
+        object.__setattr__(self, "measured", measured)
+
+    def __len__(self):
+        return len(self.pressure)
+
+    def imposed(self, name):
+        """An imposed column (n,); where the bench left it out, what it is then."""
+        if getattr(self, name) is not None and name not in self.measured:
+            return getattr(self, name)
+        return np.full(len(self), self.tube.length if name == "deformed_length" else 0.0)
+
+
+def default_measured(given) -> tuple:
+    """What was measured, if the names of the columns leave no doubt; else nothing."""
+    given = tuple(name for name in COLUMNS if name in given)
+    loads = tuple(name for name in given if name in BENCHES)
+    return given if not loads or (len(loads) == 1 and given == loads) else ()
+
+
+def measured_faults(measured, given) -> list:
+    """Sentences on what no bench can measure, or impose, together."""
+    given = [name for name in COLUMNS if name in given]
+    if not given:
+        return [f"measured: nothing was; beside the pressure give one or more of {', '.join(COLUMNS)}"]
+    if not measured:
+        return [f"measured: {' and '.join(given)} are given; say which was measured: the bench imposed the others"]
+    if unknown := [name for name in measured if name not in given]:
+        return [f"measured: {name!r:.40} is not among the columns given, {', '.join(given)}" for name in unknown]
+    loads = [name for name in measured if name in BENCHES]
+    bench = BENCHES[loads[0]] if loads else FREE
+    faults = [
+        f"measured: {name} beside {loads[0]}; a bench that measures {loads[0]} can measure"
+        f" {' and '.join(bench.measured[1:])} too, nothing else"
+        for name in measured
+        if name not in bench.measured
+    ]
+    return faults + [
+        f"{name}: given and not measured, but with {' and '.join(measured)} measured a bench imposes"
+        f" {' and '.join(bench.imposed)} only; leave it out, or call it measured"
+        for name in given
+        if name not in measured and name not in bench.imposed
+    ]
+
+
+def _array(name, value, units, faults, above=None):
+    try:
+        array = np.atleast_1d(np.asarray(value))
+    except ValueError:  # ragged
+        array = np.array(None)
+    if array.dtype.kind not in "iuf" or array.ndim != 1 or array.size == 0:
+        faults.append(f"{name}: found {value!r:.60}; give a number or a 1-D array of numbers in [{units}]")
+        return None
+    array = array.astype(float)
+    if not np.all(np.isfinite(array)):
+        faults.append(f"{name}: entry {np.argmin(np.isfinite(array)) + 1} is not finite; leave such states out")
+    elif above is not None and not np.all(array > above):
+        faults.append(f"{name}: found {array.min():g}; it has to be above {above:g}")
+    elif name in LEAST and np.any(array < LEAST[name]):
+        faults.append(f"{name}: found {array.min():g}; it has to be {'above 0' if LEAST[name] else '0 or more'}")
+    return array
+
+
+def _read_only(array, count):
+    array = np.array(np.broadcast_to(array, (count,)))
+    array.setflags(write=False)
+    return array
