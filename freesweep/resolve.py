@@ -1,0 +1,232 @@
+"""Stored points of an atlas, solved anew by quadrature of the first integral and held against their bounds."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .atlas.schema import VARIABLES
+from .first_integral import folded, held
+from .first_integral.tube import NO_GUIDE, OUTPUTS, SOLVED, cylinders, solve
+from .first_integral.uniform import Tubes, follow
+from .status import VALUED
+
+DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "c10", "c01", "force", "torque")
+MANY = 1 << 25  # numbers of one variable read at once
+
+
+class Compared(NamedTuple):
+    """One variable at the points drawn: arrays (judged,), in the units of the atlas."""
+
+    name: str
+    difference: np.ndarray
+    bound: np.ndarray  # as stored
+    own: np.ndarray  # estimate of the second method's own error
+    unjudged: int  # points with a stored number that the second method could not solve
+
+    @property
+    def broken(self) -> np.ndarray:
+        """Where the difference exceeds both errors together."""
+        return self.difference > self.bound + self.own
+
+
+def resolve(data, count, seed=0):
+    """Draw ``count`` points with results from an atlas' Dataset and solve them anew; ``(comparisons, notes)``.
+
+    ``notes`` are sentences on what could not be judged, or not without help. Raises ValueError for an atlas in which the
+    tubes vary along their length: they have no first integral.
+    """
+    if missing := [name for name in DESIGN if name not in data.coords]:
+        raise ValueError(
+            f"--resolve: {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} no number in this atlas; the first"
+            " integral exists only for tubes that are the same all along"
+        )
+    points = _Points(data, count, seed)
+    notes = []
+    found = [*_shapes(points, "", *_free(points, notes)), *_shapes(points, "locked_", *_locked(points))]
+    found += [_limits(points), *_blocked(points), *_ideal(points)]
+    return [compared for compared in found if compared is not None], notes
+
+
+class _Points:
+    """Points of the grid drawn among those with results, and what is stored there."""
+
+    def __init__(self, data, count, seed):
+        self.data, self.shape, self.dims = data, data["status"].shape, data["status"].dims
+        status = data["status"].values
+        good = np.flatnonzero(np.isin(status, VALUED))
+        drawn = np.random.default_rng(seed).choice(good, size=min(count, len(good)), replace=False, shuffle=False)
+        self.index = dict(zip(self.dims, np.unravel_index(np.sort(drawn), self.shape)))
+        self.count = len(drawn)
+        self.column = {name: self.stored(name) for name in (*DESIGN, "pressure")}
+        self.radius = self.stored("fiber_radius") if "fiber_radius" in data else self.column["radius"]
+        self.first = self._first_pressures(status)
+
+    def stored(self, name, along=()):
+        """Numbers of a variable at the points (n,); of dimensions that the points lack, those ``along`` are kept."""
+        variable = self.data[name]
+        at = tuple(self.index.get(dim, slice(None) if dim in along else 0) for dim in variable.dims)
+        if variable.size <= MANY or variable.dims[0] not in self.index:
+            return np.broadcast_to(
+                np.asarray(variable.values[at], float), (self.count, *np.shape(variable.values[at])[1:])
+            )
+        numbers = np.empty(self.count)
+        for row in np.unique(at[0]):
+            mine = at[0] == row
+            numbers[mine] = variable[int(row)].values[tuple(index[mine] for index in at[1:])]
+        return numbers
+
+    def _first_pressures(self, status):
+        """The smallest pressure with a result of each point's design: up to it, loads rise in proportion."""
+        if "pressure" not in self.dims:
+            return self.column["pressure"]
+        pressures = self.data["pressure"].values
+        place = tuple(self.index[name] for name in self.dims if name != "pressure")
+        rows = np.moveaxis(status, self.dims.index("pressure"), -1)[place]
+        loaded = (self.column["force"] != 0.0) | (self.column["torque"] != 0.0)
+        there = np.isin(rows, VALUED) & ((pressures > 0.0) | loaded[:, None])
+        return np.where(there.any(axis=1), pressures[np.argmax(there, axis=1)], self.column["pressure"])
+
+    def tubes(self, locked=False, **changes):
+        """The points' dimensionless problems."""
+        c = self.column
+        ta, tb = np.tan(np.radians(c["alpha"])), np.tan(np.radians(c["beta"]))
+        r, ones = self.radius, np.ones(self.count)
+        area = (2.0 * c["radius"] + c["wall"]) * c["wall"] / r**2
+        loads = {
+            "pressure": c["pressure"] / c["c10"],
+            "force": c["force"] / (np.pi * r**2 * c["c10"]),
+            "torque": c["torque"] / (np.pi * r**3 * c["c10"]),
+        }
+        if locked:
+            loads = {"pressure": ones, "force": 0.0 * ones, "torque": 0.0 * ones}
+        shear = ones * (self.data.attrs["energy"] == "full")
+        return Tubes(
+            0.5 * (ta + tb), 0.5 * (ta - tb), area, c["fiber_extension"], c["c01"] / c["c10"], shear, **loads,
+            weight=ones * (not locked), half=0.5 * c["length"] / r,
+        )._replace(**changes)  # fmt: skip
+
+
+def _free(points, notes):
+    """Equilibria under the points' loads; of those past the uniform tube's turn, beginning at the stored middle."""
+    tubes = points.tubes()
+    judged = solve(tubes, points.first / points.column["c10"])
+    values, errors, reason = judged
+    rest = (tubes.pressure == 0.0) & (tubes.force == 0.0) & (tubes.torque == 0.0)
+    values[rest], errors[rest], reason[rest] = (
+        cylinders(tubes.at(rest)._replace(gamma=np.ones(rest.sum()))),
+        0.0,
+        SOLVED,
+    )
+    if (lost := np.flatnonzero((reason == NO_GUIDE) & ~rest)).size:
+        again = folded.solve_near(tubes.at(lost), points.stored("mid_radius")[lost] / points.radius[lost])
+        values[lost], errors[lost], reason[lost] = again
+        notes.append(
+            f"{lost.size:,} points lie where the uniform tube has turned back: solved from their stored middle radius, so"
+            " that it is an equilibrium is judged, on which branch is not"
+        )
+    return values, errors
+
+
+def _locked(points):
+    return solve(points.tubes(locked=True), np.ones(points.count))[:2]
+
+
+def _shapes(points, prefix, values, errors):
+    """Comparisons of the five outputs of equilibria."""
+    r, c10 = points.radius, points.column["c10"]
+    units = (r, np.pi * r**3, np.degrees(1.0), np.pi * r**3 * c10, r)
+    for k, (name, unit) in enumerate(zip(OUTPUTS, units)):
+        value = values[:, k] * unit
+        if name == "volume":  # the wall inside the fibers keeps its volume
+            value = value - np.pi * (r**2 - points.column["radius"] ** 2) * points.column["length"]
+        yield _compare(points, prefix + name, value, errors[:, k] * unit)
+
+
+def _limits(points):
+    """Limit pressures of the points' designs; those met before the loads are on are none."""
+    near = points.stored("limit_pressure") / points.column["c10"]
+    value = np.full(points.count, np.nan)
+    tubes = points.tubes()
+    if (some := np.flatnonzero(np.isfinite(near))).size:
+        tubes, first = tubes.at(some), (points.first / points.column["c10"])[some]
+        nothing = np.zeros(some.size)
+        rest = tubes._replace(gamma=nothing + 1.0, pressure=nothing, force=nothing, torque=nothing)
+        alone = (tubes.force == 0.0) & (tubes.torque == 0.0) & (tubes.gamma == 1.0)
+        corner = tubes._replace(pressure=np.where(alone, 0.0, np.minimum(first, near[some])))
+        u, _ = follow(nothing + 1.0, rest, corner)
+        beyond = tubes._replace(pressure=1.5 * near[some])
+        turning, t = follow(u, corner, beyond)
+        value[some] = folded.limit_pressures(tubes, turning, corner.toward(beyond, t).pressure, near[some])
+    own = 1e-9 * np.abs(value) * points.column["c10"]
+    return _compare(points, "limit_pressure", value * points.column["c10"], own)
+
+
+def _blocked(points):
+    """Blocked force and torque."""
+    tubes, r, c10 = points.tubes(), points.radius, points.column["c10"]
+    for kind, name in enumerate(("blocked_force", "blocked_torque")):
+        if name not in points.data:
+            continue
+        unit = np.pi * r ** (2 + kind) * c10
+        near = points.stored(name) / unit
+        nothing = (tubes.pressure == 0.0) & (points.column[held.LOADS[1 - kind]] == 0.0)
+        good = np.flatnonzero(np.isfinite(near) & ~nothing)
+        mine = tubes._replace(**{held.LOADS[kind]: 0.0 * r}).at(good)
+        value, own = np.full((2, points.count), np.nan)
+        value[good], own[good] = held.blocked(mine, kind, _target(points, kind)[good], near[good])
+        value[nothing], own[nothing] = 0.0, 0.0
+        yield _compare(points, name, value * unit, own * unit)
+
+
+def _target(points, kind):
+    """What is held: deformed length in radii, or rotation in radians."""
+    if kind == 1:
+        return np.radians(points.stored("held_rotation")) if "held_rotation" in points.data else 0.0 * points.radius
+    if "held_length" in points.data:
+        return points.stored("held_length") / points.radius
+    ratio = points.stored("held_length_ratio") if "held_length_ratio" in points.data else 1.0
+    return ratio * points.column["length"] / points.radius
+
+
+def _ideal(points):
+    """The closed forms of inextensible fibers: the load that makes a straight cylinder of no wall stationary."""
+    ones, r = np.ones(points.count), points.radius
+    tubes = points.tubes(gamma=ones, weight=0.0 * ones, force=0.0 * ones, torque=0.0 * ones)
+    for kind, name in enumerate(("ideal_blocked_force", "ideal_blocked_torque")):
+        unit = np.pi * r ** (2 + kind) * points.column["c10"]
+        with np.errstate(all="ignore"):
+            value = held.cylinder_load(tubes, kind, ones) * unit
+        yield _compare(points, name, value, 1e-13 * np.abs(value))
+
+
+def _compare(points, name, value, own):
+    """A variable's stored numbers against ``value`` with its ``own`` error; None where nothing is stored."""
+    if name not in points.data or name not in VARIABLES:
+        return None
+    stored, bound = points.stored(name), points.stored(f"{name}_error")
+    there = np.isfinite(stored)
+    judged = there & np.isfinite(value)
+    if not there.any():
+        return None
+    difference = np.abs(stored - value)[judged]
+    return Compared(name, difference, bound[judged], own[judged], int(np.count_nonzero(there & ~judged)))
+
+
+def table(comparisons) -> str:
+    """The comparisons as text: one line for each variable."""
+    rows = [
+        ("variable", "judged", "not judged", "largest difference", "its bound", "largest difference/bound", "exceeding")
+    ]
+    for c in comparisons:
+        if len(c.difference):
+            worst = int(np.argmax(c.difference))
+            ratio = np.max(c.difference / np.maximum(c.bound + c.own, 1e-300))
+            figures = (f"{c.difference[worst]:.2g} {VARIABLES[c.name].units}", f"{c.bound[worst]:.2g}", f"{ratio:.2g}")
+        else:
+            figures = ("-", "-", "-")
+        rows.append((c.name, f"{len(c.difference):,}", f"{c.unjudged:,}", *figures, f"{np.count_nonzero(c.broken):,}"))
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return "\n".join(
+        "  ".join([row[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:]))])
+        for row in rows
+    )
