@@ -1,0 +1,53 @@
+"""The pages under docs/: every block of Python runs, and prints what the page says it prints."""
+
+import contextlib
+import io
+import re
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parent.parent / "docs"
+BLOCK = re.compile(r"^```python\n(.*?)^```(?:\n\n```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE)
+NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
+
+
+def unit_of_last_digit(number):
+    mantissa, _, exponent = number.partition("e")
+    return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+
+
+def same(found, expected):
+    """Texts alike, numbers to the last digit that is printed (and one unit of it)."""
+    numbers = list(zip(NUMBER.findall(found), NUMBER.findall(expected)))
+    close = all(abs(float(a) - float(b)) < 1.01 * unit_of_last_digit(b) for a, b in numbers)
+    return close and NUMBER.sub("#", found) == NUMBER.sub("#", expected)
+
+
+@pytest.mark.parametrize("page", ["model.md", "cookbook.md"])
+def test_blocks_of_a_page_run_and_print_what_it_says(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = (DOCS / page).read_text(encoding="utf-8")
+    blocks = list(BLOCK.finditer(text))
+    assert len(blocks) == text.count("```python") > 4
+    names = {}
+    for block in blocks:
+        code, expected = block.groups()
+        line = text[: block.start(1)].count("\n")
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            exec(compile("\n" * line + code, page, "exec"), names)
+        assert same(out.getvalue(), expected or ""), f"line {line}:\n{out.getvalue()}"
+
+
+def test_the_comparison_can_fail():
+    assert same("a 1.234 mm, -20%", "a 1.235 mm, -20%")
+    assert not same("a 1.234 mm", "a 1.237 mm")
+    assert not same("a 1.234 mm", "b 1.234 mm")
+    assert not same("a 1.2 mm, 3", "a 1.2 mm")
+
+
+def test_pages_link_to_what_is_there():
+    for page in DOCS.glob("*.md"):
+        for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
+            assert (DOCS / target).exists(), f"{page.name}: {target}"
