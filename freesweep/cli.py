@@ -8,7 +8,7 @@ import sys
 
 from .calibration.command import add_calibrate
 from .judging import add_judging
-from .pictures import add_plot, check_map, draw_map
+from .pictures import add_plot, add_thesis, check_map, draw_map
 from .single import add_single
 
 DONE, BAD_INPUT, ENVIRONMENT, INTERRUPTED = 0, 2, 3, 130
@@ -64,6 +64,7 @@ def parser() -> argparse.ArgumentParser:
     add_single(commands)
     add_judging(commands)
     add_calibrate(commands)
+    add_thesis(commands)
     return top
 
 

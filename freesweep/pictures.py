@@ -1,4 +1,4 @@
-"""The commands that draw: plot map, curve, shape. They parse and call; every file is checked before anything is solved."""
+"""The commands that draw: plot map, curve, shape; thesis. They parse and call; names of files are checked before solving."""
 
 STILL = ".png, .svg or .pdf"
 
@@ -11,6 +11,30 @@ def add_plot(commands):
     _map(kinds)
     _curve(kinds)
     _shape(kinds)
+
+
+def add_thesis(commands):
+    """Add the command that reproduces the source."""
+    command = commands.add_parser(
+        "thesis", help="every figure and table of the source, recomputed, and its claims checked"
+    )
+    command.add_argument(
+        "figures", nargs="*", metavar="FIGURE", help="such as 2-7, table-1 or claims (default: everything)"
+    )
+    command.add_argument("-o", "--out", default="thesis", metavar="DIR", help="folder to make (default: thesis, here)")
+    command.add_argument("--quiet", action="store_true", help="say nothing but the path of the page")
+    command.set_defaults(run=_run_thesis)
+
+
+def _run_thesis(options):
+    import sys
+
+    from .thesis.make import make
+
+    def progress(name):
+        print(name, file=sys.stderr, flush=True)
+
+    print(make(options.figures, options.out, None if options.quiet else progress))
 
 
 def _out(command, default, kinds=STILL):
@@ -93,8 +117,8 @@ def _run_shape(options):
 
         print(save_motion(tube, data, out))
         return
-    from .plot.shape import shape_plot
     from .plot.style import save
+    from .plot.tubes import shape_plot
 
     save(shape_plot(tube, *states, titles=titles), out)
     print(out)

@@ -15,7 +15,8 @@ from PIL import Image
 import freesweep as fs
 from freesweep.plot import style
 from freesweep.plot.motion import frames, save_motion
-from freesweep.plot.shape import SLANT, project, seen, shape_of, shape_plot
+from freesweep.plot.shape import SLANT, project, seen, shape_of
+from freesweep.plot.tubes import shape_plot
 
 RUBBER = fs.MooneyRivlin(0.17e6, 0.08e6)
 SIZES = {"length": 0.06, "radius": 4.76e-3, "wall": 1.59e-3, "material": RUBBER}

@@ -11,7 +11,8 @@ from ..actuator import Actuator
 from ..atlas.files import write_whole
 from ..status import VALUED
 from . import style
-from .shape import MARGIN, draw_outline, draw_shape, project, shape_of
+from .shape import draw_outline, draw_shape, project, shape_of
+from .tubes import MARGIN
 
 WIDTH = 150.0  # [mm]
 RESOLUTION = 110  # [dots per inch]

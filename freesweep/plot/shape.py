@@ -23,8 +23,6 @@ ALONG = 181  # stations of the wall
 FINE = 1201  # stations of a fiber
 FIBERS = 14  # of a family of long pitch; steeper ones have fewer, in proportion to the cosine
 MM = 1e3
-WIDTH = style.PAGE  # of a figure of its own [mm]
-MARGIN = 0.02  # beside a shape, over its length
 END = "#d8d5ce"
 LIGHT = np.array([0.55, 0.75, 0.25]) / np.linalg.norm([0.55, 0.75, 0.25])  # from where it comes: depth, up, along
 
@@ -160,59 +158,3 @@ def _draw_end(ax, shape, lift):
     turned, inner = 0.5 * np.pi + shape.twist[-1], np.array([0.25, 1.0]) * r
     u, v = z - SLANT * inner * np.cos(turned), inner * np.sin(turned)
     ax.plot(u, v + lift, color=style.INK, linewidth=1.0, zorder=5, solid_capstyle="butt", gid="notch")
-
-
-def shape_plot(tube: Actuator, *states, titles=(), ax=None) -> Axes:
-    """The undeformed actuator on top, in blue, and below it each of ``states`` in red; returns the Axes.
-
-    A state is a Dataset of one load, from ``lock``, ``inflate``, ``blocked_force`` or the like; ``titles`` names each.
-    Lengths along the axis and across are drawn to one scale. Raises ValueError, see :func:`shape_of`.
-    """
-    drawn = [shape_of(tube), *(shape_of(tube, state) for state in states)]
-    names = ["undeformed", *titles, *["deformed"] * (len(states) - len(titles))]
-    right = max(float(np.max(project(shape, np.pi)[0])) for shape in drawn)
-    left = min(float(np.min(project(shape, 0.0)[0])) for shape in drawn)
-    margin = MARGIN * (right - left)
-    words = (
-        2.0 * style.LARGE / 72.0 * style.INCH * (right - left + 2.0 * margin) / (WIDTH - 12.0)
-    )  # two lines [mm of data]
-    lifts, top = [], 0.0
-    for shape in drawn:
-        lifts.append(top - words - shape.radius.max())
-        top = lifts[-1] - shape.radius.max() - 0.35 * words
-    with style.context():
-        span = right - left + 2.0 * margin
-        ax = style.new_axes(WIDTH, -top / span * (WIDTH - 4.0) + 14.0) if ax is None else ax
-        for k, (shape, lift, name) in enumerate(zip(drawn, lifts, names)):
-            draw_shape(ax, shape, style.AFTER if k else style.BEFORE, lift)
-            _name(ax, shape, name, left, lift + shape.radius.max() + 0.25 * words, k)
-        _name_families(ax, tube, right, lifts[0] + drawn[0].radius.max() + 0.25 * words)
-        ax.set(xlim=(left - margin, right + margin), ylim=(top, 0.0), aspect="equal")
-        ax.set_xlabel("axial position [mm], radii to the same scale")
-        ax.yaxis.set_visible(False)
-        ax.spines[["left", "top", "right"]].set_visible(False)
-    return ax
-
-
-def _name(ax, shape, name, left, height, deformed):
-    turned = np.degrees(shape.twist[-1])
-    size = f": {shape.position[-1] - shape.position[0]:.1f} mm long, {2.0 * shape.radius.max():.1f} mm across"
-    size += f", turned by {turned:.0f}°".replace("-", "\N{MINUS SIGN}") if abs(turned) >= 0.5 else ""
-    colour = (style.AFTER if deformed else style.BEFORE)[0]
-    head = ax.text(left, height, name, color=colour, fontweight="bold", gid="name")
-    ax.annotate(size, (1.0, 0.0), xycoords=head, color=colour, va="bottom", annotation_clip=False, gid="size")
-
-
-def _name_families(ax, tube, right, height):
-    """The angles of both families in their colours, at the right."""
-    words = []
-    for name, angles in zip((r"$\alpha$", r"$\beta$"), tube.angles(np.linspace(0.0, 1.0, 257))):
-        first, last = f"{angles[0]:.4g}°", f"{angles[-1]:.4g}°"
-        words.append(
-            (f"{name} = {first}" if np.ptp(angles) == 0.0 else f"{name} from {first} to {last}").replace(
-                "-", "\N{MINUS SIGN}"
-            )
-        )
-    beta = ax.text(right, height, words[1], color=style.BEFORE[1], ha="right", gid="family")
-    ax.annotate(words[0] + "   ", (0.0, 0.0), xycoords=beta, color=style.BEFORE[0], ha="right", va="bottom",
-                annotation_clip=False, gid="family")  # fmt: skip

@@ -84,7 +84,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 def ramp(count: int) -> list[str]:
     """``count`` colours of a growing quantity, such as pressure, from light to dark; none too light for a line."""
-    return [to_hex(colour) for colour in SEQUENTIAL(np.linspace(1.0, 0.28, count)[::-1])]
+    return [to_hex(colour) for colour in SEQUENTIAL(np.linspace(1.0, 0.38, count)[::-1])]
 
 
 def dress(ax: Axes, xlabel: str, ylabel: str, heading: str = "") -> Axes:

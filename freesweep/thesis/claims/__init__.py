@@ -1,0 +1,1 @@
+"""What the text of the source claims, checked with both strain energies; ``claim`` says how, ``table`` lists them all."""

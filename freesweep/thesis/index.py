@@ -1,0 +1,78 @@
+"""The page that leads to everything: the table of claims, then every figure with what was chosen for it."""
+
+from html import escape
+
+from .. import __version__
+from .claims.claim import NO, PARTLY, UNKNOWN, YES
+from .claims.table import COLUMNS, rows_of
+
+SOURCE = "Design and Analysis of Fiber Reinforced Elastomeric Enclosures with Application in Upper Arm Orthosis"
+STYLE = """
+body { font: 16px/1.45 Georgia, serif; color: #23272e; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.6rem; }
+h2 { font-size: 1.25rem; margin-top: 2.5rem; }
+table { border-collapse: collapse; font-size: 0.86rem; }
+th, td { text-align: left; vertical-align: top; padding: 0.4rem 0.6rem; }
+th { border-bottom: 1.5px solid #23272e; }
+td { border-bottom: 1px solid #e9e9ea; }
+td.verdict { font-weight: bold; }
+.yes { color: #10664a; } .part { color: #8a5a00; } .no { color: #8f1513; } .unknown { color: #6b717b; }
+figure { margin: 2rem 0; }
+figcaption { color: #6b717b; max-width: 46rem; }
+figcaption b { color: #23272e; }
+img { max-width: 100%; height: auto; }
+"""
+CLASSES = {YES: "yes", PARTLY: "part", NO: "no", UNKNOWN: "unknown"}
+
+
+def page(made, judged) -> str:
+    """The page as HTML: ``made`` lists (name, title, note, files, width of the picture [mm]), ``judged`` the claims."""
+    parts = [
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">',
+        f"<title>The source, recomputed</title><style>{STYLE}</style></head><body>",
+        "<h1>The source, recomputed</h1>",
+        f"<p>Every figure and table of <i>{SOURCE}</i> that has content of the model, computed by freesweep {__version__},",
+        "and what its text claims. <b>principal</b> is the strain energy as the source prints it (Eq. 2.5), <b>full</b>",
+        "charges the shear that twisting makes. The source's measured markers are not printed as numbers: none are shown.",
+        "</p>",
+    ]
+    if judged:
+        parts += ["<h2>Claims</h2>", f"<p>{summary(judged)}</p>", _table(judged)]
+    for name, title, note, files, width in made:
+        links = " · ".join(f'<a href="{file}">{file.rpartition(".")[2].upper()}</a>' for file in files)
+        picture = next((file for file in files if file.endswith(".png")), None)
+        heading = name if name.startswith("Table") else f"Figure {name}"
+        image = f'<img src="{picture}" alt="{escape(title)}" style="width:{width:.0f}mm">' if picture else ""
+        caption = f"<b>{heading}.</b> {escape(title)} {escape(note)}<br>{links}"
+        parts.append(f'<figure id="{name}">{image}<figcaption>{caption}</figcaption></figure>')
+    return "\n".join([*parts, "</body></html>", ""])
+
+
+def summary(judged) -> str:
+    """How many claims have which verdict."""
+    counts = {}
+    for row in judged:
+        counts[row.verdict] = counts.get(row.verdict, 0) + 1
+    order = [*CLASSES, *(verdict for verdict in counts if verdict not in CLASSES)]
+    return (
+        f"{len(judged)} claims: "
+        + ", ".join(f"{counts[verdict]} {verdict}" for verdict in order if verdict in counts)
+        + "."
+    )
+
+
+def _table(judged):
+    head = "".join(f"<th>{name}</th>" for name in COLUMNS)
+    lines = ["<table>", f"<tr>{head}</tr>"]
+    for row in rows_of(judged):
+        cells = [escape(cell) for cell in row]
+        cells[1] = " ".join(f'<a href="#{name}">{name}</a>' for name in row[1].split())
+        verdict = row[COLUMNS.index("verdict")]
+        marked = [
+            f'<td class="verdict {CLASSES.get(verdict, "part")}">{cell}</td>'
+            if head == "verdict"
+            else f"<td>{cell}</td>"
+            for head, cell in zip(COLUMNS, cells)
+        ]
+        lines.append(f"<tr>{''.join(marked)}</tr>")
+    return "\n".join([*lines, "</table>"])
