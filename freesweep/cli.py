@@ -98,10 +98,9 @@ def _run_sweep(options):
     if options.threads is not None and options.threads < 1:
         raise ValueError(f"--threads: found {options.threads}; give 1 or more")
     if options.dry_run:
-        from .sweep.plan import plan
+        from .sweep.estimate import dry_run
 
-        planned = plan(sweep)
-        print(f"{sweep.title}\n{sweep.points:,} grid points, {planned.equilibria:,} distinct equilibria -> {out}")
+        print(dry_run(sweep, out, options.threads))
         return
     from .sweep.run import run_sweep
 

@@ -8,8 +8,9 @@ from grids import GRID, make, spec, swept
 
 from freesweep import Actuator, MooneyRivlin, closed_form, inflate, lock, status
 from freesweep.atlas.schema import FLAG_OF, PARAMETERS, STATUS_OF, VARIABLES, attributes
-from freesweep.sweep.collect import upward
-from freesweep.sweep.plan import plan, significant
+from freesweep.sweep.plan import NONE, plan
+from freesweep.sweep.records import upward
+from freesweep.sweep.reduce import significant
 from freesweep.sweep.spec import parse
 
 OUTPUTS = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
@@ -20,7 +21,12 @@ ROUNDED = 5e-13  # relative: problems that differ less are one
 
 
 def planned(axes, **more):
-    return plan(parse(spec(axes, **more)))
+    return plan(parse(spec(axes, **more)))["free"]
+
+
+def everything(made):
+    """All problems, all pressures, all designs of a table."""
+    return made.job(0, made.count).problems, made.job(0, made.count).pressures, np.arange(made.grid.size)
 
 
 @pytest.fixture(scope="module")
@@ -36,11 +42,12 @@ def test_exchanged_and_mirrored_designs_are_solved_once():
     """alpha, beta = +-20, +-50: four designs of two kinds; the diagonal is none."""
     angles = [-50.0, -20.0, 20.0, 50.0]
     made = planned({"alpha": angles, "beta": angles, "pressure": [0.0, 1e5]})
-    assert len(made.problems) == 4  # 20/50, 20/-50, 20/-20, 50/-50
+    assert made.count == 4  # 20/50, 20/-50, 20/-20, 50/-50
     assert made.equilibria == 4 * 3  # the locked shapes too
-    assert (made.status == status.DEGENERATE).sum() == 4
+    assert (made.reduced(np.arange(16)).status == status.DEGENERATE).sum() == 4
+    assert (made.problem == NONE).sum() == 4
     twisted = planned({"alpha": angles, "beta": angles, "torque": [-0.01, 0.01], "pressure": [1e5]})
-    assert len(twisted.problems) == 2 * 2 + 2  # mirrored in a torque too; McKibben muscles do not tell its sign
+    assert twisted.count == 2 * 2 + 2  # mirrored in a torque too; McKibben muscles do not tell its sign
 
 
 def test_scaled_designs_are_solved_once():
@@ -50,19 +57,23 @@ def test_scaled_designs_are_solved_once():
     soft, stiff = {"c10": 1e5, "c01": 5e4}, {"c10": 3e5, "c01": 1.5e5}
     designs = [small | soft, large | soft, small | stiff | {"name": "stiff"}]
     made = planned({"pressure": [0.0, 1e5, 3e5]}, designs=designs)
-    assert len(made.problems) == 1
+    assert made.count == 1
     # p = 0, 1, 3 and 0, 1/3, 1: four different ones and the locked shape
-    assert made.pressures.tolist() == [*significant(np.array([0, 1 / 3, 1, 3])), np.inf]
+    assert everything(made)[1].tolist() == [*significant(np.array([0, 1 / 3, 1, 3])), np.inf]
 
 
 def test_every_point_of_the_grid_has_the_row_of_its_own_problem():
     made = planned(GRID)
-    good = made.status == status.OK
-    scaled = made.pressures[made.rows][good] * made.design["c10"][good, None]
+    problems, pressures, designs = everything(made)
+    own = made.reduced(designs)
+    good = own.status == status.OK
+    assert np.array_equal(good, made.problem != NONE)
+    assert np.array_equal(problems[made.problem[good]], significant(own.rows[good, :9]))
+    scaled = pressures[made.rows(designs)][good] * made.grid.columns(designs)["c10"][good, None]
     assert scaled == pytest.approx(np.broadcast_to(GRID["pressure"], scaled.shape), rel=1e-12)
-    assert np.isinf(made.pressures[made.locked_rows][good]).all()
-    assert made.equilibria == len(made.pressures) == made.first[-1]
-    assert np.all(np.diff(np.unique(made.problems, axis=0), axis=0).any(axis=1))
+    assert np.isinf(pressures[made.locked_rows(designs)][good]).all()
+    assert made.equilibria == len(pressures) == made.first[-1]
+    assert len(np.unique(problems, axis=0)) == len(problems)
 
 
 # --- the results

@@ -91,9 +91,9 @@ def test_a_killed_sweep_goes_on_to_the_same_bits(moment, reference, tmp_path, mo
     assert child.returncode == -signal.SIGKILL, child.stderr
     assert out.exists() == (moment == 0)
     if moment > 2:
-        assert len(list(Path(f"{out}.parts").glob("shard-*.npz"))) == moment - 2
+        assert len(list(Path(f"{out}.parts").glob("free-*.bin"))) == moment - 2
         solved, solve = [], run.solve_shard
-        monkeypatch.setattr(run, "solve_shard", lambda *job: solved.append(len(job[0])) or solve(*job))
+        monkeypatch.setattr(run, "solve_shard", lambda *job: solved.append(len(job[0].problems)) or solve(*job))
         same_bits(reference, make(out, SWEEP))
         assert 0 < sum(solved) < reference.attrs["distinct_problems"]
     else:
@@ -118,17 +118,17 @@ def interrupted(out, sweep, shards, monkeypatch):
     """Begin a sweep and stop it when so many shards are stored."""
     save, count = run.Shards.save, []
 
-    def stop(self, index, results):
+    def stop(self, *shard):
         if len(count) == shards:
             raise KeyboardInterrupt
-        save(self, index, results)
-        count.append(index)
+        count.append(shard)
+        return save(self, *shard)
 
     with monkeypatch.context() as patch:
         patch.setattr(run.Shards, "save", stop)
         with pytest.raises(KeyboardInterrupt):
             make(out, sweep)
-    return sorted(Path(f"{out}.parts").glob("shard-*.npz"))
+    return sorted(Path(f"{out}.parts").glob("free-*.bin"))
 
 
 @pytest.mark.parametrize("damage", ["one bit", "cut", "empty"])
@@ -158,7 +158,7 @@ def test_shards_of_another_specification_are_refused_by_name(tmp_path, monkeypat
         SweepError, match=r"atlas\.nc\.parts holds an unfinished sweep whose specification_sha256 differs"
     ):
         make(out, parse(spec(SMALL)))
-    assert sorted(Path(f"{out}.parts").glob("shard-*.npz")) == before
+    assert sorted(Path(f"{out}.parts").glob("free-*.bin")) == before
     other = run.identify(SWEEP) | {"code_sha256": "other"}
     monkeypatch.setattr(run, "identify", lambda sweep: other)
     with pytest.raises(SweepError, match=r"whose code_sha256 differs: .* there, 'other' now"):

@@ -1,14 +1,136 @@
-"""Files that are whole or absent: bytes made in memory, written beside the target, flushed, renamed."""
+"""Files that are whole or absent: written beside the target, flushed, read back, renamed.
+
+Every call to the system that stores something is made here, through ``os``.
+"""
 
 import contextlib
+import hashlib
 import os
 import shutil
 import tempfile
 from pathlib import Path
 
+BLOCK = 1 << 22  # [bytes] read at once
+
 
 class EnvironmentFault(OSError):
     """Disk, folder or memory do not allow what was asked; nothing already stored is lost."""
+
+
+class WholeFile:
+    """A file in the making, a file object in which one may seek; at ``path`` it appears whole or not at all.
+
+    The first fault of a write is kept, and what follows goes nowhere: a library that cannot cope with a full disk, as
+    HDF5, never hears of it. :meth:`check` and :meth:`publish` raise it as :class:`EnvironmentFault`.
+    """
+
+    def __init__(self, path, needed=0):
+        self.path, self.needed = Path(path), needed
+        self.fault, self.place, self.temporary = None, 0, None
+        try:
+            self.descriptor, self.temporary = tempfile.mkstemp(
+                prefix=f".{self.path.name}.", suffix=".part", dir=self.path.parent
+            )
+        except OSError as error:
+            raise self._fault(error) from error
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.discard()
+
+    def write(self, content) -> int:
+        """Write bytes at the present place."""
+        view = memoryview(content).cast("B")
+        place = self.place
+        self.place += len(view)
+        while len(view) and self.fault is None:
+            try:
+                done = os.pwrite(self.descriptor, view, place)
+                view, place = view[done:], place + done
+            except OSError as error:
+                self.fault = error
+        return self.place - place + len(view)
+
+    def read(self, size) -> bytes:
+        """Read from the present place."""
+        content = os.pread(self.descriptor, size, self.place)
+        self.place += len(content)
+        return content
+
+    def readinto(self, buffer) -> int:
+        """Read from the present place into a buffer."""
+        view = memoryview(buffer).cast("B")
+        content = self.read(len(view))
+        view[: len(content)] = content
+        return len(content)
+
+    def seek(self, offset, whence=os.SEEK_SET) -> int:
+        """Change the present place."""
+        start = {os.SEEK_SET: 0, os.SEEK_CUR: self.place, os.SEEK_END: os.fstat(self.descriptor).st_size}[whence]
+        self.place = start + offset
+        return self.place
+
+    def tell(self) -> int:
+        """The present place."""
+        return self.place
+
+    def truncate(self, size=None) -> int:
+        """Cut or extend the file."""
+        size = self.place if size is None else size
+        try:
+            os.ftruncate(self.descriptor, size)
+        except OSError as error:
+            self.fault = self.fault or error
+        return size
+
+    def flush(self):
+        """Nothing is held back."""
+
+    def check(self):
+        """Raise :class:`EnvironmentFault` if a write has failed."""
+        if self.fault is not None:
+            raise self._fault(self.fault) from self.fault
+
+    def digest(self):
+        """A ``hashlib.sha256()`` of what can be read back."""
+        digest, place = hashlib.sha256(), 0
+        while block := os.pread(self.descriptor, BLOCK, place):
+            digest.update(block)
+            place += len(block)
+        return digest
+
+    def publish(self):
+        """Flush, and put the file in place of what is there."""
+        self.check()
+        try:
+            os.fsync(self.descriptor)
+            os.fchmod(self.descriptor, 0o644)
+            os.close(self._taken())
+            os.replace(self.temporary, self.path)
+            self.temporary = None
+            flush_folder(self.path.parent)
+        except OSError as error:
+            raise self._fault(error) from error
+
+    def discard(self):
+        """Leave nothing behind, unless it was published."""
+        with contextlib.suppress(OSError):
+            if self.descriptor is not None:
+                os.close(self._taken())
+        with contextlib.suppress(OSError):
+            if self.temporary:
+                os.unlink(self.temporary)
+
+    def _taken(self):
+        descriptor, self.descriptor = self.descriptor, None
+        return descriptor
+
+    def _fault(self, error):
+        return EnvironmentFault(
+            f"cannot write {self.path}: {error.strerror}; {space(self.path.parent, max(self.needed, self.place))}"
+        )
 
 
 def write_whole(path, content) -> None:
@@ -16,24 +138,13 @@ def write_whole(path, content) -> None:
 
     Raises :class:`EnvironmentFault` with the path and the bytes needed and free.
     """
-    path = Path(path)
-    temporary = None
-    try:
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-        temporary = None
-        flush_folder(path.parent)
-    except OSError as error:
-        raise EnvironmentFault(f"cannot write {path}: {error.strerror}; {space(path.parent, len(content))}") from error
-    finally:
-        if temporary:
-            with contextlib.suppress(OSError):
-                os.unlink(temporary)
+    content = bytes(content)
+    with WholeFile(path, len(content)) as file:
+        file.write(content)
+        file.check()
+        if file.digest().digest() != hashlib.sha256(content).digest():
+            raise EnvironmentFault(f"cannot write {path}: other bytes are read back than were written; check the disk")
+        file.publish()
 
 
 def flush_folder(folder) -> None:

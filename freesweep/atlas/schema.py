@@ -28,8 +28,13 @@ PARAMETERS = {
     "c01": Parameter("Pa", "second Mooney-Rivlin constant"),
     "force": Parameter("N", "axial force applied by the surroundings, positive in tension"),
     "torque": Parameter("N m", "torque applied by the surroundings, positive toward growing rotation"),
+    "held_length": Parameter("m", "deformed length that the blocked force holds"),
+    "held_length_ratio": Parameter("1", "deformed length that the blocked force holds, in undeformed lengths"),
+    "held_rotation": Parameter("degree", "rotation of the free end that the blocked torque holds"),
     "pressure": Parameter("Pa", "gauge pressure"),
 }
+HELD_LENGTHS = ("held_length", "held_length_ratio")
+HELD = (*HELD_LENGTHS, "held_rotation")
 LOADS = ("force", "torque", "pressure")
 MATERIAL = ("wall", "c10", "c01")
 
@@ -50,38 +55,41 @@ _SHAPE = {
 }
 
 VARIABLES = {
-    **{name: Variable(units, f"{long_name} under pressure") for name, (units, long_name) in _SHAPE.items()},
-    "strain_energy": Variable("J", "strain energy of the wall"),
-    "limit_pressure": Variable("Pa", "pressure at which the branch ends", ("pressure",)),
+    **{name: Variable(units, f"{long_name} under pressure", HELD) for name, (units, long_name) in _SHAPE.items()},
+    "strain_energy": Variable("J", "strain energy of the wall", HELD),
+    "limit_pressure": Variable("Pa", "pressure at which the branch ends", (*HELD, "pressure")),
     **{
-        f"locked_{name}": Variable(units, f"{long_name}, locked", (*LOADS, *MATERIAL))
+        f"locked_{name}": Variable(units, f"{long_name}, locked", (*LOADS, *HELD, *MATERIAL))
         for name, (units, long_name) in _SHAPE.items()
     },
-    "locked_strain_energy": Variable("J", "strain energy of the wall, locked", LOADS),
-    "blocked_force": Variable("N", "force that holds the undeformed length, free to rotate", ("force",)),
-    "blocked_torque": Variable("N m", "torque that holds the free end from rotating, length free", ("torque",)),
+    "locked_strain_energy": Variable("J", "strain energy of the wall, locked", (*LOADS, *HELD)),
+    "blocked_force": Variable("N", "force that holds the length, free to rotate", ("force", "held_rotation")),
+    "blocked_torque": Variable("N m", "torque that holds the rotation, length free", ("torque", *HELD_LENGTHS)),
     "ideal_blocked_force": Variable(
-        "N", "blocked force of inextensible fibers (Eq. 2.16)", ("length", *MATERIAL, "force", "torque")
+        "N", "blocked force of inextensible fibers (Eq. 2.16)", ("length", *MATERIAL, "force", "torque", *HELD)
     ),
     "ideal_blocked_torque": Variable(
-        "N m", "blocked torque of inextensible fibers (Eq. 2.19)", ("length", *MATERIAL, "force", "torque")
+        "N m", "blocked torque of inextensible fibers (Eq. 2.19)", ("length", *MATERIAL, "force", "torque", *HELD)
     ),
 }
 
 STATUS_OF = {
-    "status": ("status of the equilibrium", ()),
+    "status": ("status of the equilibrium", HELD),
     "locked_status": ("status of the locked state", VARIABLES["locked_strain_energy"].without),
-    "blocked_force_status": ("status of the blocked force", ("force",)),
-    "blocked_torque_status": ("status of the blocked torque", ("torque",)),
+    "blocked_force_status": ("status of the blocked force", VARIABLES["blocked_force"].without),
+    "blocked_torque_status": ("status of the blocked torque", VARIABLES["blocked_torque"].without),
     "ideal_blocked_force_status": ("status of the blocked force", VARIABLES["ideal_blocked_force"].without),
     "ideal_blocked_torque_status": ("status of the blocked torque", VARIABLES["ideal_blocked_torque"].without),
 }
 FLAG_OF = {
-    "stable": ("whether the equilibrium is stable, where there is one", ()),
-    "slack_fiber": ("fiber family that would have to push somewhere", ()),
-    "blocked_force_stable": ("whether the tube of blocked length is stable", ("force",)),
-    "blocked_torque_stable": ("whether the tube of blocked rotation is stable", ("torque",)),
-    "limit_found": ("whether a limit pressure was met, where a branch was followed", ("pressure",)),
+    "stable": ("whether the equilibrium is stable, where there is one", HELD),
+    "slack_fiber": ("fiber family that would have to push somewhere", HELD),
+    "blocked_force_stable": ("whether the tube of held length is stable", VARIABLES["blocked_force"].without),
+    "blocked_torque_stable": ("whether the tube of held rotation is stable", VARIABLES["blocked_torque"].without),
+    "limit_found": (
+        "whether a limit pressure was met, where a branch was followed",
+        VARIABLES["limit_pressure"].without,
+    ),
 }
 
 PROFILES = {
@@ -93,6 +101,12 @@ PROFILES = {
     "fiber_tension_alpha": ("N", "tension of the whole first family"),
     "fiber_tension_beta": ("N", "tension of the whole second family"),
 }
+
+
+def without(name: str) -> tuple:
+    """The parameters that a variable of an atlas, or its bound, does not vary in."""
+    of = name.removesuffix("_error")
+    return STATUS_OF[of][1] if of in STATUS_OF else FLAG_OF[of][1] if of in FLAG_OF else VARIABLES[of].without
 
 
 def attributes(name: str) -> dict:

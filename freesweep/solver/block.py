@@ -4,52 +4,64 @@ import numpy as np
 
 from ..jit import entry_point
 from . import guide, lagrangian, nested
-from .branch import FORCE, GAMMA, LENGTH, TORQUE, H
-from .hold import HELD_LENGTH, HELD_ROTATION, find
+from .branch import FORCE, GAMMA, LENGTH, TORQUE
+from .hold import HELD_LENGTH, find
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK
 
 
 @entry_point
-def block_many(problems, first, pressures, base, accuracy, values, bounds, status, stable):
-    """Blocked force (column 0) and torque (column 1) of rows of problems, as :func:`branch.walk_many` takes them.
+def block_many(
+    problems, targets, kind, first, pressures, course, edges, places, accuracy, values, bounds, status, stable
+):  # fmt: skip
+    """The force that holds a length (``kind`` HELD_LENGTH), or the torque that holds a rotation, of rows of problems.
 
-    Force: the undeformed length is held under the problem's torque. Torque: no rotation is held under its force. Rows of
-    infinite pressure are passed over; at zero pressure nothing has to be held.
+    ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of :func:`branch.walk_many`;
+    ``targets`` (k,) the deformed lengths in radii or the rotations in radians, of the whole tube. A problem keeps its torque
+    while its length is held, its force while its rotation is. At zero pressure only the undeformed state is held.
     """
+    base = edges[len(edges) - 1]
     size = (base << nested.MAX_DOUBLINGS) + 2
-    edges, places, course = np.array([0, base]), np.zeros(2), np.zeros((1, 1, 3, 4))
+    varying = course.shape[0] > 0
+    cells = np.zeros((size if varying else 1, 3))
     space = (
         np.zeros((5, size)), np.zeros((13, 2 * size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
         np.zeros((5, size)), np.zeros((2, base + 1)), np.zeros((3, 2 * size)),
     )  # fmt: skip
     out = np.zeros((4, nested.OUTPUTS))
-    cells = np.zeros((1, 3))
+    own_course = course if varying else np.zeros((1, 1, 3, 4))
+    own_places = places.copy() if varying else np.zeros(2)
+    total = own_places[len(own_places) - 1]
+    middle = edges[np.argmin(np.abs(own_places - 0.5 * total))] if varying else base
     for k in range(len(problems)):
-        half = 0.5 * problems[k, LENGTH]
-        places[1] = half
-        for i in range(3):
-            course[0, 0, i, 0] = problems[k, i]
+        if not varying:
+            own_places[1] = 0.5 * problems[k, LENGTH]
+            for i in range(3):
+                own_course[0, 0, i, 0] = problems[k, i]
+        tube = (own_course.copy(), edges, cells, not varying, middle, own_places)
         rest = (problems[k, GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        clamped = (
-            1.0 + lagrangian.kinematics(1.0, guide.cell_along((course, edges, cells, True, base, places), 0.0), rest)[3]
-        )
+        clamped = 1.0
+        for end in range(2):
+            stretch = lagrangian.kinematics(1.0, guide.cell_along(tube, 1.0 * end), rest)[3]
+            clamped = min(clamped, 1.0 + stretch)
+        turns = kind == HELD_LENGTH or np.any(own_course[:, :, 0, :] != 0.0)  # no rotation where alpha = -beta
+        other = problems[k, TORQUE] if kind == HELD_LENGTH else problems[k, FORCE]
+        undeformed = targets[k] == (problems[k, LENGTH] if kind == HELD_LENGTH else 0.0)
         for row in range(first[k], first[k + 1]):
-            for kind in range(2):
-                values[row, kind], bounds[row, kind] = np.nan, np.nan
-                status[row, kind], stable[row, kind] = HELD_IMPOSSIBLE, 0
-                p = pressures[row]
-                other = problems[k, TORQUE] if kind == HELD_LENGTH else problems[k, FORCE]
-                if not clamped > 0.0:
-                    status[row, kind] = INVALID
-                elif p == 0.0 and other == 0.0:
-                    values[row, kind], bounds[row, kind], status[row, kind], stable[row, kind] = 0.0, 0.0, OK, 1
-                elif p < np.inf and not (kind == HELD_ROTATION and problems[k, H] == 0.0):
-                    tube = (course.copy(), edges, cells, True, base, places)
-                    target = half if kind == HELD_LENGTH else 0.0
-                    found, unstable, _, _, _ = find(
-                        problems[k], p, other, target, kind, False, course, tube, accuracy, space, out
-                    )
-                    status[row, kind] = found
-                    if found == OK or found == INACCURATE:
-                        values[row, kind], bounds[row, kind] = out[0, nested.MULTIPLIER], out[1, nested.MULTIPLIER]
-                        stable[row, kind] = 1 if unstable == 0 else 0
+            p = pressures[row]
+            values[row], bounds[row], status[row], stable[row] = np.nan, np.nan, HELD_IMPOSSIBLE, 0
+            if not clamped > 0.0:
+                status[row] = INVALID
+            elif p == 0.0 and other == 0.0:
+                status[row] = OK if undeformed else INVALID
+                if undeformed:
+                    values[row], bounds[row], stable[row] = 0.0, 0.0, 1
+            elif turns:
+                tube[0][:] = own_course  # a march leaves it changed
+                found, unstable, _, _, _ = find(
+                    problems[k], p, other, targets[k] if varying else 0.5 * targets[k], kind, False, own_course, tube,
+                    accuracy, space, out,
+                )  # fmt: skip
+                status[row] = found
+                if found == OK or found == INACCURATE:
+                    values[row], bounds[row] = out[0, nested.MULTIPLIER], out[1, nested.MULTIPLIER]
+                    stable[row] = 1 if unstable == 0 else 0

@@ -5,10 +5,12 @@ import math
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from ..profiles import Profile, ProfileError
 from ..units import quantity, shown
 from .faults import Faults
 
 MAX_AXIS = 10_000  # values of one axis: beyond it a typing slip is likelier than a purpose
+MAX_PAIRS = 64  # of a profile: each place where it bends makes a segment of the mesh
 COUNTED = 10**18  # a larger count is not spelt out
 SPACINGS = ("linear", "sqrt", "log")
 STEP_TOLERANCE = 1e-9  # relative: how well a step must divide its range
@@ -29,6 +31,9 @@ DOMAIN = {
     "c01": (0.0, LARGEST, "must not be negative"),
     "force": _LOAD,
     "torque": _LOAD,
+    "held_length": _SIZE,
+    "held_length_ratio": (1e-3, 1e3, "it is a stretch of the whole tube: a tenth shorter is 0.9"),
+    "held_rotation": _LOAD,
     "pressure": (0.0, LARGEST, "vacuum is another problem"),
 }
 
@@ -51,6 +56,30 @@ def value(faults: Faults, path: str, name: str, given) -> float | None:
         faults.add(path, f"found {shown(given)}, allowed is {bounds}{unit}" + (f"; {reason}" if reason else ""))
         return None
     return number
+
+
+def profile(faults: Faults, path: str, name: str, given: list) -> tuple | None:
+    """A profile along the tube: pairs (x/l, value in the unit of schema.PARAMETERS); None after noting its faults."""
+    if not all(isinstance(pair, list) and len(pair) == 2 for pair in given) or len(given) > MAX_PAIRS:
+        hint = "a profile is a list of pairs, as in [[0, 30], [0.5, 40], [1, 30]]; several values belong in [axes]"
+        faults.add(path, f"found {shown(given)} ({len(given)} entries); {hint}; at most {MAX_PAIRS} pairs are allowed")
+        return None
+    pairs = []
+    for i, (place, entry) in enumerate(given):
+        try:
+            share = quantity(place, "1")
+        except ValueError as error:
+            faults.add(f"{path}[{i}][0]", str(error))
+            share = None
+        pairs.append((share, value(faults, f"{path}[{i}][1]", name, entry)))
+    if any(None in pair for pair in pairs):
+        return None
+    try:
+        Profile(pairs)
+    except ProfileError as error:
+        faults.add(path, str(error))
+        return None
+    return tuple(pairs)
 
 
 def values(faults: Faults, path: str, name: str, given) -> np.ndarray | None:

@@ -1,122 +1,154 @@
-"""From results of distinct problems to the dataset of a grid."""
+"""From records of distinct states to the variables of an atlas, for some designs of the grid at a time."""
+
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from .. import closed_form, status
-from ..atlas.schema import FLAG_OF, STATUS_OF, VARIABLES, attributes
+from ..atlas.schema import without
 from ..scaling import OUTPUTS, output_scales, wall_volume_inside
+from .grid import Grid
+from .plan import FREE
+from .records import upward
 
-SAME_PROBLEM = 5e-13  # relative: two problems that agree to plan.DIGITS digits are solved as one
+SAME_PROBLEM = 5e-13  # relative: two problems that agree to reduce.KEPT_BITS bits are solved as one
 EPSILON = np.finfo(float).eps
+DOUBLE, BOUND, CODE = np.dtype("<f8"), np.dtype("<f4"), np.dtype("i1")
 
 
-def collect(sweep, plan, results):
-    """The Dataset of a sweep from ``results``: name -> array over the rows of the plan."""
-    import xarray as xr
+class Group(NamedTuple):
+    """Variables that are made together, and vary in the same dimensions.
 
-    arrays = _states(plan, results, plan.rows) | _limits(plan, results) | _ideal(plan)
-    arrays |= {f"locked_{name}": array for name, array in _outputs(plan, results, plan.locked_rows[:, None]).items()}
-    if sweep.blocked:
-        arrays |= _blocked(plan, results)
-    dataset = xr.Dataset({name: _placed(plan, name, array) for name, array in arrays.items()})
-    dataset = dataset.assign_coords(plan.coordinates | {"pressure": ("pressure", plan.pressure)})
-    if "pressure" not in sweep.axes:
-        dataset = dataset.isel(pressure=0)
-    for name in dataset.variables:
-        if name != "design":
-            dataset[name].attrs = attributes(name)
-    return dataset
+    ``make(at)`` gives the variables of designs ``at`` of ``grid``: name -> (n, p), or (n, 1) without the pressure.
+    """
+
+    variables: dict  # name -> dtype
+    grid: Grid
+    pressure: bool  # whether they vary with it
+    make: Callable
 
 
-def _placed(plan, name, array):
-    """``(dimensions, array)`` of a variable over the grid, without the dimensions it does not vary in."""
-    of = name.removesuffix("_error")
-    without = STATUS_OF[of][1] if of in STATUS_OF else FLAG_OF[of][1] if of in FLAG_OF else VARIABLES[of].without
-    if "fiber_radius" in plan.coordinates:  # it decides with the wall which designs are valid
-        without = tuple(name for name in without if name != "wall")
-    dimensions = (*plan.dimensions, "pressure")
-    array = array.reshape(*plan.shape, -1)
-    keep = tuple(0 if name in without else slice(None) for name in dimensions)
-    return tuple(name for name in dimensions if name not in without), np.array(array[keep], order="C")
+def groups(sweep, tables, results) -> list:
+    """All variables of an atlas; ``results`` maps each kind of state to its records, see ``shards.Records``."""
+    free = tables[FREE]
+    shapes, energy = [f"locked_{name}" for name in OUTPUTS if name != "strain_energy"], ["locked_strain_energy"]
+    wanted = [
+        (free, _states, [*OUTPUTS], ["status", "slack_fiber", "stable"]),
+        (free, _limits, ["limit_pressure"], ["limit_found"]),
+        (free, _locked, shapes, []),
+        (free, _locked, energy, ["locked_status"]),
+    ]
+    wanted += [(tables[kind], _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
+    if not {"alpha", "beta"} & set(sweep.profiles):
+        wanted += [
+            (free, _ideal, [name], [f"{name}_status"]) for name in ("ideal_blocked_force", "ideal_blocked_torque")
+        ]
+    return [_group(sweep, table, results[table.kind], *rest) for table, *rest in wanted]
 
 
-def _outputs(plan, results, rows):
-    """Status, outputs and bounds of the grid's designs at some rows of the results: arrays (d, p)."""
-    good = (plan.status == status.OK)[:, None]
-    codes = np.where(good, _at(results["status"], rows, status.NOT_CONVERGED), plan.status[:, None])
-    valued = np.isin(codes, status.VALUED)
-    design = {name: column[:, None] for name, column in plan.design.items()}
+def _group(sweep, table, records, make, values, codes):
+    variables = dict.fromkeys(values, DOUBLE) | {f"{name}_error": BOUND for name in values} | dict.fromkeys(codes, CODE)
+    absent = without([*values, *codes][0])
+    if "fiber_radius" in {*sweep.fixed, *sweep.axes, *(sweep.designs or {}).get("columns", ())}:
+        absent = tuple(name for name in absent if name != "wall")  # it decides with the fibers which designs are valid
+    grid = Grid(sweep, absent)
+
+    def some(at):
+        made = make(table, records, grid.within(table.grid, at))
+        return {name: made[name].astype(dtype, copy=False) for name, dtype in variables.items()}
+
+    return Group(variables, grid, "pressure" in sweep.axes and "pressure" not in absent, some)
+
+
+def _codes(found, states):
+    """Status of states of designs, what was known before among them; which designs were solved; which values count."""
+    solved = found.status == status.OK
+    codes = np.repeat(found.status[:, None], states.shape[1], axis=1)
+    codes[solved] = states["status"]
+    return codes, solved, (codes == status.OK) | (codes == status.INACCURATE)
+
+
+def _spread(column, solved, valued, empty):
+    """Numbers of the solved designs (s, p) over all of them (n, p); ``empty`` where there is none."""
+    if np.all(solved):
+        return np.where(valued, column, empty)
+    full = np.full(valued.shape, empty)
+    full[solved] = column
+    return np.where(valued, full, empty)
+
+
+def _outputs(table, records, at, rows):
+    """Status and outputs of designs at some rows of the records, one row for each design and pressure: (n, p)."""
+    found = table.reduced(at)
+    states = records.states(rows[found.status == status.OK])
+    codes, solved, valued = _codes(found, states)
+    design = {name: column[:, None] for name, column in table.grid.columns(at).items()}
     scales = output_scales(design)
-    arrays = {"status": codes.astype(np.int8)}
+    arrays = {"status": codes}
     for k, name in enumerate(OUTPUTS):
-        value = np.where(valued, _at(results["values"][:, k], rows, np.nan), np.nan) * scales[name]
+        value = _spread(states["values"][..., k], solved, valued, np.nan) * scales[name]
         if name == "rotation":
-            value = np.where(plan.mirrored[:, None], -value, value) + 0.0  # + 0.0: no negative zeros
+            value = np.where(found.mirrored[:, None], -value, value) + 0.0  # + 0.0: no negative zeros
         if name == "volume":
             value = value - wall_volume_inside(design)
-        bound = np.where(valued, _at(results["bounds"][:, k], rows, np.nan), np.nan) * scales[name]
+        bound = _spread(states["bounds"][..., k].astype(float), solved, valued, np.nan) * scales[name]
         arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
+    slack = _spread(states["slack"], solved, valued, 0)
+    arrays["slack_fiber"] = np.where(found.swapped[:, None], (slack & 1) << 1 | slack >> 1, slack)
+    arrays["stable"] = valued  # the walk keeps to stable states
     return arrays
 
 
-def _states(plan, results, rows):
+def _states(table, records, at):
     """Outputs and flags under pressure."""
-    arrays = _outputs(plan, results, rows)
-    valued = np.isin(arrays["status"], status.VALUED)
-    slack = np.where(valued, _at(results["slack"], rows, 0), 0)
-    exchanged = (slack & 1) << 1 | slack >> 1
-    arrays["slack_fiber"] = np.where(plan.swapped[:, None], exchanged, slack).astype(np.int8)
-    arrays["stable"] = valued.astype(np.int8)  # the walk keeps to stable states
-    return arrays
+    return _outputs(table, records, at, table.rows(at))
 
 
-def _limits(plan, results):
+def _locked(table, records, at):
+    """Outputs of the locked shape."""
+    arrays = _outputs(table, records, at, table.locked_rows(at))
+    return {f"locked_{name}": array for name, array in arrays.items()}
+
+
+def _limits(table, records, at):
     """Limit pressures [Pa], one for each design."""
-    good = plan.status == status.OK
-    found = np.where(good[:, None], _at(results["limits"], plan.problem, np.nan), np.nan) * plan.design["c10"][:, None]
-    found[found[:, 0] > plan.pressure.max()] = np.nan  # met on behalf of another material, at more than was asked here
+    solved = table.reduced(at).status == status.OK
+    found = records.limits(table.problem[at[solved]])
+    c10 = table.grid.columns(at)["c10"]
+    limit, bound = np.full(len(at), np.nan), np.full(len(at), np.nan)
+    limit[solved], bound[solved] = found["limit"] * c10[solved], found["bound"] * c10[solved]
+    # met on behalf of another material, at more than was asked here
+    limit[limit > table.pressure.max()] = np.nan
+    bound[np.isnan(limit)] = np.nan
+    arrays = {"limit_pressure": limit, "limit_pressure_error": upward(bound), "limit_found": np.isfinite(limit)}
+    return {name: array[:, None] for name, array in arrays.items()}
+
+
+def _blocked(table, records, at):
+    """Blocked force or torque from the solver."""
+    name, found = table.kind, table.reduced(at)
+    states = records.states(table.rows(at)[found.status == status.OK])
+    codes, solved, valued = _codes(found, states)
+    design = table.grid.columns(at)
+    power = 2 if name == "blocked_force" else 3
+    scale = np.pi * design["fiber_radius"][:, None] ** power * design["c10"][:, None]
+    value = _spread(states["value"], solved, valued, np.nan) * scale
+    if name == "blocked_torque":
+        value = np.where(found.mirrored[:, None], -value, value) + 0.0
+    bound = _spread(states["bound"].astype(float), solved, valued, np.nan) * scale
     return {
-        "limit_pressure": found[:, :1],
-        "limit_pressure_error": upward(found[:, 1:]),
-        "limit_found": np.isfinite(found[:, :1]).astype(np.int8),
+        name: value,
+        f"{name}_error": upward(bound + SAME_PROBLEM * np.abs(value)),
+        f"{name}_status": codes,
+        f"{name}_stable": _spread(states["stable"], solved, valued, 0),
     }
 
 
-def _blocked(plan, results):
-    """Blocked force and torque from the solver: arrays (d, p)."""
-    arrays = {}
-    r, c10 = plan.design["fiber_radius"][:, None], plan.design["c10"][:, None]
-    good = (plan.status == status.OK)[:, None]
-    for kind, name in enumerate(("blocked_force", "blocked_torque")):
-        found = _at(results["blocked_status"][:, kind], plan.rows, status.NOT_CONVERGED)
-        codes = np.where(good, found, plan.status[:, None])
-        valued = np.isin(codes, status.VALUED)
-        scale = np.pi * r ** (2 + kind) * c10
-        value = np.where(valued, _at(results["blocked"][:, kind], plan.rows, np.nan), np.nan) * scale
-        if name == "blocked_torque":
-            value = np.where(plan.mirrored[:, None], -value, value) + 0.0
-        bound = np.where(valued, _at(results["blocked_bounds"][:, kind], plan.rows, np.nan), np.nan) * scale
-        arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
-        arrays[f"{name}_status"] = codes.astype(np.int8)
-        stable = np.where(valued, _at(results["blocked_stable"][:, kind], plan.rows, 0), 0)
-        arrays[f"{name}_stable"] = stable.astype(np.int8)
-    return arrays
-
-
-def _at(column, rows, empty):
-    """``column[rows]``, or ``empty`` where the grid holds no solvable design at all."""
-    return column[rows] if len(column) else np.full(rows.shape + column.shape[1:], empty)
-
-
-def upward(bound):
-    """An error bound in single precision, rounded up: it still holds."""
-    single = bound.astype(np.float32)
-    return np.where(single < bound, np.nextafter(single, np.float32(np.inf)), single)
-
-
-def _ideal(plan):
-    """Blocked force and torque of inextensible fibers, in closed form: arrays (d, p)."""
-    alpha, beta, radius = (plan.design[name][:, None] for name in ("alpha", "beta", "fiber_radius"))
+def _ideal(table, _, at):
+    """Blocked force and torque of inextensible fibers, in closed form, as long as nothing deforms."""
+    design, known = table.grid.columns(at), table.reduced(at).status
+    alpha, beta, radius = (design[name][:, None] for name in ("alpha", "beta", "fiber_radius"))
     ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
     product = ta * tb
     # rounding of the tangents, and what is left of it in their product and sum
@@ -132,18 +164,18 @@ def _ideal(plan):
         }
     arrays = {}
     for name, value in (
-        ("ideal_blocked_force", closed_form.blocked_force(alpha, beta, radius, plan.pressure)),
-        ("ideal_blocked_torque", closed_form.blocked_torque(alpha, beta, radius, plan.pressure)),
+        ("ideal_blocked_force", closed_form.blocked_force(alpha, beta, radius, table.pressure)),
+        ("ideal_blocked_torque", closed_form.blocked_torque(alpha, beta, radius, table.pressure)),
     ):
         solved = np.isfinite(value)
         region_one = (product > 0.0) & (name == "ideal_blocked_force")
         failed = np.where(region_one, status.COMPRESSED, status.HELD_IMPOSSIBLE)
         codes = np.where(solved, status.OK, np.where(alpha == beta, status.DEGENERATE, failed))
-        refused = (plan.status == status.INVALID)[:, None]
+        refused = (known == status.INVALID)[:, None]
         codes, value = np.where(refused, status.INVALID, codes), np.where(refused, np.nan, value)
         solved = solved & ~refused
-        scale = np.pi * radius**2 * plan.pressure * (1.0 if name == "ideal_blocked_force" else radius)
-        arrays[name], arrays[f"{name}_status"] = value, codes.astype(np.int8)
+        scale = np.pi * radius**2 * table.pressure * (1.0 if name == "ideal_blocked_force" else radius)
+        arrays[name], arrays[f"{name}_status"] = value, codes
         bound = scale * np.where(solved, relative[name], 0.0) + 8.0 * EPSILON * (scale + np.abs(value))
         arrays[f"{name}_error"] = upward(np.where(solved, bound, np.nan))
     return arrays

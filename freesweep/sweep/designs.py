@@ -2,18 +2,19 @@
 
 import numpy as np
 
-from ..atlas.schema import LOADS, PARAMETERS
+from ..atlas.schema import HELD, LOADS, PARAMETERS
 from ..units import shown
 from . import axis
 from .faults import Faults
 
-DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0}  # fiber_radius: none, the inner radius
+AT_REST = {"held_length_ratio": 1.0, "held_rotation": 0.0}
+DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0} | AT_REST  # fiber_radius: the inner radius
 OWN = tuple(name for name in PARAMETERS if name != "pressure")  # what may differ between designs
 ELSEWHERE = {
     "pressure": "all designs share the pressures; give them in [axes] or [load]",
     "energy": "it belongs in [actuator] and cannot differ between designs",
 }
-HOME = {name: "load" if name in LOADS else "actuator" for name in PARAMETERS}
+HOME = {name: "load" if name in (*LOADS, *HELD) else "actuator" for name in PARAMETERS}
 
 
 def read_designs(faults: Faults, tables, given: dict, fixed: dict) -> dict | None:

@@ -5,7 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-SOURCES = ("solver/*.py", "sweep/*.py", "scaling.py", "closed_form.py", "status.py", "atlas/schema.py")
+SOURCES = (
+    *("solver/*.py", "solver/*/*.py", "sweep/*.py", "scaling.py", "closed_form.py", "profiles.py", "actuator.py"),
+    *("status.py", "atlas/schema.py"),
+)
 
 
 def identify(sweep) -> dict:
@@ -15,14 +18,14 @@ def identify(sweep) -> dict:
 
     root = Path(__file__).parent.parent
     digest = hashlib.sha256(source_hash("solver").encode())  # Numba and Python, too
-    for path in sorted(path for pattern in SOURCES for path in root.glob(pattern)):
+    for path in sorted({path for pattern in SOURCES for path in root.glob(pattern)}):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return {"specification_sha256": sweep.sha256, "code_sha256": digest.hexdigest(), "version": __version__}
 
 
-def fingerprint(plan, parts) -> str:
+def fingerprint(tables, parts) -> str:
     """Hash of what is solved, and of how it is split: shards of another split are not this sweep's."""
     digest = hashlib.sha256()
-    for array in (plan.problems, plan.first, plan.pressures, np.array(parts, np.int64)):
-        digest.update(repr(array.shape).encode() + np.ascontiguousarray(array).tobytes())
+    for kind, table in tables.items():
+        digest.update(table.digest + np.array(parts[kind], np.int64).tobytes())
     return digest.hexdigest()

@@ -1,24 +1,31 @@
 """Run a sweep: shards of distinct problems on threads, resumed after any interruption, collected into an atlas."""
 
-import os
 import platform
 import time
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
-from itertools import pairwise
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 
-from ..atlas.store import Atlas, AtlasError, open_atlas, save_atlas
+from ..atlas.store import Atlas, AtlasError, open_atlas
+from ..atlas.write import AtlasWriter, packed, parts
 from ..status import STATUSES
-from .collect import collect
+from . import estimate
+from .collect import groups
+from .grid import coordinates
 from .identity import fingerprint, identify
 from .plan import plan as make_plan
-from .shards import BLOCKED, FIELDS, Shards, SweepError
+from .shards import Records, Shards, SweepError
+from .solve import solve_shard
 from .spec import Sweep, read_file
 
-SHARD_EQUILIBRIA = 8192  # a fraction of a second of work: what an interruption can cost, for each thread
-BASE_CELLS = 24
+SHARD_EQUILIBRIA = 16384  # a second of work or less: what an interruption can cost, for each thread
+HELD_COST, VARYING_COST = (
+    32,
+    8,
+)  # of a held state, and of a tube that varies, in those of a free state of one that does not
+AHEAD = 4  # jobs for each thread that are begun or waited for
 
 
 def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atlas:
@@ -32,53 +39,48 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
     progress : show a bar and a summary
     overwrite : replace an atlas that was made from another specification
 
-    An interrupted run goes on where it stopped when it is started again. Returns the opened :class:`Atlas`. Raises
-    SpecificationError, :class:`SweepError`, EnvironmentFault.
+    An interrupted run goes on where it stopped when it is started again. Memory does not grow with the grid but for some
+    whole numbers of each design. Returns the opened :class:`Atlas`. Raises SpecificationError, :class:`SweepError`,
+    EnvironmentFault.
     """
     begun = time.perf_counter()
     sweep = spec if isinstance(spec, Sweep) else read_file(spec)
     out = Path(out)
     if threads is not None and threads < 1:
         raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
-    identity = identify(sweep)
-    if out.exists() and not overwrite and (atlas := _finished(out, identity)):
-        Shards(out, identity).clear()
-        if progress:
-            print(f"{out} is complete already, from this specification and this code")
+    identity, shards = identify(sweep), Shards(out)
+    if atlas := _complete(out, identity, overwrite, progress):
+        shards.tidy()
         return atlas
-    plan = make_plan(sweep)
-    parts = split(plan)
-    shards = Shards(out, identity | {"plan_sha256": fingerprint(plan, parts)})
-    if overwrite:
-        shards.clear(only_others=True)
-    done = shards.open()
-    results = _solve_all(plan, parts, done, shards, (sweep.accuracy, sweep.blocked), threads or _cores(), progress)
-    solving = time.perf_counter() - begun
-    dataset = collect(sweep, plan, results)
-    dataset.attrs = {
-        "title": sweep.title,
-        "Conventions": "CF-1.11",
-        "source": f"freesweep {identity['version']}",
-        "specification": sweep.text,
-        **identity,
-        "started": shards.started,
-        "energy": sweep.energy,
-        "accuracy": sweep.accuracy,
-        "distinct_problems": len(plan.problems),
-        "distinct_equilibria": plan.equilibria,
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-    }
-    save_atlas(dataset, out)
-    shards.clear()
+    estimate.check_memory(sweep)
+    shards.hold()
+    try:
+        if atlas := _complete(out, identity, overwrite, progress):  # another process was faster
+            shards.clear()
+            return atlas
+        tables = make_plan(sweep)
+        split_up = {kind: split(table, sweep) for kind, table in tables.items()}
+        done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, overwrite)
+        needed = estimate.check_disk(sweep, tables, out, done)
+        threads = threads or estimate.cores()
+        records = _solve_all(tables, split_up, done, shards, sweep.accuracy, threads, progress)
+        solved = time.perf_counter()
+        attrs = _provenance(sweep, tables, identity, shards.started)
+        _write(sweep, tables, records, out, attrs, needed, threads, progress)
+        shards.clear()
+    finally:
+        shards.release()
     atlas = open_atlas(out)
     if progress:
-        print(summary(atlas, plan, solving, time.perf_counter() - begun))
+        now = time.perf_counter()
+        print(summary(atlas, tables, solved - begun, now - begun))
     return atlas
 
 
-def _finished(out, identity):
-    """The atlas at ``out`` if it is this sweep's; raises if it is another's."""
+def _complete(out, identity, overwrite, progress):
+    """The atlas at ``out`` if it is this sweep's already; raises if it is another's that is not to be overwritten."""
+    if overwrite or not out.exists():
+        return None
     try:
         atlas = open_atlas(out)
     except AtlasError as error:
@@ -90,91 +92,115 @@ def _finished(out, identity):
                 f"{out} exists and its {key} differs: {found!r:.80} there, {wanted!r:.80} now; choose another output,"
                 " or overwrite it"
             )
+    if progress:
+        print(f"{out} is complete already, from this specification and this code")
     return atlas
 
 
-def split(plan):
+def split(table, sweep):
     """Shards of whole problems: a list of (first, last + 1)."""
-    edges, last = [0], 0
-    for k in range(1, len(plan.problems) + 1):
-        if plan.first[k] - last >= SHARD_EQUILIBRIA or k == len(plan.problems):
-            edges.append(k)
-            last = plan.first[k]
-    return list(pairwise(edges))
+    cost = (1 if table.kind == "free" else HELD_COST) * (VARYING_COST if sweep.profiles else 1)
+    size = max(1, SHARD_EQUILIBRIA // cost)
+    found, a = [], 0
+    while a < table.count:
+        b = int(np.searchsorted(table.first, table.first[a] + size))
+        found.append((a, min(b, table.count)))
+        a = found[-1][1]
+    return found
 
 
-def solve_shard(problems, first, pressures, accuracy, blocked=False):
-    """Solve some problems: the results of the kernels as a dictionary of arrays."""
-    from ..solver.branch import walk_many
-
-    count = len(pressures)
-    results = {
-        "values": np.empty((count, 5)),
-        "bounds": np.empty((count, 5)),
-        "status": np.empty(count, np.int64),
-        "slack": np.empty(count, np.int64),
-        "limits": np.empty((len(problems), 2)),
+def _provenance(sweep, tables, identity, started):
+    of_profiles = {f"profile_{name}": np.ravel(pairs) for name, pairs in sweep.profiles.items()}
+    return {
+        "title": sweep.title,
+        "Conventions": "CF-1.11",
+        "source": f"freesweep {identity['version']}",
+        "specification": sweep.text,
+        **identity,
+        "started": started,
+        "energy": sweep.energy,
+        "accuracy": sweep.accuracy,
+        **of_profiles,
+        "distinct_problems": sum(table.count for table in tables.values()),
+        "distinct_equilibria": sum(table.equilibria for table in tables.values()),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
     }
-    no_stations, no_profiles = np.empty(0), np.empty((count, 0, 0))
-    walk_many(
-        problems, first - first[0], pressures, np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2), accuracy,
-        *(results[name] for name in FIELDS), no_stations, no_profiles,
-    )  # fmt: skip
-    if blocked:
-        from ..solver.block import block_many
-
-        results |= {"blocked": np.empty((count, 2)), "blocked_bounds": np.empty((count, 2))}
-        results |= {"blocked_status": np.empty((count, 2), np.int64), "blocked_stable": np.empty((count, 2), np.int64)}
-        block_many(
-            problems, first - first[0], pressures, BASE_CELLS, accuracy, *(results[name] for name in BLOCKED)
-        )  # fmt: skip
-    return {name: array.astype(np.int8) if array.dtype == np.int64 else array for name, array in results.items()}
 
 
-def _solve_all(plan, parts, done, shards, asked, threads, progress):
-    """Results of all shards, those found on disk among them, in order."""
+def _solve_all(tables, split_up, done, shards, accuracy, threads, progress):
+    """Records of all shards, those found on disk among them: kind -> Records."""
     from ..jit import is_compiled
 
     if progress and not is_compiled("solver"):
         print("compiling the kernels: half a minute, once for each version")
-    none = (plan.problems[:0], plan.first[:1], plan.pressures[:0])
-    empty = solve_shard(*none, *asked)  # compiles, or loads what is compiled
-    todo = [index for index in range(len(parts)) if index not in done]
-    finished = sum(int(plan.first[parts[index][1]] - plan.first[parts[index][0]]) for index in done)
-    bar = _bar(plan.equilibria, finished, progress)
+    for table in tables.values():
+        solve_shard(table.job(0, 0), accuracy)  # compiles, or loads what is compiled
+
+    def run(kind, index, a, b):
+        states, limits = solve_shard(tables[kind].job(a, b), accuracy)
+        return (kind, index), shards.save(kind, index, states, limits), len(states)
+
+    todo = [(kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done]
+    total = sum(table.equilibria for table in tables.values())
+    left = sum(int(tables[kind].first[b] - tables[kind].first[a]) for kind, _, a, b in todo)
+    with _bar(total, total - left, " equilibria", progress) as bar:
+        for key, path, count in _in_order(run, todo, threads):
+            done[key] = path
+            bar.update(count)
+    return {
+        kind: Records(kind, own, tables[kind].first, [done[kind, k] for k in range(len(own))])
+        for kind, own in split_up.items()
+    }
+
+
+def _write(sweep, tables, records, out, attrs, needed, threads, progress):
+    """The atlas, chunk by chunk: made and compressed on threads, written here."""
+    made = groups(sweep, tables, records)
+    steps = max(len(tables["free"].pressure), 1)
+    sizes = dict(zip(sweep.dims, sweep.shape))
+    dimensions = {id(group): (*group.grid.dimensions, *["pressure"] * group.pressure) for group in made}
+    variables = {name: (dimensions[id(group)], dtype) for group in made for name, dtype in group.variables.items()}
+
+    def run(group, shape, offset, first, last):
+        inner = steps if group.pressure else 1
+        arrays = group.make(np.arange(first // inner, last // inner))
+        return [(name, offset, packed(array, shape) if shape else array[0, 0]) for name, array in arrays.items()]
+
+    shapes = [(group, [sizes[name] for name in dimensions[id(group)]]) for group in made]
+    jobs = ((group, shape, *part) for group, shape in shapes for part in parts(shape))
+    total = sum(1 for _, shape in shapes for _ in parts(shape))
+    with AtlasWriter(out, sizes, coordinates(sweep), variables, attrs, needed) as writer:
+        with _bar(total, 0, " parts", progress) as bar:
+            for chunks in _in_order(run, jobs, threads):
+                for chunk in chunks:
+                    writer.put(*chunk)
+                bar.update(1)
+        writer.publish()
+
+
+def _in_order(function, jobs, threads):
+    """Results of ``function(*job)`` from threads, in the order of the jobs, of which only a few are begun at a time."""
+    jobs, running = iter(jobs), deque()
     pool = ThreadPoolExecutor(threads)
     try:
-        running = {}
-        while todo or running:
-            while todo and len(running) < 2 * threads:
-                index = todo.pop(0)
-                a, b = parts[index]
-                job = (
-                    plan.problems[a:b],
-                    plan.first[a : b + 1],
-                    plan.pressures[plan.first[a] : plan.first[b]],
-                    *asked,
-                )
-                running[pool.submit(solve_shard, *job)] = index
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                index = running.pop(future)
-                done[index] = future.result()
-                shards.save(index, done[index])
-                bar.update(len(done[index]["status"]))
+        while True:
+            while len(running) < AHEAD * threads and (job := next(jobs, None)) is not None:
+                running.append(pool.submit(function, *job))
+            if not running:
+                return
+            yield running.popleft().result()
     finally:
         pool.shutdown(cancel_futures=True)
-        bar.close()
-    ordered = [done[index] for index in range(len(parts))] or [empty]
-    return {name: np.concatenate([part[name] for part in ordered]) for name in empty}
 
 
-def _bar(total, finished, progress):
+def _bar(total, finished, unit, progress):
     from tqdm import tqdm
 
     return tqdm(
         total=total,
         initial=finished,
-        unit=" equilibria",
+        unit=unit,
         unit_scale=True,
         disable=not progress,
         dynamic_ncols=True,
@@ -182,14 +208,13 @@ def _bar(total, finished, progress):
     )
 
 
-def _cores():
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def summary(atlas, plan, solving, total) -> str:
+def summary(atlas, tables, solving, total) -> str:
     """What was done, failures grouped by status, once."""
+    equilibria, problems = (
+        sum(numbers) for numbers in zip(*((table.equilibria, table.count) for table in tables.values()))
+    )
     lines = [
-        f"{atlas.data['status'].size:,} grid points, {plan.equilibria:,} distinct equilibria of {len(plan.problems):,}"
+        f"{atlas.data['status'].size:,} grid points, {equilibria:,} distinct equilibria of {problems:,}"
         f" distinct problems, {total:.1f} s ({solving:.1f} s solving)"
     ]
     sentences = {status.meaning: status.sentence for status in STATUSES}

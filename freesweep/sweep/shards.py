@@ -1,89 +1,165 @@
-"""Shards of a sweep on disk: each whole or absent, found again after any interruption.
+"""Shards of a sweep on disk: each whole or absent, found again after any interruption, read where they are needed.
 
-The folder ``<out>.parts`` holds a manifest (which specification, which code, when it was begun) and one file for each
-finished shard, named after the SHA-256 of its bytes. When the atlas is whole, the folder goes.
+The folder ``<out>.parts`` holds a manifest (which specification, which code, when it was begun), a lock, and one file for
+each finished shard, named after the SHA-256 of its bytes: records of states, then of limits. When the atlas is whole, the
+folder goes.
 """
 
+import contextlib
 import hashlib
-import io
 import json
+import os
 import shutil
 from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 
-from ..atlas.files import EnvironmentFault, write_whole
+from ..atlas.files import BLOCK, EnvironmentFault, write_whole
+from .records import LIMIT, state
 
-FIELDS = ("values", "bounds", "status", "slack", "limits")
-BLOCKED = ("blocked", "blocked_bounds", "blocked_status", "blocked_stable")
+GAP = 64  # records that are read along rather than passed over
+DIGITS = 32  # of the SHA-256 in a name
 
 
 class SweepError(ValueError):
-    """A sweep that cannot go on: what lies at the output is not its own."""
+    """A sweep that cannot go on: what lies at the output is not its own, or another process is at work there."""
 
 
 class Shards:
-    """The shards of one sweep beside its output file."""
+    """The shards of one sweep beside its output file; one process at a time may hold them."""
 
-    def __init__(self, out, identity):
+    def __init__(self, out):
         self.out = Path(out)
         self.folder = Path(f"{out}.parts")
-        self.identity = identity
-        self.started = None
+        self.started, self.lock = None, None
 
-    def open(self):
-        """Begin, or go on; returns the shards already there: index -> results."""
-        manifest = self.folder / "manifest.json"
+    def hold(self):
+        """Make the folder and become its only writer; a process that ends, however it ends, lets go."""
+        try:
+            import fcntl
+        except ImportError:  # not a POSIX system
+            fcntl = None
         try:
             self.folder.mkdir(exist_ok=True)
+            self.lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT, 0o644)
+            if fcntl:
+                fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            self.release()
+            raise SweepError(
+                f"another process is sweeping into {self.out}; wait for it, or choose another output"
+            ) from None
         except OSError as error:
             raise EnvironmentFault(f"cannot make the folder {self.folder}: {error.strerror}") from error
-        if manifest.exists():
-            self._check(json.loads(manifest.read_text()))
-        else:
-            self.started = datetime.now(UTC).isoformat(timespec="seconds")
-            content = self.identity | {"started": self.started}
-            write_whole(manifest, json.dumps(content, indent=1).encode())
-        return dict(filter(None, map(self._load, sorted(self.folder.glob("shard-*.npz")))))
+        if not (self.folder / "lock").exists():  # another process finished in between
+            self.release()
+            self.hold()
 
-    def _check(self, found):
-        self.started = found.get("started")
-        for key, wanted in self.identity.items():
-            if found.get(key) != wanted:
+    def release(self):
+        """Let another process write."""
+        if self.lock is not None:
+            os.close(self.lock)
+            self.lock = None
+
+    def open(self, identity, clear_others=False):
+        """Begin, or go on; returns the whole shards already there: (kind, index) -> file."""
+        manifest = self.folder / "manifest.json"
+        if manifest.exists():
+            found = json.loads(manifest.read_text())
+            self.started = found.get("started")
+            differs = [key for key, wanted in identity.items() if found.get(key) != wanted]
+            key = differs[0] if differs else None
+            if differs and not clear_others:
                 raise SweepError(
                     f"{self.folder} holds an unfinished sweep whose {key} differs: {found.get(key)!r:.80} there,"
-                    f" {wanted!r:.80} now; choose another output, or delete that folder to begin anew"
+                    f" {identity[key]!r:.80} now; choose another output, or delete that folder to begin anew"
                 )
+            if differs:
+                for path in self.folder.glob("*-*"):
+                    path.unlink()
+                manifest.unlink()
+        if not manifest.exists():
+            self.started = datetime.now(UTC).isoformat(timespec="seconds")
+            write_whole(manifest, json.dumps(identity | {"started": self.started}, indent=1).encode())
+        for left in self.out.parent.glob(f".{self.out.name}.*.part"):
+            left.unlink(missing_ok=True)
+        return dict(filter(None, map(_checked, sorted(self.folder.glob("*-*.bin")))))
 
-    def _load(self, path):
-        """``(index, results)`` of a shard file, or None if its bytes are not those it was named after."""
-        _, index, digest = path.stem.split("-")
-        content = path.read_bytes()
-        if hashlib.sha256(content).hexdigest()[:32] != digest:
-            path.unlink()
-            return None
-        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            return int(index), {name: arrays[name] for name in arrays.files}
+    def save(self, kind, index, states, limits):
+        """Store one finished shard; returns its file."""
+        content = states.tobytes() + limits.tobytes()
+        digest = hashlib.sha256(content).hexdigest()[:DIGITS]
+        path = self.folder / f"{kind}-{index:06d}-{digest}.bin"
+        write_whole(path, content)
+        return path
 
-    def save(self, index, results):
-        """Store one finished shard."""
-        buffer = io.BytesIO()
-        np.savez(buffer, **results)
-        content = buffer.getvalue()
-        digest = hashlib.sha256(content).hexdigest()[:32]
-        write_whole(self.folder / f"shard-{index:06d}-{digest}.npz", content)
+    def tidy(self):
+        """Remove the folder that a process left which was killed when its atlas was whole, unless another is at work."""
+        if self.folder.exists():
+            with contextlib.suppress(SweepError, EnvironmentFault):
+                self.hold()
+                self.clear()
+            self.release()
 
-    def clear(self, only_others=False):
-        """Remove the folder and what a killed write of the atlas left: the atlas is whole, or is to be made anew.
-
-        ``only_others``: unless the folder is this sweep's own.
-        """
-        manifest = self.folder / "manifest.json"
-        if only_others and manifest.exists():
-            found = json.loads(manifest.read_text())
-            if all(found.get(key) == wanted for key, wanted in self.identity.items()):
-                return
+    def clear(self):
+        """Remove the folder and what a killed write of the atlas left: the atlas is whole."""
         shutil.rmtree(self.folder, ignore_errors=True)
         for left in self.out.parent.glob(f".{self.out.name}.*.part"):
             left.unlink(missing_ok=True)
+
+
+def _checked(path):
+    """``((kind, index), path)`` of a shard file, or None, and no file, if its bytes are not those it was named after."""
+    kind, index, digest = path.stem.rsplit("-", 2)
+    found = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(BLOCK):
+            found.update(block)
+    if found.hexdigest()[:DIGITS] != digest:
+        path.unlink()
+        return None
+    return (kind, int(index)), path
+
+
+class Records:
+    """The records of one kind of state, read from its shards a few at a time.
+
+    ``parts`` are (first, last + 1) problems of each shard, ``first`` where each problem's states begin, ``paths`` the files.
+    """
+
+    def __init__(self, kind, parts, first, paths):
+        self.dtype, self.paths = state(kind), paths
+        self.problems = np.array([a for a, _ in parts] + [parts[-1][1] if parts else 0], np.int64)
+        self.rows = first[self.problems]
+
+    def states(self, rows):
+        """Records of states ``rows``, of any shape."""
+        return self._read(rows, self.rows, self.dtype, np.zeros(len(self.paths), np.int64))
+
+    def limits(self, problems):
+        """Records of the limits of ``problems`` (n,)."""
+        return self._read(problems, self.problems, LIMIT, np.diff(self.rows) * self.dtype.itemsize)
+
+    def _read(self, numbers, edges, dtype, starts):
+        """Records of that type with those ``numbers``; a shard holds those between two ``edges``, from a byte on."""
+        wanted, index = np.unique(numbers, return_inverse=True)
+        found = np.empty(len(wanted), dtype)
+        cuts = np.searchsorted(wanted, edges)
+        for shard in np.flatnonzero(np.diff(cuts)).tolist():
+            own = wanted[cuts[shard] : cuts[shard + 1]] - edges[shard]
+            ends = np.flatnonzero(np.diff(own) > GAP) + 1
+            descriptor = os.open(self.paths[shard], os.O_RDONLY)
+            try:
+                for a, b in zip([0, *ends.tolist()], [*ends.tolist(), len(own)]):
+                    low, high = int(own[a]), int(own[b - 1]) + 1
+                    content = os.pread(
+                        descriptor, (high - low) * dtype.itemsize, int(starts[shard]) + low * dtype.itemsize
+                    )
+                    if len(content) != (high - low) * dtype.itemsize:
+                        raise EnvironmentFault(f"{self.paths[shard]} was cut short while it was in use; start again")
+                    block = np.frombuffer(content, dtype)
+                    found[cuts[shard] + a : cuts[shard] + b] = block[own[a:b] - low]
+            finally:
+                os.close(descriptor)
+        return found[index.reshape(np.shape(numbers))]

@@ -2,10 +2,11 @@
 
     title = "What this sweep is for"
     [actuator]                  # fixed values of the design, with units; plain numbers are SI and degrees
-    wall = "1.59 mm"
+    wall = "1.59 mm"            # alpha, beta, wall may vary along the tube: [[0, "30 deg"], [0.5, "40 deg"], [1, "30 deg"]],
+                                # pairs of x/l and value; a repeated x/l is a jump
     c10 = "0.17 MPa"
     energy = "full"             # or "principal"
-    [load]                      # fixed force, torque, pressure
+    [load]                      # fixed force, torque, pressure, held_length or held_length_ratio, held_rotation
     [axes]                      # what varies: all combinations are solved
     alpha = {start = "0 deg", stop = "85 deg", step = "2.5 deg"}
     length = ["100 mm", "200 mm"]
@@ -17,7 +18,8 @@
     accuracy = 1e-6
     blocked = true              # blocked force and torque too, with fiber extension and loads
 
-A design takes what it leaves out from [actuator] and [load].
+A design takes what it leaves out from [actuator] and [load]. A held length (absolute, or as a ratio to the undeformed one)
+asks for the blocked force, a held rotation for the blocked torque; ``blocked = true`` for both, at rest where not given.
 """
 
 import hashlib
@@ -27,17 +29,20 @@ from pathlib import Path
 
 import numpy as np
 
-from ..atlas.schema import PARAMETERS
+from ..actuator import SMALLEST_DIFFERENCE
+from ..atlas.schema import HELD, HELD_LENGTHS, PARAMETERS
+from ..profiles import as_profile, together
 from ..scaling import ACCURACIES
 from ..units import quantity, shown
 from . import axis, toml_guard
-from .designs import DEFAULTS, HOME, OWN, read_designs
+from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
 MAX_POINTS = 2_000_000_000  # 16 GB for each variable of the atlas
 ENERGIES = ("full", "principal")
+VARYING = ("alpha", "beta", "wall")  # may be profiles along the tube
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
 
 
@@ -47,7 +52,8 @@ class Sweep:
 
     ``fixed`` holds single values; ``axes`` strictly increasing arrays, shape (n,), in the order of schema.PARAMETERS.
     ``designs`` is None, or {"names": tuple of texts, "columns": {parameter: array, shape (designs,)}}. Every parameter
-    stands in one of the three; only ``fiber_radius`` may be in none: then the fibers lie at the inner radius.
+    stands in one of the three, or in ``profiles``: name -> pairs (x/l, value). Only ``fiber_radius`` may be in none: then
+    the fibers lie at the inner radius.
     """
 
     title: str
@@ -57,7 +63,8 @@ class Sweep:
     designs: dict | None
     accuracy: float
     text: str = field(repr=False)
-    blocked: bool = False
+    blocked: tuple[str, ...] = ()  # which of blocked_force, blocked_torque are solved
+    profiles: dict[str, tuple] = field(default_factory=dict)
 
     @property
     def sha256(self) -> str:
@@ -76,8 +83,8 @@ class Sweep:
 
     @property
     def points(self) -> int:
-        """Number of equilibria asked for."""
-        return math.prod(self.shape)
+        """Number of equilibria asked for, those of held states apart."""
+        return math.prod(size for name, size in zip(self.dims, self.shape) if name not in HELD)
 
 
 def read_file(path: str | Path) -> Sweep:
@@ -96,11 +103,11 @@ def parse(text: str, name: str = "specification") -> Sweep:
     title = faults.line("title", document.get("title", ""))
     energy = _energy(faults, tables["actuator"])
     accuracy = _accuracy(faults, tables["solver"])
-    blocked = _blocked(faults, tables["solver"])
     given = {}  # parameter: where it is given, faulty or not
-    fixed = _fixed(faults, tables, given)
+    fixed, profiles = _fixed(faults, tables, given)
     axes = _axes(faults, tables["axes"], given)
     designs = read_designs(faults, document["designs"], given, fixed) if "designs" in document else None
+    _check_profiles(faults, profiles, fixed, given)
     for parameter in REQUIRED:
         if parameter not in given:
             homes = f"[{HOME[parameter]}] or [axes]"
@@ -108,7 +115,9 @@ def parse(text: str, name: str = "specification") -> Sweep:
                 parameter,
                 f"is missing; give it in {homes}" + (", or in every design" if designs and parameter in OWN else ""),
             )
-    fixed = {key: DEFAULTS.get(key) if key not in given else fixed.get(key) for key in PARAMETERS}
+    blocked, at_rest = _blocked(faults, tables["solver"], given)
+    defaults = {key: number for key, number in DEFAULTS.items() if key not in AT_REST or key in at_rest}
+    fixed = {key: defaults.get(key) if key not in given else fixed.get(key) for key in PARAMETERS}
     fixed = {key: number for key, number in fixed.items() if number is not None}
     _check_fibers(faults, fixed | axes | (designs or {}).get("columns", {}))
     points = math.prod(_shape(axes, designs))
@@ -119,7 +128,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
             "use coarser axes or several sweeps",
         )
     faults.check()
-    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked)
+    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked, profiles)
 
 
 def _shape(axes, designs):
@@ -141,11 +150,22 @@ def _energy(faults, actuator):
     return energy
 
 
-def _blocked(faults, solver):
-    blocked = solver.get("blocked", False)
-    if not isinstance(blocked, bool):
+def _blocked(faults, solver, given):
+    """Which held states are solved, and which held quantities are those of the undeformed tube."""
+    asked = {"blocked_force": [name for name in HELD_LENGTHS if name in given]}
+    asked["blocked_torque"] = [name for name in HELD if name in given and name not in HELD_LENGTHS]
+    if len(asked["blocked_force"]) > 1:
+        first, second = (given[name] for name in asked["blocked_force"])
+        faults.add(first, f"the held length is given twice, also as {second}; remove one")
+    blocked = solver.get("blocked")
+    if blocked is not None and not isinstance(blocked, bool):
         faults.add("solver.blocked", f"found {shown(blocked)}; write true or false")
-    return blocked
+    if blocked is False and any(asked.values()):
+        held = given[next(name for names in asked.values() for name in names)]
+        faults.add("solver.blocked", f"found false, but {held} is given; remove one of the two")
+    kinds = tuple(kind for kind, names in asked.items() if names or blocked is True)
+    rest = dict(zip(asked, AT_REST))
+    return kinds, tuple(rest[kind] for kind in kinds if not asked[kind])
 
 
 def _accuracy(faults, solver):
@@ -162,7 +182,7 @@ def _accuracy(faults, solver):
 
 
 def _fixed(faults, tables, given):
-    fixed = {}
+    fixed, profiles = {}, {}
     for section in ("actuator", "load"):
         table = tables[section]
         own = [name for name in PARAMETERS if HOME[name] == section]
@@ -171,8 +191,11 @@ def _fixed(faults, tables, given):
         for name in own:
             if name in table:
                 given[name] = f"{section}.{name}"
-                fixed[name] = axis.value(faults, given[name], name, table[name])
-    return fixed
+                if name in VARYING and isinstance(table[name], list):
+                    profiles[name] = axis.profile(faults, given[name], name, table[name])
+                else:
+                    fixed[name] = axis.value(faults, given[name], name, table[name])
+    return fixed, {name: pairs for name, pairs in profiles.items() if pairs}
 
 
 def _axes(faults, table, given):
@@ -187,6 +210,23 @@ def _axes(faults, table, given):
             if array is not None:
                 axes[name] = array
     return axes
+
+
+def _check_profiles(faults, profiles, fixed, given):
+    """Refuses profiles that some designs would not use, and fiber families that meet somewhere along every tube."""
+    for name in profiles:
+        if given[name] != f"actuator.{name}":
+            faults.add(given[name], f"actuator.{name} is a profile already; give one of the two")
+    angles = [profiles.get(name, fixed.get(name)) for name in ("alpha", "beta")]
+    if None in angles or not any(name in profiles for name in ("alpha", "beta")):
+        return
+    alpha, beta = together(*map(as_profile, angles))
+    if np.min(np.abs(alpha - beta)) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
+        faults.add(
+            "actuator.alpha, actuator.beta",
+            f"the fiber families cross, or are less than {SMALLEST_DIFFERENCE:g} degree apart, somewhere along the tube: no"
+            " finite locked shape there; keep alpha above beta all along, or below",
+        )
 
 
 def _check_fibers(faults, values):

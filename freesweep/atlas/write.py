@@ -1,0 +1,140 @@
+"""Writes an atlas part by part in bounded memory: netCDF4 makes the empty file, chunks go in compressed.
+
+The netCDF library hides a full disk. So it makes the structure in memory; h5py adds the chunks through a file object of
+ours, which sees every fault; each chunk is read back before the file appears.
+"""
+
+import math
+import zlib
+from itertools import product
+
+import numpy as np
+
+from .files import EnvironmentFault, WholeFile
+from .schema import attributes
+from .store import FORMAT
+
+CHUNK = 1 << 16  # numbers in one chunk
+LEVEL = 1  # higher ones gain 3 %
+
+
+def chunks_of(shape) -> tuple:
+    """Shape of the chunks of a variable: whole trailing dimensions, part of one, single entries before it."""
+    chunks, most = [], CHUNK
+    for size in reversed(shape):
+        chunks.append(-(-size // -(-size // most)))
+        most = max(1, most // size)
+    return tuple(reversed(chunks))
+
+
+def parts(shape):
+    """``(offset, first, last + 1)`` of each chunk of a variable, the latter counted in C order over all entries."""
+    chunks = chunks_of(shape)
+    strides = [math.prod(shape[k + 1 :]) for k in range(len(shape))]
+    for offset in product(*(range(0, size, chunk) for size, chunk in zip(shape, chunks))):
+        first = sum(place * stride for place, stride in zip(offset, strides))
+        inner = [min(chunk, size - place) for place, size, chunk in zip(offset, shape, chunks)]
+        yield offset, first, first + math.prod(inner)
+
+
+def packed(array, shape) -> bytes:
+    """Bytes of one chunk of a variable of that shape, as HDF5 stores them: shuffled, then deflated."""
+    size, item = math.prod(chunks_of(shape)), array.dtype.itemsize
+    content = np.zeros((item, size), np.uint8)
+    content[:, : array.size] = np.ascontiguousarray(array).reshape(-1).view(np.uint8).reshape(-1, item).T
+    return zlib.compress(content, LEVEL)
+
+
+class AtlasWriter:
+    """An atlas in the making: ``put`` its chunks, then ``publish`` it.
+
+    ``sizes`` maps dimensions to their sizes, ``coordinates`` and ``variables`` names to (dimensions, values) and to
+    (dimensions, dtype). Raises :class:`freesweep.atlas.files.EnvironmentFault`.
+    """
+
+    def __init__(self, path, sizes, coordinates, variables, attrs, needed=0):
+        import h5py
+
+        self.sums, self.store = {}, None
+        self.file = WholeFile(path, needed)
+        try:
+            self.file.write(_skeleton(sizes, coordinates, variables, attrs))
+            self.file.check()
+            self.store = h5py.File(self.file, "r+")
+        except BaseException:
+            self.file.discard()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._close()
+        self.file.discard()
+
+    def put(self, name, offset, content):
+        """Store one chunk, ``packed``; of a variable without dimensions, the number itself."""
+        if offset == ():
+            self.store[name][()] = content
+        else:
+            self.sums[name, offset] = zlib.crc32(content)
+            self.store[name].id.write_direct_chunk(offset, content)
+        self.file.check()
+
+    def publish(self):
+        """Finish the file, read it back, and let it appear."""
+        import h5py
+
+        self._close()
+        self.file.check()
+        with h5py.File(self.file, "r") as store:
+            wrong = [key for key, found in self.sums.items() if zlib.crc32(_chunk(store, *key)) != found]
+        if wrong:
+            raise EnvironmentFault(
+                f"cannot write {self.file.path}: {len(wrong)} parts are not read back as they were written; check the disk"
+            )
+        self.file.publish()
+
+    def _close(self):
+        if self.store is not None:
+            store, self.store = self.store, None
+            try:
+                store.close()
+            except Exception:  # after a fault HDF5 may meet what it wrote half
+                self.file.check()
+                raise
+
+
+def _chunk(store, name, offset):
+    return store[name].id.read_direct_chunk(offset)[1]
+
+
+def _skeleton(sizes, coordinates, variables, attrs) -> bytes:
+    """An atlas without its numbers, a netCDF4 file in memory."""
+    import netCDF4
+
+    file = netCDF4.Dataset("atlas.nc", "w", memory=1 << 16)
+    for name, size in sizes.items():
+        file.createDimension(name, size)
+    beside = {name: dims for name, (dims, _) in coordinates.items() if dims != (name,)}
+    for name, (dims, values) in coordinates.items():
+        kind = str if np.asarray(values).dtype == object else np.asarray(values).dtype
+        variable = file.createVariable(name, kind, dims, fill_value=False)
+        variable[...] = values
+        _describe(variable, name)
+    for name, (dims, dtype) in variables.items():
+        chunked = {"chunksizes": chunks_of([sizes[each] for each in dims])} if dims else {}
+        packing = {"compression": "zlib", "complevel": LEVEL, "shuffle": True} if dims else {}
+        variable = file.createVariable(name, dtype, dims, fill_value=False, **packing, **chunked)
+        _describe(variable, name)
+        own = [each for each, others in beside.items() if set(others) <= set(dims)]
+        if own:
+            variable.setncattr("coordinates", " ".join(own))
+    for name, value in (attrs | {"freesweep_format": FORMAT}).items():
+        file.setncattr(name, value)
+    return bytes(file.close())
+
+
+def _describe(variable, name):
+    for key, value in attributes(name).items() if name != "design" else ():
+        variable.setncattr(key, np.array(value, "i1") if isinstance(value, list) else value)

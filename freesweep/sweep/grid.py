@@ -1,0 +1,68 @@
+"""The designs of a sweep: all combinations of its axes but pressure. Any of them at a time, never all at once."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+
+from ..atlas.schema import PARAMETERS
+from ..profiles import ProfileError, as_profile, course
+
+
+class Grid:
+    """The designs that vary in the dimensions of a sweep, those ``without`` left out; counted as C order counts them."""
+
+    def __init__(self, sweep, without=()):
+        self.sweep = sweep
+        pairs = [(name, size) for name, size in zip(sweep.dims, sweep.shape) if name not in (*without, "pressure")]
+        self.dimensions = tuple(name for name, _ in pairs)
+        self.shape = tuple(size for _, size in pairs)
+        self.size = math.prod(self.shape)
+
+    def columns(self, at) -> dict:
+        """Numbers of the designs ``at`` (n,) in the units of schema.PARAMETERS: name -> (n,); of a profile, the middle's."""
+        places = dict(zip(self.dimensions, np.unravel_index(at, self.shape) if self.shape else ()))
+        full = {name: np.full(len(at), value) for name, value in self.sweep.fixed.items()}
+        full |= {name: np.full(len(at), as_profile(pairs).at(0.5)[0]) for name, pairs in self.sweep.profiles.items()}
+        full |= {name: values[places[name]] for name, values in self.sweep.axes.items() if name in places}
+        if self.sweep.designs:
+            full |= {name: column[places["design"]] for name, column in self.sweep.designs["columns"].items()}
+        design = {name: full[name] for name in PARAMETERS if name in full and name != "pressure"}
+        design.setdefault("fiber_radius", design["radius"])
+        return design
+
+    def within(self, other, at):
+        """Where the designs ``at`` of this grid lie in ``other``, which has all its dimensions: first along the others."""
+        places = dict(zip(self.dimensions, np.unravel_index(at, self.shape) if self.shape else ()))
+        index = np.zeros(len(at), np.int64)
+        for name, size in zip(other.dimensions, other.shape):
+            index = index * size + places.get(name, 0)
+        return index
+
+
+def coordinates(sweep) -> dict:
+    """Coordinates of the dataset: name -> (dimensions, values)."""
+    found = {name: ((name,), values) for name, values in sweep.axes.items()}
+    if sweep.designs:
+        found["design"] = (("design",), np.array(sweep.designs["names"], dtype=object))
+        found |= {name: (("design",), column) for name, column in sweep.designs["columns"].items()}
+    return found | {name: ((), value) for name, value in sweep.fixed.items()}
+
+
+def tubes(grid, at):
+    """Courses along the designs ``at`` where some profile varies, each once, and which is whose: see ``Job``."""
+    profiles = grid.sweep.profiles
+    if not profiles:
+        return [], np.zeros(len(at), np.int64)
+    columns = grid.columns(at)
+    names = ("alpha", "beta", "wall", "length", "radius", "fiber_radius")
+    designs, which = np.unique(np.column_stack([columns[name] for name in names]), axis=0, return_inverse=True)
+    found = []
+    for design in designs.tolist():
+        numbers = dict(zip(names, design)) | profiles
+        numbers["fiber_surface"] = numbers.pop("fiber_radius")
+        try:
+            found.append(course(SimpleNamespace(**numbers)))
+        except ProfileError:
+            found.append(None)
+    return found, which

@@ -1,0 +1,73 @@
+"""One shard of a sweep: some distinct problems of one kind, solved by the kernels into records."""
+
+import numpy as np
+
+from ..status import INVALID
+from .records import FREE_STATE, HELD_STATE, LIMIT, state, upward
+
+BASE_CELLS = 24
+UNIFORM = np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2)
+OUTPUTS = 5
+
+
+def solve_shard(job, accuracy):
+    """Records of a job's states, and of its problems' limits (none of held states)."""
+    solve = _solve_free if job.kind == "free" else _solve_held
+    if not job.courses:
+        return solve(job.kind, job.problems, job.targets, job.first, job.pressures, UNIFORM, accuracy)
+    states = np.zeros(len(job.pressures), state(job.kind))
+    limits = np.full(len(job.problems) if job.kind == "free" else 0, np.nan, LIMIT)
+    for k, tube in enumerate(job.courses):
+        own = np.flatnonzero(job.course == k)
+        rows = np.concatenate([np.arange(job.first[i], job.first[i + 1]) for i in own])
+        if tube is None:  # a profile that no mesh can follow
+            states[rows] = _without_result(states.dtype)
+            continue
+        first = np.concatenate([[0], np.cumsum(np.diff(job.first)[own])])
+        found = solve(job.kind, job.problems[own], job.targets[own], first, job.pressures[rows], tube, accuracy)
+        states[rows] = found[0]
+        if len(limits):
+            limits[own] = found[1]
+    return states, limits
+
+
+def _solve_free(_, problems, __, first, pressures, tube, accuracy):
+    from ..solver.branch import walk_many
+
+    count = len(pressures)
+    values, bounds, limits = np.empty((count, OUTPUTS)), np.empty((count, OUTPUTS)), np.empty((len(problems), 2))
+    status, slack = np.empty(count, np.int64), np.empty(count, np.int64)
+    walk_many(
+        problems, first, pressures, *tube, accuracy, values, bounds, status, slack, limits,
+        np.empty(0), np.empty((count, 0, 0)),
+    )  # fmt: skip
+    states = np.empty(count, FREE_STATE)
+    states["values"], states["bounds"], states["status"], states["slack"] = values, upward(bounds), status, slack
+    found = np.empty(len(problems), LIMIT)
+    found["limit"], found["bound"] = limits[:, 0], limits[:, 1]
+    return states, found
+
+
+def _solve_held(kind, problems, targets, first, pressures, tube, accuracy):
+    from ..solver.block import block_many
+    from ..solver.hold import HELD_LENGTH, HELD_ROTATION
+
+    count = len(pressures)
+    values, bounds = np.empty(count), np.empty(count)
+    status, stable = np.empty(count, np.int64), np.empty(count, np.int64)
+    block_many(
+        problems, targets, HELD_LENGTH if kind == "blocked_force" else HELD_ROTATION, first, pressures, *tube, accuracy,
+        values, bounds, status, stable,
+    )  # fmt: skip
+    states = np.empty(count, HELD_STATE)
+    states["value"], states["bound"], states["status"], states["stable"] = values, upward(bounds), status, stable
+    return states, np.empty(0, LIMIT)
+
+
+def _without_result(dtype):
+    """A record of nothing but its status."""
+    record = np.zeros((), dtype)
+    for name in set(dtype.names) & {"values", "bounds", "value", "bound"}:
+        record[name] = np.nan
+    record["status"] = INVALID
+    return record
