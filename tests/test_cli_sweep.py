@@ -1,5 +1,7 @@
 """Sweeps and atlases on the command line: files, words, exit codes; never a traceback."""
 
+import re
+
 import pytest
 from commands import refused, run
 from grids import spec
@@ -65,7 +67,10 @@ def test_a_dry_run_says_what_would_be_solved_and_makes_nothing(specification, tm
     assert run("sweep", specification, "--dry-run") == DONE
     # six of nine designs are different: 0/20 and 20/40 occur twice, 20/20 is degenerate; three pressures and locked
     says = ["A tiny sweep", "27 grid points, 24 distinct equilibria -> tiny.nc"]
-    assert capsys.readouterr().out.splitlines() == says
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:2] == says
+    assert [line.split(":")[0] for line in lines[2:]] == ["memory", "disk", "time"]
+    assert re.fullmatch(r"disk: 1\.0 MB at most, 0\.0 MB more while it runs; [\d,]+ MB free", lines[3])
     assert [path.name for path in tmp_path.iterdir()] == ["tiny.toml"]
 
 

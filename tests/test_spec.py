@@ -444,7 +444,13 @@ def test_the_shipped_sweeps_are_read(path):
 
 
 def test_the_shipped_sweeps_have_the_size_they_say():
-    assert sorted(path.stem for path in SWEEPS.glob("*.toml")) == ["blocked", "design-space", "prototypes", "quick"]
+    assert sorted(path.stem for path in SWEEPS.glob("*.toml")) == [
+        "blocked",
+        "curves",
+        "design-space",
+        "prototypes",
+        "quick",
+    ]
     quick, space, prototypes = (read_file(SWEEPS / f"{name}.toml") for name in ("quick", "design-space", "prototypes"))
     assert quick.points == 25_092
     assert "25 092" in quick.text

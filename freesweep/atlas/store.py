@@ -31,8 +31,12 @@ class Atlas:
 
     def status_counts(self) -> dict:
         """How many points of the grid have which status: meaning -> count."""
-        values, counts = np.unique(self.data["status"].values, return_counts=True)
-        return {STATUSES[value].meaning: int(count) for value, count in zip(values, counts)}
+        codes = self.data["status"]
+        slabs = (
+            (codes[k] for k in range(len(codes))) if codes.ndim > 1 else [codes]
+        )  # of a large atlas, a part at a time
+        counts = sum(np.bincount(slab.values.ravel(), minlength=len(STATUSES)) for slab in slabs)
+        return {row.meaning: int(count) for row, count in zip(STATUSES, counts) if count}
 
     def close(self):
         """Let go of the file."""

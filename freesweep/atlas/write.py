@@ -6,12 +6,14 @@ ours, which sees every fault; each chunk is read back before the file appears.
 
 import math
 import zlib
+from io import SEEK_END
 from itertools import product
 
 import numpy as np
 
 from .files import EnvironmentFault, WholeFile
 from .schema import attributes
+from .seal import seal
 from .store import FORMAT
 
 CHUNK = 1 << 16  # numbers in one chunk
@@ -93,6 +95,8 @@ class AtlasWriter:
             raise EnvironmentFault(
                 f"cannot write {self.file.path}: {len(wrong)} parts are not read back as they were written; check the disk"
             )
+        self.file.seek(0, SEEK_END)
+        self.file.write(seal(self.file.digest()))
         self.file.publish()
 
     def _close(self):

@@ -30,8 +30,8 @@ def choose(dataset, select: dict, across) -> tuple[dict, dict]:
     """Parameters of the point (stored units), and the index along each dimension that is not in ``across``.
 
     ``select`` maps a name to a number, the nearest node being taken, or ``design`` to its name. What is not selected: the
-    largest pressure, the force and torque nearest zero, the first design, the middle of anything else. Raises ValueError
-    for names that are unknown and values that are no numbers.
+    largest pressure; the force, torque and held rotation nearest zero; the first design; the middle of anything else.
+    Raises ValueError for names that are unknown and values that are no numbers.
     """
     known = (*schema.PARAMETERS, *HELD, DESIGN)
     names = [name for name in known if name in dataset.coords and name not in across]
@@ -59,6 +59,6 @@ def _node(dataset, name, select):
         return int(np.abs(nodes - select[name]).argmin())
     if name == "pressure":
         return int(nodes.argmax())
-    if name in schema.LOADS:
+    if name in (*schema.LOADS, "held_rotation"):
         return int(np.abs(nodes).argmin())
     return int(np.argsort(nodes)[nodes.size // 2])

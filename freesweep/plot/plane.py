@@ -13,7 +13,7 @@ from ..status import OK, OUTSIDE, VALUED
 from .choice import check_name, choose
 
 ALPHA, BETA = (0.0, 90.0), (-90.0, 90.0)  # the two quadrants of Figure 1-2 [degree]
-ODD = ("rotation", "locked_rotation", "ideal_blocked_torque")  # change sign in the mirror
+ODD = ("rotation", "locked_rotation", "blocked_torque", "ideal_blocked_torque")  # change sign in the mirror
 NO_VALUE = -1  # solved, and yet no number: no limit pressure was met
 SAME_ANGLE = 1e-4  # [degree]: nodes closer than this are one
 
@@ -57,7 +57,7 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     values = _sheet(dataset[variable], index)
     status = _sheet(dataset[status_of(variable)], index)
     free = schema.VARIABLES[variable].without
-    turns = point.get("torque", 0.0) != 0.0 and "torque" not in free
+    turns = any(point.get(name, 0.0) != 0.0 and name not in free for name in ("torque", "held_rotation"))
     alpha, beta, values, status = _unfold(dataset, values, status, variable in ODD, turns)
 
     none = ~np.isfinite(values)

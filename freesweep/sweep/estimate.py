@@ -6,17 +6,19 @@ import shutil
 import time
 from pathlib import Path
 
+import numpy as np
+
 from ..atlas.files import EnvironmentFault, space
 from ..atlas.schema import HELD, VARIABLES
 from .collect import groups
-from .plan import plan
+from .plan import FREE, plan
 from .records import LIMIT, state
 
 BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and a few shards
 DESIGN_MEMORY = 72  # [bytes] of each design while a plan is made
 SHRINKS = 0.9  # of the numbers when they are compressed, at least
 MOST_PLANNED = 2_000_000  # designs that a dry run compares: some seconds
-SAMPLE_SECONDS, SAMPLES = 1.0, 64
+SAMPLE_SECONDS, SAMPLES = 1.0, 256
 
 
 def cores() -> int:
@@ -53,8 +55,8 @@ def check_memory(sweep):
 def disk(sweep, tables) -> tuple:
     """Bytes of the shards while a sweep runs, and of its atlas, at most."""
     shards = sum(table.equilibria * state(kind).itemsize for kind, table in tables.items())
-    shards += tables["free"].count * LIMIT.itemsize
-    steps = len(tables["free"].pressure)
+    shards += tables[FREE].count * LIMIT.itemsize
+    steps = len(tables[FREE].pressure)
     numbers = sum(
         group.grid.size * (steps if group.pressure else 1) * sum(dtype.itemsize for dtype in group.variables.values())
         for group in groups(sweep, tables, dict.fromkeys(tables))
@@ -83,8 +85,7 @@ def seconds(sweep, tables, threads):
     for table in tables.values():
         solve_shard(table.job(0, 0), sweep.accuracy)  # loads the machine code
         begun, solved = time.perf_counter(), 0
-        for k in range(min(SAMPLES, table.count)):
-            a = k * table.count // SAMPLES if table.count > SAMPLES else k
+        for a in np.random.default_rng(0).integers(max(table.count, 1), size=min(SAMPLES, table.count)).tolist():
             solved += len(solve_shard(table.job(a, a + 1), sweep.accuracy)[0])
             if time.perf_counter() - begun > SAMPLE_SECONDS:
                 break
@@ -95,26 +96,22 @@ def seconds(sweep, tables, threads):
 def dry_run(sweep, out, threads=None) -> str:
     """What a sweep will solve, need and take, in words; of a very large one, what can be said at once."""
     check_memory(sweep)
-    head = [sweep.title] if sweep.title else []
-    head.append(f"{sweep.points:,} grid points -> {out}")
+    lines = [sweep.title] if sweep.title else []
     if designs(sweep) > MOST_PLANNED:
-        return "\n".join(
-            [*head, f"memory: {memory(sweep) / 1e6:,.0f} MB at most", "too many designs to be compared at once"]
-        )
+        lines += [f"{sweep.points:,} grid points, too many to be compared at once -> {out}"]
+        return "\n".join([*lines, f"memory: {memory(sweep) / 1e6:,.0f} MB at most"])
     tables = plan(sweep)
     shards, atlas = disk(sweep, tables)
-    lines = head + [
-        f"{kind.replace('_', ' '):<15}{table.equilibria:>15,} distinct equilibria of {table.count:,} distinct problems"
+    lines.append(f"{sweep.points:,} grid points, {tables[FREE].equilibria:,} distinct equilibria -> {out}")
+    lines += [
+        f"{kind.replace('_', ' ')}: {table.grid.size * len(table.pressure):,} grid points, {table.equilibria:,} held states"
         for kind, table in tables.items()
+        if kind != FREE
     ]
     lines.append(f"memory: {memory(sweep) / 1e6:,.0f} MB at most")
     folder = Path(out).parent
-    free = (
-        f"{shutil.disk_usage(folder).free / 1e6:,.0f} MB are free"
-        if folder.is_dir()
-        else f"there is no folder {folder}"
-    )
-    lines.append(f"disk: {atlas / 1e6:,.1f} MB at most, and {shards / 1e6:,.1f} MB more while it runs; {free}")
+    free = f"{shutil.disk_usage(folder).free / 1e6:,.0f} MB free" if folder.is_dir() else f"there is no folder {folder}"
+    lines.append(f"disk: {atlas / 1e6:,.1f} MB at most, {shards / 1e6:,.1f} MB more while it runs; {free}")
     took = seconds(sweep, tables, threads or cores())
     lines.append(
         "time: not known before the kernels are compiled, in the first sweep" if took is None else _spell(took)
