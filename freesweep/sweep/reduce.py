@@ -72,13 +72,14 @@ def known_status(design, profiles) -> np.ndarray:
 
 
 def _along(alpha, beta, profiles):
-    """Smallest difference of the angles along each tube, 0 where they cross, and the largest angle."""
+    """Difference of the angles along each tube, 0 only where they are equal all along, and the largest angle."""
     pairs, index = np.unique(np.column_stack([alpha, beta]), axis=0, return_inverse=True)
     apart, largest = np.empty(len(pairs)), np.empty(len(pairs))
     for k, pair in enumerate(pairs):
         a, b = together(*(as_profile(profiles.get(name, value)) for name, value in zip(("alpha", "beta"), pair)))
         crossing = len(set(np.sign(a - b))) > 1
-        apart[k], largest[k] = 0.0 if crossing else np.abs(a - b).min(), max(np.abs(a).max(), np.abs(b).max())
+        apart[k] = 0.5 * SMALLEST_DIFFERENCE if crossing else np.abs(a - b).min()
+        largest[k] = max(np.abs(a).max(), np.abs(b).max())
     return apart[index], largest[index]
 
 
