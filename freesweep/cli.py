@@ -4,6 +4,8 @@ Exit codes: 0 done, 2 bad input, 3 the environment (disk, memory, permissions), 
 """
 
 import argparse
+import contextlib
+import signal
 import sys
 
 from .calibration.command import add_calibrate
@@ -106,9 +108,23 @@ def _run_sweep(options):
 
     if options.map:
         check_map(sweep, options.map)
-    atlas = run_sweep(sweep, out, threads=options.threads, progress=not options.quiet, overwrite=options.overwrite)
+    with _terminated_as_interrupted():
+        atlas = run_sweep(sweep, out, threads=options.threads, progress=not options.quiet, overwrite=options.overwrite)
     if options.map:
         draw_map(atlas.data, options.map, "rotation", {})
+
+
+@contextlib.contextmanager
+def _terminated_as_interrupted():
+    """Let SIGTERM, with which a cluster stops a job, do what Ctrl-C does."""
+    before = None
+    with contextlib.suppress(ValueError):  # signals belong to the main thread
+        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        if before is not None:
+            signal.signal(signal.SIGTERM, before)
 
 
 def _info(commands):

@@ -4,6 +4,7 @@ The netCDF library hides a full disk. So it makes the structure in memory; h5py 
 ours, which sees every fault; each chunk is read back before the file appears.
 """
 
+import hashlib
 import math
 import zlib
 from io import SEEK_END
@@ -60,8 +61,11 @@ class AtlasWriter:
         self.sums, self.store = {}, None
         self.file = WholeFile(path, needed)
         try:
-            self.file.write(_skeleton(sizes, coordinates, variables, attrs))
+            content = _skeleton(sizes, coordinates, variables, attrs)
+            self.file.write(content)
             self.file.check()
+            if self.file.digest().digest() != hashlib.sha256(content).digest():
+                raise self._misread()
             self.store = h5py.File(self.file, "r+")
         except BaseException:
             self.file.discard()
@@ -71,33 +75,49 @@ class AtlasWriter:
         return self
 
     def __exit__(self, *_):
-        self._close()
-        self.file.discard()
+        try:
+            self._close()
+        finally:
+            self.file.discard()
 
     def put(self, name, offset, content):
         """Store one chunk, ``packed``; of a variable without dimensions, the number itself."""
+        self.sums[name, offset] = zlib.crc32(content)
         if offset == ():
             self.store[name][()] = content
         else:
-            self.sums[name, offset] = zlib.crc32(content)
             self.store[name].id.write_direct_chunk(offset, content)
         self.file.check()
 
     def publish(self):
         """Finish the file, read it back, and let it appear."""
-        import h5py
-
         self._close()
         self.file.check()
-        with h5py.File(self.file, "r") as store:
-            wrong = [key for key, found in self.sums.items() if zlib.crc32(_chunk(store, *key)) != found]
-        if wrong:
-            raise EnvironmentFault(
-                f"cannot write {self.file.path}: {len(wrong)} parts are not read back as they were written; check the disk"
-            )
-        self.file.seek(0, SEEK_END)
-        self.file.write(seal(self.file.digest()))
+        if not self._is_as_written():
+            raise self._misread()
+        last = seal(self.file.digest())
+        place = self.file.seek(0, SEEK_END)
+        self.file.write(last)
+        self.file.check()
+        self.file.seek(place)
+        if self.file.read(len(last) + 1) != last:
+            raise self._misread()
         self.file.publish()
+
+    def _is_as_written(self):
+        """Whether every part is read back as it was put in."""
+        import h5py
+
+        try:
+            with h5py.File(self.file, "r") as store:
+                return all(zlib.crc32(_part(store[name], offset)) == sum for (name, offset), sum in self.sums.items())
+        except Exception:  # whatever the HDF5 library makes of a broken structure
+            return False
+
+    def _misread(self):
+        return EnvironmentFault(
+            f"cannot write {self.file.path}: other bytes are read back than were written; check the disk"
+        )
 
     def _close(self):
         if self.store is not None:
@@ -106,11 +126,11 @@ class AtlasWriter:
                 store.close()
             except Exception:  # after a fault HDF5 may meet what it wrote half
                 self.file.check()
-                raise
+                raise self._misread() from None
 
 
-def _chunk(store, name, offset):
-    return store[name].id.read_direct_chunk(offset)[1]
+def _part(variable, offset):
+    return variable[()] if offset == () else variable.id.read_direct_chunk(offset)[1]
 
 
 def _skeleton(sizes, coordinates, variables, attrs) -> bytes:

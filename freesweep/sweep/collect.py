@@ -18,47 +18,44 @@ DOUBLE, BOUND, CODE = np.dtype("<f8"), np.dtype("<f4"), np.dtype("i1")
 
 
 class Group(NamedTuple):
-    """Variables that are made together, and vary in the same dimensions.
+    """Variables that are made together, and vary in the same dimensions."""
 
-    ``make(at)`` gives the variables of designs ``at`` of ``grid``: name -> (n, p), or (n, 1) without the pressure.
-    """
-
+    kind: str  # the states that they are made from
+    make: Callable  # of table, records and designs: name -> (n, p), or (n, 1) without the pressure
     variables: dict  # name -> dtype
     grid: Grid
     pressure: bool  # whether they vary with it
-    make: Callable
+
+    def arrays(self, tables, records, at):
+        """The variables of designs ``at`` of the group's grid."""
+        table = tables[self.kind]
+        made = self.make(table, records[self.kind], self.grid.within(table.grid, at))
+        return {name: made[name].astype(dtype, copy=False) for name, dtype in self.variables.items()}
 
 
-def groups(sweep, tables, results) -> list:
-    """All variables of an atlas; ``results`` maps each kind of state to its records, see ``shards.Records``."""
-    free = tables[FREE]
-    shapes, energy = [f"locked_{name}" for name in OUTPUTS if name != "strain_energy"], ["locked_strain_energy"]
+def groups(sweep) -> list:
+    """All variables of an atlas."""
+    shapes = [f"locked_{name}" for name in OUTPUTS if name != "strain_energy"]
     wanted = [
-        (free, _states, [*OUTPUTS], ["status", "slack_fiber", "stable"]),
-        (free, _limits, ["limit_pressure"], ["limit_found"]),
-        (free, _locked, shapes, []),
-        (free, _locked, energy, ["locked_status"]),
+        (FREE, _states, [*OUTPUTS], ["status", "slack_fiber", "stable"]),
+        (FREE, _limits, ["limit_pressure"], ["limit_found"]),
+        (FREE, _locked, shapes, []),
+        (FREE, _locked, ["locked_strain_energy"], ["locked_status"]),
     ]
-    wanted += [(tables[kind], _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
+    wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
     if not {"alpha", "beta"} & set(sweep.profiles):
         wanted += [
-            (free, _ideal, [name], [f"{name}_status"]) for name in ("ideal_blocked_force", "ideal_blocked_torque")
+            (FREE, _ideal, [name], [f"{name}_status"]) for name in ("ideal_blocked_force", "ideal_blocked_torque")
         ]
-    return [_group(sweep, table, results[table.kind], *rest) for table, *rest in wanted]
+    return [_group(sweep, *each) for each in wanted]
 
 
-def _group(sweep, table, records, make, values, codes):
+def _group(sweep, kind, make, values, codes):
     variables = dict.fromkeys(values, DOUBLE) | {f"{name}_error": BOUND for name in values} | dict.fromkeys(codes, CODE)
     absent = without([*values, *codes][0])
     if "fiber_radius" in {*sweep.fixed, *sweep.axes, *(sweep.designs or {}).get("columns", ())}:
         absent = tuple(name for name in absent if name != "wall")  # it decides with the fibers which designs are valid
-    grid = Grid(sweep, absent)
-
-    def some(at):
-        made = make(table, records, grid.within(table.grid, at))
-        return {name: made[name].astype(dtype, copy=False) for name, dtype in variables.items()}
-
-    return Group(variables, grid, "pressure" in sweep.axes and "pressure" not in absent, some)
+    return Group(kind, make, variables, Grid(sweep, absent), "pressure" in sweep.axes and "pressure" not in absent)
 
 
 def _codes(found, states):

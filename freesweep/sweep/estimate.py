@@ -9,16 +9,17 @@ from pathlib import Path
 import numpy as np
 
 from ..atlas.files import EnvironmentFault, space
-from ..atlas.schema import HELD, VARIABLES
 from .collect import groups
-from .plan import FREE, plan
+from .plan import FREE, kinds, plan
 from .records import LIMIT, state
 
 BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and a few shards
-DESIGN_MEMORY = 72  # [bytes] of each design while a plan is made
+DESIGN_MEMORY = 80  # [bytes] of each design while a plan is made
 SHRINKS = 0.9  # of the numbers when they are compressed, at least
-MOST_PLANNED = 2_000_000  # designs that a dry run compares: some seconds
-SAMPLE_SECONDS, SAMPLES = 1.0, 256
+FILE = 1_000_000  # [bytes] of an atlas without its numbers, at most
+MOST_PLANNED = 300_000  # designs that a dry run compares: a fraction of a second
+SAMPLE_SECONDS, SAMPLES = 0.2, 256  # of each kind of state
+TYPICAL = {FREE: 100e-6, "blocked_force": 4e-3, "blocked_torque": 4e-3}  # [s] of one equilibrium on one core
 
 
 def cores() -> int:
@@ -26,18 +27,18 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def designs(sweep) -> int:
-    """Designs of the largest table of a sweep's plan."""
+def grids(sweep) -> dict:
+    """Designs of each kind of state: kind -> count."""
     sizes = dict(zip(sweep.dims, sweep.shape))
-    kinds = [HELD, *(VARIABLES[kind].without for kind in sweep.blocked)]
-    return max(
-        math.prod(size for name, size in sizes.items() if name not in (*without, "pressure")) for without in kinds
-    )
+    return {
+        kind: math.prod(size for name, size in sizes.items() if name not in (*without, "pressure"))
+        for kind, without in kinds(sweep).items()
+    }
 
 
 def memory(sweep) -> int:
     """Bytes of memory, at most."""
-    return BASE_MEMORY + DESIGN_MEMORY * designs(sweep)
+    return BASE_MEMORY + DESIGN_MEMORY * max(grids(sweep).values())
 
 
 def check_memory(sweep):
@@ -47,80 +48,87 @@ def check_memory(sweep):
     there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if memory(sweep) > there:
         raise EnvironmentFault(
-            f"{designs(sweep):,} designs need {memory(sweep):,} bytes of memory, this machine has {there:,};"
+            f"{max(grids(sweep).values()):,} designs need {memory(sweep):,} bytes of memory, this machine has {there:,};"
             " split the sweep"
         )
 
 
-def disk(sweep, tables) -> tuple:
-    """Bytes of the shards while a sweep runs, and of its atlas, at most."""
-    shards = sum(table.equilibria * state(kind).itemsize for kind, table in tables.items())
-    shards += tables[FREE].count * LIMIT.itemsize
-    steps = len(tables[FREE].pressure)
+def disk(sweep, equilibria) -> tuple:
+    """Bytes of the shards while a sweep runs, and of its atlas, at most; ``equilibria`` of each kind."""
+    shards = (
+        sum(count * state(kind).itemsize for kind, count in equilibria.items()) + grids(sweep)[FREE] * LIMIT.itemsize
+    )
+    steps = len(sweep.axes.get("pressure", [0.0]))
     numbers = sum(
         group.grid.size * (steps if group.pressure else 1) * sum(dtype.itemsize for dtype in group.variables.values())
-        for group in groups(sweep, tables, dict.fromkeys(tables))
+        for group in groups(sweep)
     )
-    return shards, int(SHRINKS * numbers) + 1_000_000
+    return shards, int(SHRINKS * numbers) + FILE
 
 
-def check_disk(sweep, tables, out, done=()) -> int:
-    """Bytes of the atlas; raises EnvironmentFault if there is not room for what is still to be written."""
-    shards, atlas = disk(sweep, tables)
-    here = sum(path.stat().st_size for path in done.values()) if done else 0
-    needed = max(shards - here, 0) + atlas
+def check_disk(sweep, equilibria, out, done) -> int:
+    """Bytes of the atlas; raises EnvironmentFault if there is no room for what is still to be written."""
+    shards, atlas = disk(sweep, equilibria)
+    needed = max(shards - sum(path.stat().st_size for path in done.values()), 0) + atlas
     if needed > shutil.disk_usage(Path(out).parent).free:
         raise EnvironmentFault(f"cannot begin {out}: {space(Path(out).parent, needed)}")
     return atlas
 
 
-def seconds(sweep, tables, threads):
-    """Estimated time of the solver [s], from a sample of the problems; None where the kernels are still to be compiled."""
-    from ..jit import is_compiled
-    from .solve import solve_shard
-
-    if not is_compiled("solver"):
-        return None
-    total = 0.0
-    for table in tables.values():
-        solve_shard(table.job(0, 0), sweep.accuracy)  # loads the machine code
-        begun, solved = time.perf_counter(), 0
-        for a in np.random.default_rng(0).integers(max(table.count, 1), size=min(SAMPLES, table.count)).tolist():
-            solved += len(solve_shard(table.job(a, a + 1), sweep.accuracy)[0])
-            if time.perf_counter() - begun > SAMPLE_SECONDS:
-                break
-        total += (time.perf_counter() - begun) * table.equilibria / max(solved, 1)
-    return total / threads
-
-
 def dry_run(sweep, out, threads=None) -> str:
-    """What a sweep will solve, need and take, in words; of a very large one, what can be said at once."""
+    """What a sweep will solve, need and take, in words; of a large one, at most."""
     check_memory(sweep)
+    steps = len(sweep.axes.get("pressure", [0.0]))
+    tables = plan(sweep) if max(grids(sweep).values()) <= MOST_PLANNED else {}
+    equilibria = {
+        kind: tables[kind].equilibria if tables else size * (steps + (kind == FREE))
+        for kind, size in grids(sweep).items()
+    }
+    most = "" if tables else "at most "
     lines = [sweep.title] if sweep.title else []
-    if designs(sweep) > MOST_PLANNED:
-        lines += [f"{sweep.points:,} grid points, too many to be compared at once -> {out}"]
-        return "\n".join([*lines, f"memory: {memory(sweep) / 1e6:,.0f} MB at most"])
-    tables = plan(sweep)
-    shards, atlas = disk(sweep, tables)
-    lines.append(f"{sweep.points:,} grid points, {tables[FREE].equilibria:,} distinct equilibria -> {out}")
+    lines.append(f"{sweep.points:,} grid points, {most}{equilibria[FREE]:,} distinct equilibria -> {out}")
     lines += [
-        f"{kind.replace('_', ' ')}: {table.grid.size * len(table.pressure):,} grid points, {table.equilibria:,} held states"
-        for kind, table in tables.items()
+        f"{kind.replace('_', ' ')}: {grids(sweep)[kind] * steps:,} grid points, {most}{count:,} held states"
+        for kind, count in equilibria.items()
         if kind != FREE
     ]
-    lines.append(f"memory: {memory(sweep) / 1e6:,.0f} MB at most")
+    shards, atlas = disk(sweep, equilibria)
     folder = Path(out).parent
     free = f"{shutil.disk_usage(folder).free / 1e6:,.0f} MB free" if folder.is_dir() else f"there is no folder {folder}"
-    lines.append(f"disk: {atlas / 1e6:,.1f} MB at most, {shards / 1e6:,.1f} MB more while it runs; {free}")
-    took = seconds(sweep, tables, threads or cores())
-    lines.append(
-        "time: not known before the kernels are compiled, in the first sweep" if took is None else _spell(took)
-    )
+    lines += [
+        f"memory: {memory(sweep) / 1e6:,.0f} MB at most",
+        f"disk: {atlas / 1e6:,.1f} MB at most, {shards / 1e6:,.1f} MB more while it runs; {free}",
+        f"time: {_time(sweep, tables, equilibria, threads or cores())}",
+    ]
     return "\n".join(lines)
 
 
-def _spell(took):
-    for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
+def _time(sweep, tables, equilibria, threads):
+    """Time of the solver in words: from a sample of the problems, or what is typical before the kernels are compiled."""
+    from ..jit import is_compiled
+
+    measured = bool(tables) and is_compiled("solver")
+    each = {kind: _sampled(tables[kind], sweep.accuracy) if measured else TYPICAL[kind] for kind in equilibria}
+    took = sum(each[kind] * count for kind, count in equilibria.items()) / threads
+    for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)):
         if took > 2.0 * size:
-            return f"time: about {took / size:.1f} {unit}"
-    return f"time: about {took:.0f} seconds" if took > 2.0 else "time: a few seconds"
+            words = f"about {took / size:.0f} {unit}"
+            break
+    else:
+        words = "a few seconds"
+    return f"{words} on {threads} thread{'s' * (threads > 1)}" + (
+        "" if measured else ", a guess before anything is solved"
+    )
+
+
+def _sampled(table, accuracy):
+    """Seconds of one equilibrium on one core."""
+    from .solve import solve_shard
+
+    solve_shard(table.job(0, 0), accuracy)  # loads the machine code
+    begun, solved = time.perf_counter(), 0
+    for a in np.random.default_rng(0).integers(max(table.count, 1), size=min(SAMPLES, table.count)).tolist():
+        solved += len(solve_shard(table.job(a, a + 1), accuracy)[0])
+        if time.perf_counter() - begun > SAMPLE_SECONDS:
+            break
+    return (time.perf_counter() - begun) / max(solved, 1)

@@ -104,8 +104,12 @@ class Table:
 
 def plan(sweep) -> dict:
     """The tables of a sweep by kind of state."""
-    tables = {FREE: _table(sweep, FREE, HELD)}
-    return tables | {kind: _table(sweep, kind, VARIABLES[kind].without) for kind in sweep.blocked}
+    return {kind: _table(sweep, kind, without) for kind, without in kinds(sweep).items()}
+
+
+def kinds(sweep) -> dict:
+    """Kinds of states that a sweep solves, and the parameters that each does not vary in."""
+    return {FREE: HELD} | {kind: VARIABLES[kind].without for kind in sweep.blocked}
 
 
 def _reduced(grid, at, kind, c10, pressures):

@@ -20,7 +20,7 @@ from .shards import Records, Shards, SweepError
 from .solve import solve_shard
 from .spec import Sweep, read_file
 
-SHARD_EQUILIBRIA = 16384  # a second of work or less: what an interruption can cost, for each thread
+SHARD_EQUILIBRIA = 8192  # a second of work or less: what an interruption can cost, for each thread
 HELD_COST, VARYING_COST = (
     32,
     8,
@@ -61,7 +61,7 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
         tables = make_plan(sweep)
         split_up = {kind: split(table, sweep) for kind, table in tables.items()}
         done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, overwrite)
-        needed = estimate.check_disk(sweep, tables, out, done)
+        needed = estimate.check_disk(sweep, {kind: table.equilibria for kind, table in tables.items()}, out, done)
         threads = threads or estimate.cores()
         records = _solve_all(tables, split_up, done, shards, sweep.accuracy, threads, progress)
         solved = time.perf_counter()
@@ -156,7 +156,7 @@ def _solve_all(tables, split_up, done, shards, accuracy, threads, progress):
 
 def _write(sweep, tables, records, out, attrs, needed, threads, progress):
     """The atlas, chunk by chunk: made and compressed on threads, written here."""
-    made = groups(sweep, tables, records)
+    made = groups(sweep)
     steps = max(len(tables["free"].pressure), 1)
     sizes = dict(zip(sweep.dims, sweep.shape))
     dimensions = {id(group): (*group.grid.dimensions, *["pressure"] * group.pressure) for group in made}
@@ -164,7 +164,7 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
 
     def run(group, shape, offset, first, last):
         inner = steps if group.pressure else 1
-        arrays = group.make(np.arange(first // inner, last // inner))
+        arrays = group.arrays(tables, records, np.arange(first // inner, last // inner))
         return [(name, offset, packed(array, shape) if shape else array[0, 0]) for name, array in arrays.items()]
 
     shapes = [(group, [sizes[name] for name in dimensions[id(group)]]) for group in made]

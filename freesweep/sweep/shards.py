@@ -46,19 +46,27 @@ class Shards:
             if fcntl:
                 fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            self.release()
+            os.close(self.lock)
+            self.lock = None
             raise SweepError(
                 f"another process is sweeping into {self.out}; wait for it, or choose another output"
             ) from None
         except OSError as error:
             raise EnvironmentFault(f"cannot make the folder {self.folder}: {error.strerror}") from error
-        if not (self.folder / "lock").exists():  # another process finished in between
-            self.release()
+        if not self._is_there():  # another process finished in between
+            os.close(self.lock)
             self.hold()
 
+    def _is_there(self):
+        with contextlib.suppress(FileNotFoundError):
+            return os.path.samestat(os.fstat(self.lock), os.stat(self.folder / "lock"))
+        return False
+
     def release(self):
-        """Let another process write."""
+        """Let another process write; a folder without a shard does not stay behind."""
         if self.lock is not None:
+            if not any(self.folder.glob("*.bin")):
+                shutil.rmtree(self.folder, ignore_errors=True)
             os.close(self.lock)
             self.lock = None
 
