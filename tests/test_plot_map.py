@@ -55,6 +55,8 @@ def atlas(step=5.0, alpha_from=0.0, beta_from=-85.0):
         "limit_pressure": (dims[:4], limit),
         "ideal_blocked_torque": (("alpha", "beta", "radius", "pressure"), torque),
         "ideal_blocked_torque_status": (("alpha", "beta", "radius", "pressure"), torque_why),
+        "blocked_torque": (("alpha", "beta", "radius", "pressure"), 0.9 * torque),
+        "blocked_torque_status": (("alpha", "beta", "radius", "pressure"), torque_why),
     }
     coords = {"alpha": alpha, "beta": beta, "length": LENGTHS, "radius": RADII, "pressure": PRESSURES, "torque": 0.0}
     dataset = xr.Dataset(data, coords)
@@ -196,7 +198,7 @@ def test_limit_pressure_tells_none_from_failed(whole):
     assert "meridional compression" in labels
 
 
-@pytest.mark.parametrize("variable", ["rotation", "volume", "ideal_blocked_torque"])
+@pytest.mark.parametrize("variable", ["rotation", "volume", "ideal_blocked_torque", "blocked_torque"])
 @pytest.mark.parametrize("stored", ["alpha<=0", "beta<=0 both signs of alpha", "swapped"])
 def test_symmetry_completes_the_two_quadrants(variable, stored):
     full = atlas(step=10.0, alpha_from=-85.0)
@@ -206,15 +208,15 @@ def test_symmetry_completes_the_two_quadrants(variable, stored):
         "swapped": full.sel(beta=slice(0.0, 85.0)),
     }[stored]
     want, got = plane.plane(full, variable, {}), plane.plane(part, variable, {})
-    np.testing.assert_array_equal(got.alpha, want.alpha)
-    np.testing.assert_array_equal(got.beta, want.beta)
+    np.testing.assert_array_equal(got.x, want.x)
+    np.testing.assert_array_equal(got.y, want.y)
     np.testing.assert_array_equal(got.reason, want.reason)
     np.testing.assert_allclose(got.values.filled(np.nan), want.values.filled(np.nan), rtol=1e-9, atol=1e-12)
 
 
 def test_what_symmetry_cannot_give_stays_outside(whole):
     part = plane.plane(whole.sel(beta=slice(-85.0, 0.0)), "rotation", {})
-    assert np.all(part.reason[np.ix_(part.beta > 0.0, part.alpha > 0.0)] == status.OUTSIDE)
+    assert np.all(part.reason[np.ix_(part.y > 0.0, part.x > 0.0)] == status.OUTSIDE)
     pulled = whole.assign_coords(torque=0.1)  # the mirror of an applied torque is another design
     mirrored = pulled.assign_coords(alpha=-whole["alpha"].values).sel(beta=slice(-85.0, 0.0))
     with pytest.raises(ValueError, match="fewer than two nodes"):

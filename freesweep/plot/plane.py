@@ -10,23 +10,27 @@ import numpy as np
 
 from ..atlas import schema
 from ..status import OK, OUTSIDE, VALUED
-from .choice import check_name, choose
+from .choice import DESIGN, check_name, choose, dimensions
 
 ALPHA, BETA = (0.0, 90.0), (-90.0, 90.0)  # the two quadrants of Figure 1-2 [degree]
 ODD = ("rotation", "locked_rotation", "blocked_torque", "ideal_blocked_torque")  # change sign in the mirror
+POLE_ON_AF = ("blocked_torque", "ideal_blocked_torque")
 NO_VALUE = -1  # solved, and yet no number: no limit pressure was met
 SAME_ANGLE = 1e-4  # [degree]: nodes closer than this are one
 
 
 class Plane(NamedTuple):
-    """Nodes [degree] of shapes (n,) and (m,); ``values`` in stored units, masked where there is none, and ``reason``,
-    both of shape (m, n); ``point`` holds the parameters that were chosen, in stored units.
+    """A variable over two axes, called ``names``: nodes of shapes (n,) and (m,) in stored units; ``values``, in stored units,
+    masked where there is none, and ``reason``, both of shape (m, n); masks of the ``parts`` between which no contour may run;
+    ``point`` holds the parameters that were chosen, in stored units.
     """
 
-    alpha: np.ndarray
-    beta: np.ndarray
+    names: tuple
+    x: np.ndarray
+    y: np.ndarray
     values: np.ma.MaskedArray
     reason: np.ndarray
+    parts: list
     point: dict
 
 
@@ -60,18 +64,59 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     turns = any(point.get(name, 0.0) != 0.0 and name not in free for name in ("torque", "held_rotation"))
     alpha, beta, values, status = _unfold(dataset, values, status, variable in ODD, turns)
 
+    point = {name: value for name, value in point.items() if name not in free}
+    return _plane(("alpha", "beta"), alpha, beta, values, status, variable, point)
+
+
+def section(dataset, variable: str, x: str, y: str, select: dict) -> Plane:
+    """``variable`` over any two axes of a dataset, else as :func:`plane`; over both angles it is that plane."""
+    if {x, y} == {"alpha", "beta"}:
+        return plane(dataset, variable, select)
+    known = [name for name in schema.VARIABLES if name in dataset]
+    check_name(variable, known, "variable")
+    check_name(status_of(variable), dataset.data_vars, "status variable")
+    axes = [name for name in dimensions(dataset) if name in dataset[variable].dims and dataset.sizes[name] > 1]
+    for name in (x, y):
+        check_name(name, [axis for axis in axes if axis != DESIGN], f"axis of {variable} with two nodes or more")
+    if x == y:
+        raise ValueError(f"a map needs two different axes, found {x} twice")
+    point, index = choose(dataset, select, (x, y))
+    order = [np.argsort(dataset[name].values.astype(float)) for name in (y, x)]
+    values, status = (
+        _sheet(dataset[name], index, (y, x))[np.ix_(*order)] for name in (variable, status_of(variable))
+    )
+    free = schema.VARIABLES[variable].without
+    point = {name: value for name, value in point.items() if name not in free}
+    nodes = [dataset[name].values.astype(float)[at] for name, at in zip((x, y), reversed(order))]
+    return _plane((x, y), *nodes, values, status, variable, point)
+
+
+def _plane(names, x, y, values, status, variable, point):
     none = ~np.isfinite(values)
     if variable != "limit_pressure":  # which has a value just where the state has none
         none |= ~np.isin(status, VALUED)
     reason = np.where(none & np.isin(status, VALUED), NO_VALUE, status)
     if variable == "limit_pressure":
         reason[~none] = OK
-    return Plane(alpha, beta, np.ma.array(values, mask=none), reason, {k: v for k, v in point.items() if k not in free})
+    return Plane(names, x, y, np.ma.array(values, mask=none), reason, _parts(names, x, y, variable, point), point)
 
 
-def _sheet(array, index):
+def _parts(names, x, y, variable, point):
+    """Masks (m, n): DF is degenerate, a blocked torque has a pole on AF, so no contour may cross them."""
+    grid = dict(zip(names, np.meshgrid(x, y)))
+    whole = np.ones((y.size, x.size), bool)
+    alpha, beta = (grid.get(name, point.get(name)) for name in ("alpha", "beta"))
+    if alpha is None or beta is None:
+        return [whole]
+    parts = [whole & (alpha > beta), whole & (alpha < beta)]
+    if variable in POLE_ON_AF:
+        parts = [part & half for part in parts for half in (alpha > -beta, alpha < -beta)]
+    return parts
+
+
+def _sheet(array, index, names=("beta", "alpha")):
     chosen = array.isel({name: at for name, at in index.items() if name in array.dims})
-    return chosen.transpose("beta", "alpha").values
+    return chosen.transpose(*names).values
 
 
 def _unfold(dataset, values, status, odd, turns):

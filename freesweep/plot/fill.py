@@ -1,0 +1,139 @@
+"""Filled maps of one variable over two axes: colours, contours between solved nodes, hatches where there is no value."""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Patch, PathPatch, Rectangle
+from matplotlib.path import Path
+from matplotlib.ticker import MaxNLocator
+
+from .. import status
+from . import style
+from .display import describe, display
+from .plane import NO_VALUE, Plane
+
+STEPS = 16  # of the colour bar, about
+TICKS = 9  # with a number, about
+ROBUST = (6.0, 94.0)  # percentiles between which the colours run: the neighbours of a pole do not flatten the rest
+NICE = [1, 2, 2.5, 5, 10]  # steps of the colour bar, times a power of ten
+HATCH = {
+    NO_VALUE: None,
+    status.OUTSIDE: None,
+    status.DEGENERATE: "......",
+    status.BEYOND_LIMIT: "//////",
+    status.COMPRESSED: "\\\\\\\\\\\\",
+    status.HELD_IMPOSSIBLE: "xxxxx",
+    status.INACCURATE: "...",
+    status.NOT_CONVERGED: "+++++",
+    status.INVALID: "-----",
+    status.NOT_INTERPOLABLE: "ooo",
+}
+
+
+class Shades(NamedTuple):
+    """Boundaries of the colours, the colours, and on which sides values lie beyond them."""
+
+    levels: np.ndarray
+    colours: ListedColormap
+    extend: str
+    centre: float | None
+
+    @property
+    def norm(self):
+        return BoundaryNorm(self.levels, len(self.levels) - 1)
+
+
+def shown_values(sheet: Plane, variable):
+    """The values of a sheet in shown units: what they are scaled by may be one of its axes."""
+    x, y = np.meshgrid(sheet.x, sheet.y)
+    return display(variable).convert(sheet.values, sheet.point | {sheet.names[0]: x, sheet.names[1]: y})
+
+
+def shades(values, centre) -> Shades:
+    """Colours for some values (1-D, shown units) with a sign about ``centre``, or None."""
+    low, high = np.percentile(values, ROBUST) if values.size else (0.0, 1.0)
+    if centre is None:
+        levels = MaxNLocator(STEPS, steps=NICE).tick_values(low, high)
+        place, colours = (lambda value: (value - levels[0]) / (levels[-1] - levels[0])), style.SEQUENTIAL
+    else:  # colours symmetric about the centre; the bar covers the values only
+        low, high = min(low, centre), max(high, centre)
+        if low == high:  # nothing moves
+            low, high = centre - 1.0, centre + 1.0
+        reach = max(centre - low, high - centre)
+        count = min(2.0 * STEPS, STEPS * 2.0 * reach / (high - low))
+        levels = MaxNLocator(int(count), steps=NICE).tick_values(-reach, reach) + centre
+        width = np.abs(levels - centre).max()
+        levels = levels[max(np.searchsorted(levels, low, "right") - 1, 0) : np.searchsorted(levels, high) + 1]
+        place, colours = (lambda value: 0.5 + 0.5 * (value - centre) / width), style.DIVERGING
+    under, over = (values.size > 0 and values.min() < levels[0]), (values.size > 0 and values.max() > levels[-1])
+    extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[bool(under), bool(over)]
+    middles = np.convolve(np.pad(levels, 1, "reflect", reflect_type="odd"), [0.5, 0.5], "valid")
+    tones = colours(place(middles))  # one more on either side, for what lies beyond
+    listed = ListedColormap(tones[1:-1]).with_extremes(bad=style.BLANK, under=tones[0], over=tones[-1])
+    return Shades(levels, listed, extend, centre)
+
+
+def draw_values(ax: Axes, sheet: Plane, values, shade: Shades, smooth: bool) -> None:
+    """Cells in their colours; where ``smooth``, contours between the nodes of each connected part."""
+    x, y = edges(sheet.x), edges(sheet.y)
+    # an image also in vector files: cells that abut would show seams there
+    ax.pcolormesh(x, y, values, cmap=shade.colours, norm=shade.norm, rasterized=True, zorder=1)
+    frame = {"fill": False, "edgecolor": style.QUIET, "linewidth": 0.5, "zorder": 3}
+    ax.add_patch(Rectangle((x[0], y[0]), np.ptp(x), np.ptp(y), **frame))
+    if not smooth:
+        return
+    for part in sheet.parts:
+        inside = np.ma.array(values, mask=np.ma.getmaskarray(values) | ~part)
+        if inside.count():
+            ax.contourf(sheet.x, sheet.y, inside, shade.levels, cmap=shade.colours, norm=shade.norm, extend=shade.extend,
+                        zorder=2)  # fmt: skip
+
+
+def draw_bar(figure, place: Axes, shade: Shades, label: str):
+    """The colour bar, in Axes of its own; the centre of a quantity with a sign gets a number."""
+    bar = figure.colorbar(ScalarMappable(shade.norm, shade.colours), cax=place, extend=shade.extend)
+    first = 0 if shade.centre is None else np.abs(shade.levels - shade.centre).argmin()
+    stride = -(-len(shade.levels) // TICKS)
+    bar.set_ticks(shade.levels[first % stride :: stride])
+    bar.set_label(label)
+    bar.outline.set_linewidth(0.5)
+    bar.ax.tick_params(labelsize=style.NORMAL, width=0.6)
+    return bar
+
+
+def edges(nodes):
+    """Boundaries of the cells around nodes, half way between them; none beyond the last node."""
+    return np.concatenate([nodes[:1], 0.5 * (nodes[1:] + nodes[:-1]), nodes[-1:]])
+
+
+def draw_failures(ax: Axes, sheet: Plane, variable, dataset) -> dict:
+    """Hatches the cells without a value, and the inaccurate ones, by reason; returns the keys of the legend by reason."""
+    x, y = edges(sheet.x), edges(sheet.y)
+    keys = {}
+    for reason in np.unique(sheet.reason[sheet.reason != status.OK]).tolist():
+        meaning = _meaning(reason, variable, dataset)
+        face = style.PAPER if reason in (status.INACCURATE, status.OUTSIDE) else style.BLANK
+        cells = [_cell(x[i : i + 2], y[j : j + 2]) for j, i in np.argwhere(sheet.reason == reason)]
+        patch = PathPatch(
+            Path.make_compound_path(*cells), fill=reason == status.OUTSIDE, facecolor=face, edgecolor=style.QUIET,
+            linewidth=0.0, hatch=HATCH[reason], label=meaning, gid=f"reason {reason}", zorder=3,
+        )  # fmt: skip
+        ax.add_patch(patch)
+        how = {"facecolor": face, "edgecolor": style.QUIET, "linewidth": 0.4, "hatch": HATCH[reason]}
+        keys[reason] = Patch(label=meaning, **how)
+    return keys
+
+
+def _cell(x, y):
+    return Path([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]), (x[0], y[0])], closed=True)
+
+
+def _meaning(reason, variable, dataset):
+    if reason != NO_VALUE:
+        return status.STATUSES[reason].meaning.replace("_", " ")
+    if variable != "limit_pressure":
+        return "no value"
+    return f"no limit up to {describe('pressure', float(dataset['pressure'].max()))}"
