@@ -1,4 +1,4 @@
-"""The commands that draw: plot map, curve, shape; thesis. They parse and call; names of files are checked before solving."""
+"""The commands that draw: plot map, validity, curve, shape; thesis. Names of files are checked before anything is solved."""
 
 STILL = ".png, .svg or .pdf"
 
@@ -9,6 +9,7 @@ def add_plot(commands):
         required=True, metavar="KIND"
     )
     _map(kinds)
+    _validity(kinds)
     _curve(kinds)
     _shape(kinds)
 
@@ -47,19 +48,72 @@ def _at(command):
     )
 
 
+def _axes(command):
+    command.add_argument(
+        "--axes", nargs=2, default=("alpha", "beta"), metavar=("X", "Y"), help="of the map (default: alpha beta)"
+    )
+
+
 def _map(kinds):
-    command = kinds.add_parser("map", help="the design space of fiber angles, with one variable as filled contours")
+    command = kinds.add_parser(
+        "map", help="one variable over the fiber angles, or over any two axes, as filled contours"
+    )
     command.add_argument("atlas", help="an atlas made by freesweep sweep")
     command.add_argument("--variable", default="rotation", help="what to draw (default: rotation)")
+    _axes(command)
+    command.add_argument(
+        "--over", nargs="+", metavar="AXIS", help="small multiples along one or two more axes, such as pressure length"
+    )
     _at(command)
     _out(command, "named after ATLAS, here")
     command.set_defaults(run=_run_map)
 
 
 def _run_map(options):
+    from .plot.style import save
+
     out = checked(options.out or _named(options.atlas, options.variable))
+    x, y = options.axes
     with read(options.atlas) as data:
-        draw_map(data, out, options.variable, selection(options.at))
+        if options.over:
+            from .plot.section import multiples
+
+            save(multiples(data, options.variable, x, y, options.over, **selection(options.at)), out)
+        elif {x, y} == {"alpha", "beta"}:
+            from .plot.map import design_map
+
+            save(design_map(data, options.variable, **selection(options.at)), out)
+        else:
+            from .plot.section import section_map
+
+            save(section_map(data, options.variable, x, y, **selection(options.at)), out)
+    print(out)
+
+
+def _validity(kinds):
+    command = kinds.add_parser(
+        "validity", help="where an atlas has results, which fibers would have to push, what is unstable"
+    )
+    command.add_argument("atlas", nargs="+", help="one atlas, or several side by side (one for each strain energy)")
+    states = ("equilibrium", "blocked_force", "blocked_torque")
+    command.add_argument("--of", choices=states, default=states[0], help="of which state (default: equilibrium)")
+    _axes(command)
+    _at(command)
+    _out(command, "named after the first ATLAS, here")
+    command.set_defaults(run=_run_validity)
+
+
+def _run_validity(options):
+    import contextlib
+
+    from .plot.style import save
+    from .plot.validity import validity_maps
+
+    out = checked(options.out or _named(options.atlas[0], "validity"))
+    with contextlib.ExitStack() as stack:
+        data = [stack.enter_context(read(path)) for path in options.atlas]
+        save(validity_maps(data, options.of, *options.axes, **selection(options.at)), out)
+    print(out)
 
 
 def _curve(kinds):

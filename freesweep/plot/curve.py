@@ -12,7 +12,7 @@ from ..atlas import schema
 from ..status import VALUED
 from . import style
 from .choice import DESIGN, check_name, choose, dimensions
-from .display import USUAL, absolute, describe, shown_units
+from .display import USUAL, absolute, axis_label, describe, shown_units
 from .plane import status_of
 
 SIZE = (style.PAGE * 0.75, 85.0)  # of a figure of its own [mm]
@@ -169,8 +169,7 @@ def _draw(ax, one, variable, along, shown, colour):
 
 
 def _name_axes(ax, along, shown):
-    label = f"{along.replace('_', ' ')} [{shown_units(along)[0]}]".removesuffix(" [1]")
-    style.dress(ax, label, shown.axis_label, shown.label[0].upper() + shown.label[1:])
+    style.dress(ax, axis_label(along), shown.axis_label, shown.label[0].upper() + shown.label[1:])
     ax.xaxis.set_major_locator(MaxNLocator(7))
     ax.margins(x=0.0)
 

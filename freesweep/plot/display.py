@@ -50,9 +50,16 @@ _ABSOLUTE = {
     "deformed_length": Display("length", "mm", _scaled(1e3), None),
     "mid_radius": Display("radius at half length", "mm", _scaled(1e3), None),
 }
-USUAL = {"fiber_extension": 1.0, "force": 0.0, "torque": 0.0}  # not worth a word below a title
+_SYMBOLS = {"alpha": r"fiber angle $\alpha$", "beta": r"fiber angle $\beta$", "c10": "$C_{10}$", "c01": "$C_{01}$"}
+USUAL = {
+    "fiber_extension": 1.0,
+    "force": 0.0,
+    "torque": 0.0,
+    "held_rotation": 0.0,
+    "held_length_ratio": 1.0,
+}  # not worth a word below a title
 PARAMETER_UNITS = {  # shown unit and its factor, where it is not the stored one
-    **dict.fromkeys(("length", "radius", "wall", "fiber_radius", "deformed_length"), ("mm", 1e3)),
+    **dict.fromkeys(("length", "radius", "wall", "fiber_radius", "deformed_length", "held_length"), ("mm", 1e3)),
     **dict.fromkeys(("c10", "c01", "pressure"), ("kPa", 1e-3)),
     "torque": ("mN m", 1e3),
 }
@@ -83,6 +90,12 @@ def title(variable: str) -> str:
 def shown_units(name: str) -> tuple[str, float]:
     """Unit in which a parameter is shown, and the factor from the stored one."""
     return PARAMETER_UNITS.get(name) or (schema.attributes(name)["units"], 1.0)
+
+
+def axis_label(name: str, short: bool = False) -> str:
+    """Label of an axis along a parameter, with its unit; ``short``: a symbol, where there is one."""
+    label = (_SYMBOLS.get(name) or name.replace("_", " ")).removeprefix("fiber angle " if short else "")
+    return f"{label} [{shown_units(name)[0]}]".removesuffix(" [1]")
 
 
 def describe(name: str, value: float | str) -> str:

@@ -92,9 +92,9 @@ def draw_values(ax: Axes, sheet: Plane, values, shade: Shades, smooth: bool) -> 
                         zorder=2)  # fmt: skip
 
 
-def draw_bar(figure, place: Axes, shade: Shades, label: str):
-    """The colour bar, in Axes of its own; the centre of a quantity with a sign gets a number."""
-    bar = figure.colorbar(ScalarMappable(shade.norm, shade.colours), cax=place, extend=shade.extend)
+def draw_bar(figure, shade: Shades, label: str, **place):
+    """The colour bar, in Axes of its own (``cax``) or beside others (``ax``); a centre gets a number."""
+    bar = figure.colorbar(ScalarMappable(shade.norm, shade.colours), extend=shade.extend, **place)
     first = 0 if shade.centre is None else np.abs(shade.levels - shade.centre).argmin()
     stride = -(-len(shade.levels) // TICKS)
     bar.set_ticks(shade.levels[first % stride :: stride])
@@ -116,7 +116,7 @@ def draw_failures(ax: Axes, sheet: Plane, variable, dataset) -> dict:
     for reason in np.unique(sheet.reason[sheet.reason != status.OK]).tolist():
         meaning = _meaning(reason, variable, dataset)
         face = style.PAPER if reason in (status.INACCURATE, status.OUTSIDE) else style.BLANK
-        cells = [_cell(x[i : i + 2], y[j : j + 2]) for j, i in np.argwhere(sheet.reason == reason)]
+        cells = [cell(x[i : i + 2], y[j : j + 2]) for j, i in np.argwhere(sheet.reason == reason)]
         patch = PathPatch(
             Path.make_compound_path(*cells), fill=reason == status.OUTSIDE, facecolor=face, edgecolor=style.QUIET,
             linewidth=0.0, hatch=HATCH[reason], label=meaning, gid=f"reason {reason}", zorder=3,
@@ -127,7 +127,7 @@ def draw_failures(ax: Axes, sheet: Plane, variable, dataset) -> dict:
     return keys
 
 
-def _cell(x, y):
+def cell(x, y):
     return Path([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]), (x[0], y[0])], closed=True)
 
 

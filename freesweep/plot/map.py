@@ -40,7 +40,7 @@ def design_map(dataset, variable="rotation", ax=None, paths=True, examples=True,
         shade = shades(values.compressed(), display(variable).centre)
         draw_values(ax, sheet, values, shade, max(np.diff(sheet.x).max(), np.diff(sheet.y).max()) <= COARSE)
         beside = ax.inset_axes([1.03, 0.0, 0.03, 1.0])  # a column of its own would keep clear of the legend, too
-        draw_bar(ax.figure, beside, shade, display(variable).axis_label)
+        draw_bar(ax.figure, shade, display(variable).axis_label, cax=beside)
         handles = [regions.draw_lines(ax)]
         if paths:
             handles.append(regions.draw_paths(ax)[0])

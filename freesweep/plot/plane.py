@@ -20,9 +20,9 @@ SAME_ANGLE = 1e-4  # [degree]: nodes closer than this are one
 
 
 class Plane(NamedTuple):
-    """A variable over two axes, called ``names``: nodes of shapes (n,) and (m,) in stored units; ``values``, in stored units,
-    masked where there is none, and ``reason``, both of shape (m, n); masks of the ``parts`` between which no contour may run;
-    ``point`` holds the parameters that were chosen, in stored units.
+    """A variable over two axes, called ``names``, everything in stored units: nodes of shapes (n,) and (m,); ``values``,
+    masked where there is none, and ``reason``, both of shape (m, n); masks of the ``parts`` between which no contour may
+    run; ``point`` holds the parameters that were chosen.
     """
 
     names: tuple
@@ -82,9 +82,7 @@ def section(dataset, variable: str, x: str, y: str, select: dict) -> Plane:
         raise ValueError(f"a map needs two different axes, found {x} twice")
     point, index = choose(dataset, select, (x, y))
     order = [np.argsort(dataset[name].values.astype(float)) for name in (y, x)]
-    values, status = (
-        _sheet(dataset[name], index, (y, x))[np.ix_(*order)] for name in (variable, status_of(variable))
-    )
+    values, status = (_sheet(dataset[name], index, (y, x))[np.ix_(*order)] for name in (variable, status_of(variable)))
     free = schema.VARIABLES[variable].without
     point = {name: value for name, value in point.items() if name not in free}
     nodes = [dataset[name].values.astype(float)[at] for name, at in zip((x, y), reversed(order))]

@@ -1,0 +1,176 @@
+"""Maps over any two axes, small multiples, validity: cells are the data, colours are shared, images swap families back."""
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+
+matplotlib.use("Agg")
+
+from commands import refused, run
+from matplotlib import pyplot
+from matplotlib.collections import QuadMesh
+
+from freesweep import status
+from freesweep.atlas import schema
+from freesweep.atlas.store import save_atlas
+from freesweep.plot.section import multiples, section_map
+from freesweep.plot.validity import KINDS, validity_map, validity_maps
+
+ALPHA, BETA = np.arange(0.0, 81.0, 20.0), np.arange(-80.0, 81.0, 20.0)
+LENGTHS, PRESSURES = [0.2, 0.1, 0.4], np.linspace(0.0, 1e5, 13)  # lengths in no order
+
+
+@pytest.fixture(autouse=True)
+def _closed_figures():
+    yield
+    pyplot.close("all")
+
+
+@pytest.fixture(scope="module")
+def data():
+    """Made-up results, known at every node; degenerate on the diagonal, compressed at 100 kPa above 70 degrees."""
+    a, b, l, p = np.meshgrid(ALPHA, BETA, LENGTHS, PRESSURES, indexing="ij")
+    dims = ("alpha", "beta", "length", "pressure")
+    why = np.where(a == b, status.DEGENERATE, status.OK)
+    why = np.where((p == 1e5) & (a > 70.0) & (why == status.OK), status.COMPRESSED, why).astype(np.int8)
+    value = np.where(why == status.OK, 1.0 + 1e-3 * a + 2e-3 * b + 1e-6 * p, np.nan)
+    slack = np.select([a > np.abs(b), a < np.abs(b)], [1, 2], 0)
+    made = xr.Dataset(
+        {
+            "deformed_length": (dims, l * value),
+            "rotation": (dims, value * (a + b)),
+            "status": (dims, why),
+            "stable": (dims, np.where(p > 5e4, 0, 1).astype(np.int8)),
+            "slack_fiber": (dims, slack.astype(np.int8)),
+        },
+        {"alpha": ALPHA, "beta": BETA, "length": LENGTHS, "pressure": PRESSURES, "radius": 5e-3, "force": 0.0},
+        {"energy": "full"},
+    )
+    for name in made.variables:
+        made[name].attrs.update(schema.attributes(name))
+    return made
+
+
+def mesh(ax, gid=None):
+    found = [artist for artist in ax.collections if isinstance(artist, QuadMesh) and artist.get_gid() == gid]
+    return found[0]
+
+
+def patches(ax, gid):
+    return [patch for patch in ax.patches if patch.get_gid() == gid]
+
+
+def test_cells_are_the_data_over_any_two_axes(data):
+    ax = section_map(data, "deformed_length", "length", "pressure", alpha=40.0, beta=-20.0)
+    drawn = mesh(ax)
+    stored = data["deformed_length"].sel(alpha=40.0, beta=-20.0).sortby("length")
+    shown = 100.0 * (stored / stored["length"] - 1.0)  # scaled by an axis of the map
+    np.testing.assert_allclose(
+        drawn.get_array().filled(np.nan), shown.transpose("pressure", "length").values, rtol=1e-9
+    )
+    corners = drawn.get_coordinates()
+    np.testing.assert_allclose(corners[0, :, 0], [100.0, 150.0, 300.0, 400.0])
+    np.testing.assert_allclose([corners[0, 0, 1], corners[-1, 0, 1]], [0.0, 100.0])
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("length [mm]", "pressure [kPa]")
+    (words,) = [text.get_text().replace("\u00a0", " ") for text in ax.texts if text.get_gid() == "chosen"]
+    assert words == "alpha 40 degree, beta -20 degree, radius 5 mm"
+
+
+def test_failures_are_hatched_in_shown_units(data):
+    ax = section_map(data, "rotation", "pressure", "alpha", beta=-20.0, length=0.2)
+    (patch,) = patches(ax, f"reason {status.COMPRESSED}")
+    path = patch.get_path()
+    assert path.contains_point((98.0, 78.0))
+    assert not path.contains_point((50.0, 78.0))
+    assert not patches(ax, f"reason {status.DEGENERATE}")
+
+
+def test_small_multiples_share_colours(data):
+    figure = multiples(data, "rotation", over=("pressure", "length"))
+    axes = [ax for ax in figure.axes if any(isinstance(artist, QuadMesh) for artist in ax.collections)]
+    maps = [ax for ax in axes if ax.get_gid() is None and ax.lines]
+    assert len(maps) == 4 * 3
+    norms = {tuple(mesh(ax).norm.boundaries) for ax in maps}
+    assert len(norms) == 1
+    pressures = PRESSURES[np.linspace(0, 12, 4).round().astype(int)]
+    for k, ax in enumerate(maps):
+        length, pressure = LENGTHS[k // 4], pressures[k % 4]
+        stored = data["rotation"].sel(pressure=pressure, length=length).transpose("beta", "alpha").values
+        np.testing.assert_allclose(mesh(ax).get_array().filled(np.nan), stored)
+    assert [ax.get_title("left").replace("\u00a0", " ") for ax in maps[:4]] == [
+        f"pressure {1e-3 * pressure:.4g} kPa" for pressure in pressures
+    ]
+    assert len(multiples(data, "rotation", "pressure", "alpha", over="length").axes) == 3 + 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"x": "pressure", "y": "pressure"}, "two different axes"),
+        ({"x": "radius", "y": "alpha"}, "no axis of rotation with two nodes or more 'radius'"),
+        ({"variable": "volume", "x": "pressure"}, "no variable 'volume'"),
+        ({"x": "pressure", "wall": 1.0}, "no dimension 'wall'"),
+    ],
+)
+def test_wrong_names(data, arguments, message):
+    with pytest.raises(ValueError, match=message):
+        section_map(data, **arguments)
+
+
+def test_multiples_need_other_axes(data):
+    with pytest.raises(ValueError, match="one or two axes other than alpha and beta"):
+        multiples(data, over="alpha")
+    with pytest.raises(ValueError, match="no axis to run over 'radius'"):
+        multiples(data, over="radius")
+
+
+def test_validity_shows_slack_families_and_swaps_images_back(data):
+    """Half of the plane is stored; at the other half the families have changed places."""
+    half = data.sel(beta=slice(-80.0, 0.0))
+    for stored in (data, half):
+        ax, keys, sheet = validity_map(stored, length=0.2, pressure=0.0)
+        kind = mesh(ax, "kind").get_array()
+        alpha, beta = np.meshgrid(sheet.x, sheet.y)
+        expected = np.select([np.abs(alpha) > np.abs(beta), np.abs(alpha) < np.abs(beta)], [1, 2], 0)
+        there = ~np.ma.getmaskarray(kind)
+        assert there.sum() > 20
+        np.testing.assert_array_equal(kind.filled(-1)[there], expected[there])
+        assert KINDS[1][1] in keys
+        assert "unstable" not in keys
+    swapped = data.rename(alpha="beta", beta="alpha").sel(beta=slice(0.0, 80.0))  # only images are seen
+    swapped["slack_fiber"] = swapped["slack_fiber"].copy(data=np.array([0, 2, 1, 3])[swapped["slack_fiber"].values])
+    ax, _, sheet = validity_map(swapped.sel(alpha=slice(-80.0, -20.0)), length=0.2, pressure=0.0)
+    kind = mesh(ax, "kind").get_array()
+    alpha, beta = np.meshgrid(sheet.x, sheet.y)
+    there = ~np.ma.getmaskarray(kind) & (np.abs(alpha) != np.abs(beta))
+    assert there.sum() > 8
+    np.testing.assert_array_equal(kind.filled(-1)[there], np.where(np.abs(alpha) > np.abs(beta), 1, 2)[there])
+
+
+def test_validity_marks_unstable_and_failed(data):
+    ax, keys, _ = validity_map(data, x="pressure", y="alpha", beta=-20.0, length=0.2)
+    (patch,) = patches(ax, "unstable")
+    assert patch.get_path().contains_point((80.0, 40.0))
+    assert not patch.get_path().contains_point((20.0, 40.0))
+    assert {"unstable", "meridional compression"} <= set(keys)
+    figure = validity_maps([data, data.assign_attrs(energy="principal")], length=0.2)
+    assert [ax.get_title("left") for ax in figure.axes] == ["strain energy: full", "strain energy: principal"]
+    with pytest.raises(ValueError, match="no state 'blocked_force'"):
+        validity_map(data, "blocked_force")
+
+
+def test_commands(data, tmp_path, capsys):
+    atlas = tmp_path / "made.nc"
+    save_atlas(data, atlas)
+    for words in (
+        ["map", "--axes", "pressure", "alpha", "--at", "beta=-20 deg"],
+        ["map", "--over", "length", "--at", "pressure=50 kPa"],
+        ["validity", str(atlas), "--axes", "pressure", "alpha"],
+    ):
+        out = tmp_path / f"{words[0]}{len(words)}.png"
+        assert run("plot", words[0], str(atlas), *words[1:], "-o", str(out)) == 0
+        assert out.stat().st_size > 10_000
+    capsys.readouterr()
+    assert "no axis of rotation" in refused(capsys, "plot", "map", str(atlas), "--axes", "wall", "alpha")
+    assert "no state 'blocked_force'" in refused(capsys, "plot", "validity", str(atlas), "--of", "blocked_force")
