@@ -1,4 +1,4 @@
-"""The commands that judge: verify. They parse and call."""
+"""The commands that judge: verify, bench. They parse and call."""
 
 
 def add_judging(commands):
@@ -15,6 +15,15 @@ def add_judging(commands):
     )
     verify.add_argument("--seed", type=int, default=0, help="of the points drawn (default 0)")
     verify.set_defaults(run=_run_verify)
+    bench = commands.add_parser(
+        "bench", help="how fast this is on this machine, beside its peers, and with which errors"
+    )
+    bench.add_argument(
+        "subject", nargs="?", choices=("solver",), default="solver", help="what is timed (default: solver)"
+    )
+    bench.add_argument("--quick", action="store_true", help="few designs: a first look in seconds")
+    bench.add_argument("--json", metavar="FILE", help="keep all figures, too")
+    bench.set_defaults(run=_run_bench)
 
 
 def _run_verify(options):
@@ -42,3 +51,18 @@ def _resolve(atlas, options):
     print(table(comparisons), *notes, sep="\n")
     if broken := sum(int(compared.broken.sum()) for compared in comparisons):
         raise AtlasError(f"{broken:,} stored numbers lie farther from the second method's than both errors allow")
+
+
+def _run_bench(options):
+    import json
+    import sys
+
+    from .atlas.files import write_whole
+    from .bench.solver import measure
+    from .bench.table import table
+
+    found = measure(options.quick, lambda text: print(f"{text} ...", file=sys.stderr))
+    print(table(found))
+    if options.json:
+        write_whole(options.json, json.dumps(found, indent=1).encode())
+        print(options.json)

@@ -1,0 +1,109 @@
+"""What the machine itself can do: multiplications and additions per second, and what one cell of the solver's mesh costs.
+
+The peak is that of a loop of fused multiply-adds on independent vector registers, nothing else. A Newton pass is what the
+solver repeats: on each cell the density and its derivatives, their assembly, and the factors of a tridiagonal matrix.
+"""
+
+import time
+
+import numpy as np
+from llvmlite import binding, ir
+from numba import types
+from numba.extending import intrinsic
+
+from ..jit import kernel
+from ..solver import lagrangian, newton
+
+CHAINS = (
+    12  # independent multiply-adds under way: more than latency times units of any machine yet, fewer than registers
+)
+ASSEMBLY, ELIMINATION = 22, 14  # flops of a cell beside its density: newton.assemble; factor, substitute and the step
+
+
+def vector_width() -> int:
+    """Doubles in one register of this machine."""
+    features = binding.get_host_cpu_features()
+    return 8 if features.get("avx512f") else 4 if features.get("avx") else 2
+
+
+@intrinsic
+def multiply_add_loop(typingctx, count, factor, term):
+    """``count`` times CHAINS vectors ``v = v factor + term``; returns one of their numbers."""
+    width = vector_width()
+    vector = ir.VectorType(ir.DoubleType(), width)
+
+    def build(context, builder, sig, args):
+        count, factor, term = args
+
+        def spread(number):
+            value = ir.Constant(vector, ir.Undefined)
+            for k in range(width):
+                value = builder.insert_element(value, number, ir.Constant(ir.IntType(32), k))
+            return value
+
+        factors, terms = spread(factor), spread(term)
+        fma = builder.module.declare_intrinsic(f"llvm.fma.v{width}f64", (), ir.FunctionType(vector, [vector] * 3))
+        before, loop = builder.block, builder.append_basic_block("loop")
+        after = builder.append_basic_block("after")
+        builder.branch(loop)
+        builder.position_at_end(loop)
+        index = builder.phi(count.type)
+        index.add_incoming(ir.Constant(count.type, 0), before)
+        chains = [builder.phi(vector) for _ in range(CHAINS)]
+        for chain in chains:
+            chain.add_incoming(terms, before)
+            chain.add_incoming(builder.call(fma, [chain, factors, terms]), loop)
+        following = builder.add(index, ir.Constant(count.type, 1))
+        index.add_incoming(following, loop)
+        builder.cbranch(builder.icmp_signed("<", following, count), loop, after)
+        builder.position_at_end(after)
+        total = chains[0]
+        for chain in chains[1:]:
+            total = builder.fadd(total, chain)
+        return builder.extract_element(total, ir.Constant(ir.IntType(32), 0))
+
+    return types.float64(types.int64, types.float64, types.float64), build
+
+
+@kernel
+def multiply_adds(count):
+    """Work for the peak: 2 CHAINS width flops, ``count`` times."""
+    return multiply_add_loop(count, 0.999999, 1e-6)
+
+
+def peak(seconds=0.05, repeats=5) -> float:
+    """Flops per second of one core, a multiply-add counted as two; the best of the repeats."""
+    count, taken = 1000, 0.0
+    while taken < seconds:
+        count *= 4
+        taken = _time(multiply_adds, count)
+    return 2.0 * CHAINS * vector_width() * count / min(_time(multiply_adds, count) for _ in range(repeats))
+
+
+def _time(run, *arguments):
+    begun = time.thread_time()
+    run(*arguments)
+    return time.thread_time() - begun
+
+
+@kernel
+def passes(count, x, y, cells, load, work):
+    """That many Newton passes at the same state."""
+    n = len(x) - 1
+    total = 0.0
+    for _ in range(count):
+        newton.assemble(lagrangian.density, x, y, n, cells, load, False, work[7], work[6], work[0], work[1], work[2])
+        newton.factor(work[1], work[2], 1, n, work[3])
+        newton.substitute(work[3], work[2], 1, n, work[0], work[4])
+        total += work[4, n]
+    return total
+
+
+def cell_time(repeats=5) -> float:
+    """Seconds for one cell in one Newton pass of the scalar kernel, on a mesh of 96 cells."""
+    n = 96
+    x = np.linspace(0.0, 10.0, n + 1)
+    y, work = 1.0 + 0.2 * (1.0 - np.exp(-x)), np.zeros((13, n + 2))
+    cells, load = np.array([[0.1, 0.6, 0.7]]), (1.0, 0.5, 1.0, 1.0, 0.0, 0.0, 1.0)
+    passes(1, x, y, cells, load, work)
+    return float(np.median([_time(passes, 500, x, y, cells, load, work) for _ in range(repeats)])) / (500 * n)
