@@ -88,9 +88,12 @@ def _median(run, repeats, clock=time.thread_time):
 
 def _solve(chosen, accuracy):
     """The sample by what a sweep calls."""
-    from ..sweep.run import solve_shard
+    from ..sweep.plan import FREE, Job
+    from ..sweep.solve import solve_shard
 
-    return solve_shard(*chosen.listed(), accuracy)["values"]
+    problems, first, pressures = chosen.listed()
+    nothing = np.zeros(len(problems))
+    return solve_shard(Job(FREE, problems, nothing, first, pressures, [], nothing), accuracy)[0]["values"]
 
 
 def _scalar(chosen, accuracy, cells):

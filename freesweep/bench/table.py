@@ -1,9 +1,9 @@
 """The figures of the benchmark as one table that is read in a minute."""
 
-NOTE = """error: in deformed length per undeformed length, and in rotation per radian (relative beyond one), whichever is larger,
+NOTE = """error: in deformed length per undeformed length and in rotation per radian (relative beyond one), the larger one,
 against quadrature of the first integral, of what did not fail. Equal error: the loosest accuracy at which 95 % err by at
-most 1e-6, as for solve_bvp, which gets analytic Jacobians, compiled right-hand sides, half of the tube, a graded mesh and a
-warm start."""
+most 1e-6, as for solve_bvp, which gets analytic Jacobians, compiled right-hand sides, half of the tube, a graded mesh and
+a warm start."""
 
 
 def table(found) -> str:
@@ -49,8 +49,8 @@ def _pass(cost):
     rate = cost["flops_per_cell"] / cost["seconds_per_cell"]
     return (
         f"one Newton pass of the scalar kernel: {cost['flops_per_cell']} flops a cell in"
-        f" {1e9 * cost['seconds_per_cell']:.2f} ns, {rate / 1e9:.2f} Gflop/s, {100 * cost['share_of_peak']:.1f} % of this core's"
-        f" multiply-add peak ({cost['peak_flops_per_second'] / 1e9:.1f} Gflop/s)"
+        f" {1e9 * cost['seconds_per_cell']:.2f} ns, {rate / 1e9:.2f} Gflop/s, {100 * cost['share_of_peak']:.1f} % of this"
+        f" core's multiply-add peak ({cost['peak_flops_per_second'] / 1e9:.1f} Gflop/s)"
     )
 
 
