@@ -1,4 +1,4 @@
-"""The commands that judge: verify, bench. They parse and call."""
+"""The commands that judge: verify, bench, census. They parse and call."""
 
 
 def add_judging(commands):
@@ -24,6 +24,15 @@ def add_judging(commands):
     bench.add_argument("--quick", action="store_true", help="few designs: a first look in seconds")
     bench.add_argument("--json", metavar="FILE", help="keep all figures, too")
     bench.set_defaults(run=_run_bench)
+    census = commands.add_parser("census", help="random designs over the whole domain: every one solved, or explained")
+    census.add_argument("count", type=int, metavar="N", help="how many designs")
+    census.add_argument("--seed", type=int, default=0, help="of the designs drawn (default 0)")
+    census.add_argument(
+        "--audit", type=int, default=1000, metavar="M", help="states solved again on a finer mesh (default 1000)"
+    )
+    census.add_argument("--threads", type=int, metavar="N", help="default: one for each core")
+    census.add_argument("--quiet", action="store_true", help="no progress bar")
+    census.set_defaults(run=_run_census)
 
 
 def _run_verify(options):
@@ -66,3 +75,12 @@ def _run_bench(options):
     if options.json:
         write_whole(options.json, json.dumps(found, indent=1).encode())
         print(options.json)
+
+
+def _run_census(options):
+    from .census import census
+
+    found = census(
+        options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet
+    )
+    print(found.report())

@@ -1,0 +1,80 @@
+"""The census: draws the whole domain, counts every state once, explains what has no result, audits the bounds."""
+
+import numpy as np
+import pytest
+from commands import refused, run
+
+from freesweep.census import BLOCK, COLUMNS, PRESSURES, Census, census, draw
+from freesweep.scaling import OUTPUTS
+from freesweep.status import NOT_CONVERGED, OK
+from freesweep.sweep.records import FREE_STATE
+
+DESIGNS = 40
+
+
+@pytest.fixture(scope="module")
+def small():
+    return census(DESIGNS, seed=4, audit=60, threads=2, progress=False)
+
+
+def test_designs_cover_the_domain_and_a_larger_census_begins_with_a_smaller_one():
+    drawn = draw(BLOCK, 0, 0)
+    assert np.array_equal(draw(10, 0, 0).designs, drawn.designs[:10])
+    assert not np.array_equal(draw(10, 0, 1).designs, drawn.designs[:10])
+    assert not np.array_equal(draw(10, 1, 0).designs, drawn.designs[:10])
+    alpha, beta, length, wall, gamma, ratio, force, torque, full = drawn.designs.T
+    assert np.all((np.abs(alpha) >= 2.0) & (np.abs(alpha) <= 85.0) & (np.abs(alpha - beta) >= 0.5))
+    assert {(a, b) for a, b in zip(np.sign(alpha), np.sign(beta))} == {(1, 1), (1, -1), (-1, 1), (-1, -1)}
+    assert np.all((length > 2.0) & (wall <= 1.0) & (gamma >= 1.0) & (ratio >= 0.0))
+    for column in (gamma - 1.0, force, torque, full):
+        assert 0.2 < np.mean(column == 0.0) < 0.8
+    assert np.all(np.diff(drawn.pressures, axis=1) > 0.0)
+
+
+def test_every_state_is_counted_once(small):
+    assert sum(small.counts["free"].values()) == DESIGNS * PRESSURES
+    assert sum(small.counts["locked"].values()) == DESIGNS
+    assert sum(small.counts["blocked_force"].values()) == sum(small.counts["blocked_torque"].values()) == 3
+    assert small.counts["free"][OK] > 0.6 * DESIGNS * PRESSURES
+    assert small.audited > 40
+    assert small.broken == 0
+    assert all(np.median(np.concatenate(ratios)) > 1.0 for ratios in small.ratios.values())
+
+
+def test_threads_change_nothing(small):
+    alone = census(DESIGNS, seed=4, audit=60, threads=1, progress=False)
+    assert alone.counts == small.counts
+    assert alone.report() == small.report()
+
+
+def test_a_bound_that_does_not_hold_is_counted():
+    states, finer = np.zeros(3, FREE_STATE), np.zeros(3, FREE_STATE)
+    states["values"][1, 2] = 3e-6
+    states["bounds"], finer["bounds"] = 2e-6, 1e-8
+    finer["status"][2] = NOT_CONVERGED
+    found = Census(3, 0)
+    found.audit(states, finer)
+    assert (found.audited, found.broken, found.differing) == (2, 1, 1)
+    assert f"{2 * len(OUTPUTS)} bounds, 1 broken (10 %); 1 states" in found.report()
+
+
+def test_defects_are_listed_in_full_and_failures_by_where_they_lie():
+    found = Census(3, 0)
+    design = np.array([[30.0, -60.0, 10.0, 0.3, 1.0, 0.5, 0.0, 0.0, 9.5, 1.0]])
+    found.add("free", np.repeat(design, 3, axis=0), np.array([OK, NOT_CONVERGED, OK]))
+    report = found.report()
+    assert "1  not_converged: " in report
+    assert "pressure 9.5" in report
+    listed = ", ".join(f"{name} {value!r}" for name, value in zip(COLUMNS, design[0].tolist()))
+    assert f"free: {listed}" in report
+    assert "every state is solved" in Census(1, 0).report()
+
+
+def test_the_command(capsys):
+    assert run("census", "20", "--audit", "5", "--quiet", "--seed", "3") == 0
+    out = capsys.readouterr().out
+    assert "20 random designs, seed 3" in out
+    assert "bounds held against a mesh 4 times finer" in out
+    err = refused(capsys, "census", "0", "--threads", "-1", "--seed", "-1")
+    for text in ("N: found 0", "threads: found -1", "seed: found -1"):
+        assert text in err
