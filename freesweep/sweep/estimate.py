@@ -17,7 +17,7 @@ BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and a few shard
 DESIGN_MEMORY = 80  # [bytes] of each design while a plan is made
 SHRINKS = 0.9  # of the numbers when they are compressed, at least
 FILE = 1_000_000  # [bytes] of an atlas without its numbers, at most
-MOST_PLANNED = 300_000  # designs that a dry run compares: a fraction of a second
+MOST_PLANNED = 100_000  # designs that a dry run compares: a fraction of a second
 SAMPLE_SECONDS, SAMPLES = 0.2, 256  # of each kind of state
 TYPICAL = {FREE: 100e-6, "blocked_force": 4e-3, "blocked_torque": 4e-3}  # [s] of one equilibrium on one core
 
@@ -79,7 +79,7 @@ def dry_run(sweep, out, threads=None) -> str:
     """What a sweep will solve, need and take, in words; of a large one, at most."""
     check_memory(sweep)
     steps = len(sweep.axes.get("pressure", [0.0]))
-    tables = plan(sweep) if max(grids(sweep).values()) <= MOST_PLANNED else {}
+    tables = plan(sweep) if sum(grids(sweep).values()) <= MOST_PLANNED else {}
     equilibria = {
         kind: tables[kind].equilibria if tables else size * (steps + (kind == FREE))
         for kind, size in grids(sweep).items()
