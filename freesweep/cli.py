@@ -10,8 +10,9 @@ import sys
 
 from .calibration.command import add_calibrate
 from .judging import add_judging
-from .pictures import add_plot, add_thesis, check_map, draw_map
+from .pictures import add_plot, check_map, draw_map
 from .single import add_single
+from .thesis.command import add_thesis
 
 DONE, BAD_INPUT, ENVIRONMENT, INTERRUPTED = 0, 2, 3, 130
 
@@ -111,7 +112,7 @@ def _run_sweep(options):
     with _terminated_as_interrupted():
         atlas = run_sweep(sweep, out, threads=options.threads, progress=not options.quiet, overwrite=options.overwrite)
     if options.map:
-        draw_map(atlas.data, options.map, "rotation", {})
+        draw_map(atlas.data, options.map)
 
 
 @contextlib.contextmanager

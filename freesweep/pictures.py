@@ -1,6 +1,9 @@
-"""The commands that draw: plot map, validity, curve, shape; thesis. Names of files are checked before anything is solved."""
+"""The commands that draw: plot map, validity, curve, shape. Names of files are checked before anything is solved."""
+
+from .picked import read, selection
 
 STILL = ".png, .svg or .pdf"
+FINEST = (40.0, 1200.0)  # resolutions that may be asked for [dots per inch]
 
 
 def add_plot(commands):
@@ -14,32 +17,23 @@ def add_plot(commands):
     _shape(kinds)
 
 
-def add_thesis(commands):
-    """Add the command that reproduces the source."""
-    command = commands.add_parser(
-        "thesis", help="every figure and table of the source, recomputed, and its claims checked"
-    )
-    command.add_argument(
-        "figures", nargs="*", metavar="FIGURE", help="such as 2-7, table-1 or claims (default: everything)"
-    )
-    command.add_argument("-o", "--out", default="thesis", metavar="DIR", help="folder to make (default: thesis, here)")
-    command.add_argument("--quiet", action="store_true", help="say nothing but the path of the page")
-    command.set_defaults(run=_run_thesis)
-
-
-def _run_thesis(options):
-    import sys
-
-    from .thesis.make import make
-
-    def progress(name):
-        print(name, file=sys.stderr, flush=True)
-
-    print(make(options.figures, options.out, None if options.quiet else progress))
-
-
 def _out(command, default, kinds=STILL):
     command.add_argument("-o", "--out", metavar="FILE", help=f"{kinds} (default: {default})")
+    add_resolution(command)
+
+
+def add_resolution(command):
+    """The option for the resolution of pictures."""
+    command.add_argument("--resolution", type=float, metavar="DPI", help="dots per inch (default: 300; of a .gif 110)")
+
+
+def fineness(options) -> dict:
+    """The resolution as a keyword, if one is asked for; refuses what is too coarse to read or too fine to hold."""
+    if options.resolution is None:
+        return {}
+    if not FINEST[0] <= options.resolution <= FINEST[1]:
+        raise ValueError(f"--resolution: found {options.resolution:g}; give {FINEST[0]:g} to {FINEST[1]:g}")
+    return {"resolution": options.resolution}
 
 
 def _at(command):
@@ -72,21 +66,22 @@ def _map(kinds):
 def _run_map(options):
     from .plot.style import save
 
-    out = checked(options.out or _named(options.atlas, options.variable))
+    out = _target(options, _named(options.atlas, options.variable))
     x, y = options.axes
     with read(options.atlas) as data:
         if options.over:
             from .plot.section import multiples
 
-            save(multiples(data, options.variable, x, y, options.over, **selection(options.at)), out)
+            picture = multiples(data, options.variable, x, y, options.over, **selection(options.at))
         elif {x, y} == {"alpha", "beta"}:
             from .plot.map import design_map
 
-            save(design_map(data, options.variable, **selection(options.at)), out)
+            picture = design_map(data, options.variable, **selection(options.at))
         else:
             from .plot.section import section_map
 
-            save(section_map(data, options.variable, x, y, **selection(options.at)), out)
+            picture = section_map(data, options.variable, x, y, **selection(options.at))
+        save(picture, out, **fineness(options))
     print(out)
 
 
@@ -109,10 +104,10 @@ def _run_validity(options):
     from .plot.style import save
     from .plot.validity import validity_maps
 
-    out = checked(options.out or _named(options.atlas[0], "validity"))
+    out = _target(options, _named(options.atlas[0], "validity"))
     with contextlib.ExitStack() as stack:
         data = [stack.enter_context(read(path)) for path in options.atlas]
-        save(validity_maps(data, options.of, *options.axes, **selection(options.at)), out)
+        save(validity_maps(data, options.of, *options.axes, **selection(options.at)), out, **fineness(options))
     print(out)
 
 
@@ -131,9 +126,10 @@ def _run_curve(options):
     from .plot.curve import curve
     from .plot.style import save
 
-    out = checked(options.out or _named(options.data, options.variable))
+    out = _target(options, _named(options.data, options.variable))
     with read(options.data) as data:
-        save(curve(data, options.variable, options.along, options.each, **selection(options.at)), out)
+        picture = curve(data, options.variable, options.along, options.each, **selection(options.at))
+        save(picture, out, **fineness(options))
     print(out)
 
 
@@ -149,7 +145,7 @@ def _run_shape(options):
     from .plot.style import SUFFIXES
     from .single import inflated, tube_of
 
-    out = checked(options.out or "shape.png", (*SUFFIXES, ".gif"))
+    out = _target(options, "shape.png", (*SUFFIXES, ".gif"))
     moves = out.lower().endswith(".gif")
     if options.pressure is None:
         if moves:
@@ -169,12 +165,12 @@ def _run_shape(options):
     if moves:
         from .plot.motion import save_motion
 
-        print(save_motion(tube, data, out))
+        print(save_motion(tube, data, out, **fineness(options)))
         return
     from .plot.style import save
     from .plot.tubes import shape_plot
 
-    save(shape_plot(tube, *states, titles=titles), out)
+    save(shape_plot(tube, *states, titles=titles), out, **fineness(options))
     print(out)
 
 
@@ -193,24 +189,25 @@ def check_map(sweep, path):
         raise ValueError(f"--map: {'; '.join(faults)}")
 
 
-def draw_map(data, out, variable, select):
-    """Draws the map of one variable into a file."""
+def draw_map(data, out):
+    """Draws the map of rotation over both fiber angles into a file."""
     from .plot.map import design_map
     from .plot.style import save
 
-    save(design_map(data, variable, **select), out)
+    save(design_map(data, "rotation"), out)
     print(out)
 
 
-def checked(out, suffixes=None):
-    """``out``, if its suffix is one of ``suffixes`` (default: those of pictures)."""
+def _target(options, default, suffixes=None):
+    """The file to make, once its suffix (default: those of pictures) and the resolution are checked."""
     from pathlib import Path
 
     from .plot.style import SUFFIXES
 
-    suffixes = suffixes or SUFFIXES
+    out, suffixes = options.out or default, suffixes or SUFFIXES
     if Path(out).suffix.lower() not in suffixes:
         raise ValueError(f"--out: the suffix of {Path(out).name!r} must be one of {', '.join(suffixes)}")
+    fineness(options)
     return out
 
 
@@ -218,37 +215,3 @@ def _named(path, variable):
     from pathlib import Path
 
     return f"{Path(path).stem}-{variable}.png"
-
-
-def read(path):
-    """The Dataset of an atlas, or of one actuator as ``--out`` keeps it; a context manager."""
-    from .atlas.store import AtlasError, open_atlas
-
-    try:
-        return open_atlas(path).data
-    except AtlasError:
-        import xarray as xr
-
-        try:
-            data = xr.open_dataset(path, engine="netcdf4", decode_times=False)
-        except OSError:
-            data = None
-        if data is None or "status" not in data or "x" not in data.dims:
-            raise
-        return data
-
-
-def selection(items):
-    """Values of ``--at`` by name: quantities in stored units, the name of a design as it is."""
-    from .atlas.schema import PARAMETERS, attributes
-    from .plot.choice import DESIGN, HELD
-    from .units import quantity
-
-    select = {}
-    for item in items:
-        name, equals, value = item.partition("=")
-        if not equals:
-            raise ValueError(f'--at: found {item!r}; give NAME=VALUE, such as pressure="0.1 MPa"')
-        known = name in PARAMETERS or name in HELD
-        select[name] = value if name == DESIGN or not known else quantity(value, attributes(name)["units"])
-    return select

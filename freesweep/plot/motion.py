@@ -15,7 +15,7 @@ from .shape import draw_outline, draw_shape, project, shape_of
 from .tubes import MARGIN
 
 WIDTH = 150.0  # [mm]
-RESOLUTION = 110  # [dots per inch]
+RESOLUTION = 110.0  # for the screen [dots per inch]
 PAUSE = 60  # of a frame [ms]
 REST = 900  # of the first and the last [ms]
 COLOURS = 128
@@ -62,8 +62,8 @@ def _words(state, shape):
     return f"{float(state['pressure']) * 1e-3:.1f} kPa    {shape.position[-1]:.1f} mm long    turned by {turned}"
 
 
-def save_motion(tube: Actuator, states, path: str | os.PathLike) -> Path:
-    """Writes the motion as a GIF that runs forth and back, and returns its path.
+def save_motion(tube: Actuator, states, path: str | os.PathLike, resolution: float = RESOLUTION) -> Path:
+    """Writes the motion as a GIF that runs forth and back, with ``resolution`` in dots per inch, and returns its path.
 
     The file is whole or not there. Raises ValueError as :func:`frames` does and for another suffix, OSError where the path
     cannot be written.
@@ -77,7 +77,7 @@ def save_motion(tube: Actuator, states, path: str | os.PathLike) -> Path:
     for ax in frames(tube, states):
         canvas = FigureCanvasAgg(ax.figure)
         with style.context():
-            ax.figure.set_dpi(RESOLUTION)
+            ax.figure.set_dpi(resolution)
             canvas.draw()
         pictures.append(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy()))
     # one palette for all, of the richest frame: colours do not flicker

@@ -15,8 +15,8 @@ from matplotlib.colors import LinearSegmentedColormap, to_hex
 from matplotlib.figure import Figure
 
 INCH = 25.4  # [mm]
+RESOLUTION = 300.0  # of PNG files [dots per inch]
 COLUMN, PAGE = 85.0, 170.0  # widths in print [mm]
-RESOLUTION = 300  # of PNG files [dots per inch]
 SUFFIXES = (".png", ".svg", ".pdf")
 
 INK = "#23272e"
@@ -40,6 +40,7 @@ SETTINGS = {
     "font.family": ["STIXGeneral"],  # comes with matplotlib: the same plot on every machine
     "mathtext.fontset": "stix",
     "font.size": NORMAL,
+    "text.hinting": "none",  # letters keep their distances on the screen, too
     "text.color": INK,
     "axes.edgecolor": INK,
     "axes.labelcolor": INK,
@@ -120,9 +121,10 @@ DIVERGING = _colour_map("rust_teal", [(46.0, 38.0, 46.0), (97.0, 0.0, 1.0), (46.
 SEQUENTIAL = _colour_map("sand_pine", [(96.0, -2.0, 14.0), (66.0, -24.0, 8.0), (36.0, -14.0, -12.0)])
 
 
-def save(drawing: Axes | Figure, path: str | os.PathLike) -> Path:
+def save(drawing: Axes | Figure, path: str | os.PathLike, resolution: float = RESOLUTION) -> Path:
     """Writes the figure of ``drawing`` as PNG, SVG or PDF, by the suffix of ``path``; returns the path.
 
+    ``resolution`` is that of a PNG, and of shaded surfaces and map cells in the others [dots per inch].
     The file is complete or not there. Raises ValueError for any other suffix, OSError where the path cannot be written.
     """
     path = Path(path)
@@ -135,7 +137,7 @@ def save(drawing: Axes | Figure, path: str | os.PathLike) -> Path:
     undated = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
     content = io.BytesIO()
     with context():
-        figure.savefig(content, format=suffix[1:], dpi=RESOLUTION, metadata=undated)
+        figure.savefig(content, format=suffix[1:], dpi=resolution, metadata=undated)
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         part.write_bytes(content.getvalue())

@@ -30,12 +30,12 @@ def names_of(words) -> list[str]:
     return [name for name in known if name in plain or not plain]
 
 
-def make(names=(), out="thesis", progress=None) -> Path:
+def make(names=(), out="thesis", progress=None, resolution=style.RESOLUTION) -> Path:
     """Makes some figures of the source (default: all) in the folder ``out``, and returns the path of their page.
 
     Each figure becomes PNG, SVG and CSV; ``claims`` is the table of what the text says. With figures named, the page holds
-    these and the claims that belong to them. ``progress`` is called with the name of what is made next. Raises ValueError
-    for unknown names, OSError where the folder cannot be written.
+    these and the claims that belong to them. ``progress`` is called with the name of what is made next; ``resolution`` is
+    that of the pictures [dots per inch]. Raises ValueError for unknown names, OSError where the folder cannot be written.
     """
     wanted, out = names_of(names), Path(out)
     out.mkdir(parents=True, exist_ok=True)
@@ -44,7 +44,7 @@ def make(names=(), out="thesis", progress=None) -> Path:
     for name in wanted:
         if name in FIGURES:
             tell(f"figure {name}")
-            made.append(_figure(name, out))
+            made.append(_figure(name, out, resolution))
     if "table-1" in wanted:
         _write(out / "table-1.csv", table_1_rows().csv())
         made.append(("Table 1", "Constants of the three muscles.", "As printed, with the fiber extension of section 2.3.4.",
@@ -59,11 +59,11 @@ def make(names=(), out="thesis", progress=None) -> Path:
     return out / "index.html"
 
 
-def _figure(name, out):
+def _figure(name, out, resolution):
     drawing = FIGURES[name]()
     stem = f"figure-{name}"
-    style.save(drawing.figure, out / f"{stem}.png")
-    style.save(drawing.figure, out / f"{stem}.svg")
+    style.save(drawing.figure, out / f"{stem}.png", resolution)
+    style.save(drawing.figure, out / f"{stem}.svg", resolution)
     _write(out / f"{stem}.csv", drawing.numbers.csv())
     width = drawing.figure.get_size_inches()[0] * style.INCH
     return name, title(name), drawing.note, [f"{stem}.{suffix}" for suffix in ("png", "svg", "csv")], width

@@ -1,0 +1,35 @@
+"""What a plot command is given: a file of results, and where in its other axes (``--at NAME=VALUE``)."""
+
+
+def read(path):
+    """The Dataset of an atlas, or of one actuator as ``--out`` keeps it; a context manager."""
+    from .atlas.store import AtlasError, open_atlas
+
+    try:
+        return open_atlas(path).data
+    except AtlasError:
+        import xarray as xr
+
+        try:
+            data = xr.open_dataset(path, engine="netcdf4", decode_times=False)
+        except OSError:
+            data = None
+        if data is None or "status" not in data or "x" not in data.dims:
+            raise
+        return data
+
+
+def selection(items):
+    """Values of ``--at`` by name: quantities in stored units, the name of a design as it is."""
+    from .atlas.schema import PARAMETERS, attributes
+    from .plot.choice import DESIGN, HELD
+    from .units import quantity
+
+    select = {}
+    for item in items:
+        name, equals, value = item.partition("=")
+        if not equals:
+            raise ValueError(f'--at: found {item!r}; give NAME=VALUE, such as pressure="0.1 MPa"')
+        known = name in PARAMETERS or name in HELD
+        select[name] = value if name == DESIGN or not known else quantity(value, attributes(name)["units"])
+    return select
