@@ -78,8 +78,14 @@ STATUS_OF = {
     "locked_status": ("status of the locked state", VARIABLES["locked_strain_energy"].without),
     "blocked_force_status": ("status of the blocked force", VARIABLES["blocked_force"].without),
     "blocked_torque_status": ("status of the blocked torque", VARIABLES["blocked_torque"].without),
-    "ideal_blocked_force_status": ("status of the blocked force", VARIABLES["ideal_blocked_force"].without),
-    "ideal_blocked_torque_status": ("status of the blocked torque", VARIABLES["ideal_blocked_torque"].without),
+    "ideal_blocked_force_status": (
+        "status of the blocked force of inextensible fibers",
+        VARIABLES["ideal_blocked_force"].without,
+    ),
+    "ideal_blocked_torque_status": (
+        "status of the blocked torque of inextensible fibers",
+        VARIABLES["ideal_blocked_torque"].without,
+    ),
 }
 FLAG_OF = {
     "stable": ("whether the equilibrium is stable, where there is one", HELD),

@@ -7,9 +7,11 @@ import numpy as np
 
 from ..status import STATUSES
 from .files import write_whole
+from .schema import STATUS_OF
 from .seal import sealed
 
 FORMAT = "1"
+READ_AT_ONCE = 1 << 22  # numbers
 COMPRESSION = {"zlib": True, "complevel": 1, "shuffle": True}  # checksums come with it; higher levels gain 3 %
 
 
@@ -29,12 +31,11 @@ class Atlas:
         counts = "; ".join(f"{meaning} {count:,}" for meaning, count in self.status_counts().items())
         return f"<Atlas {self.path.name}: {self.data.attrs.get('title', '')}\n  {axes}\n  {counts}>"
 
-    def status_counts(self) -> dict:
-        """How many points of the grid have which status: meaning -> count."""
-        codes = self.data["status"]
-        slabs = (
-            (codes[k] for k in range(len(codes))) if codes.ndim > 1 else [codes]
-        )  # of a large atlas, a part at a time
+    def status_counts(self, name="status") -> dict:
+        """How many points of the grid have which status, of the equilibrium or of another state: meaning -> count."""
+        codes = self.data[name]
+        rows = max(1, READ_AT_ONCE * len(codes) // codes.size) if codes.ndim else 1
+        slabs = [codes[k : k + rows] for k in range(0, len(codes), rows)] if codes.ndim else [codes]
         counts = sum(np.bincount(slab.values.ravel(), minlength=len(STATUSES)) for slab in slabs)
         return {row.meaning: int(count) for row, count in zip(STATUSES, counts) if count}
 
@@ -90,7 +91,7 @@ def describe(atlas) -> str:
     lines = [f"{atlas.path}: {data.attrs.get('title', '')}", "", "axes"]
     for name, size in data.sizes.items():
         values = data[name].values
-        unit = data[name].attrs.get("units", "")
+        unit = data[name].attrs.get("units", "").removeprefix("1")
         span = f"{values[0]:g} .. {values[-1]:g} {unit}" if values.dtype.kind == "f" else ", ".join(map(str, values))
         lines.append(f"  {name:<18}{size:>6}  {span}")
     lines += ["", "fixed"]
@@ -106,7 +107,11 @@ def describe(atlas) -> str:
                 f"  {name:<28}{f'[{unit}]' if unit else '[flag]':<10}{variable.attrs.get('long_name', '')}{bound}"
             )
     lines += ["", "statuses"]
-    lines += [f"  {meaning:<28}{count:>12,}" for meaning, count in atlas.status_counts().items()]
+    for status in (name for name in STATUS_OF if name in data):
+        lines += [
+            f"  {status}",
+            *(f"    {meaning:<26}{count:>12,}" for meaning, count in atlas.status_counts(status).items()),
+        ]
     lines += ["", "provenance"]
     lines += [f"  {name:<22}{value}" for name, value in data.attrs.items() if name not in ("specification", "title")]
     return "\n".join(lines)

@@ -218,5 +218,9 @@ def summary(atlas, tables, solving, total) -> str:
         f" distinct problems, {total:.1f} s ({solving:.1f} s solving)"
     ]
     sentences = {status.meaning: status.sentence for status in STATUSES}
-    lines += [f"  {count:>12,}  {meaning}: {sentences[meaning]}" for meaning, count in atlas.status_counts().items()]
+    for kind in tables:
+        name = "status" if kind == "free" else f"{kind}_status"
+        lines += [f"  {kind.replace('_', ' ')}"] if kind != "free" else []
+        counts = atlas.status_counts(name).items()
+        lines += [f"  {count:>12,}  {meaning}: {sentences[meaning]}" for meaning, count in counts]
     return "\n".join([*lines, f"  {atlas.path}"])
