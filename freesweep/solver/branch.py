@@ -21,6 +21,7 @@ from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED
 # columns of a problem: what one design is, dimensionless
 PROBLEM_SIZE = 9
 H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH = range(PROBLEM_SIZE)
+FINER = 4  # times the cells of the base mesh, for a walk that did not converge
 
 
 @inlined
@@ -140,9 +141,10 @@ def walk_many(
 
     Tubes that vary share one ``course`` (segments, pieces, 3, 4) with ``places`` (segments + 1,), in radii, where the
     segments meet: one of them is the middle. A course without segments stands for tubes that are the same all along,
-    half of each solved. ``edges`` (segments + 1,) are the nodes of the base mesh at those places.
+    half of each solved. ``edges`` (segments + 1,) are the nodes of the base mesh at those places. A walk that
+    does not converge there, where cells may be longer than an end layer, is walked again on a finer one.
     """
-    base = edges[len(edges) - 1]
+    base = FINER * edges[len(edges) - 1]
     size = (base << nested.MAX_DOUBLINGS) + 2
     table = np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
     varying = course.shape[0] > 0
@@ -153,7 +155,7 @@ def walk_many(
     )  # fmt: skip
     own_course = course if varying else np.zeros((1, 1, 3, 4))
     own_places = places.copy() if varying else np.zeros(2)
-    middle = base
+    middle = edges[len(edges) - 1]
     for k in range(len(own_places)):
         if (
             varying
@@ -165,9 +167,12 @@ def walk_many(
             own_places[1] = 0.5 * problems[k, LENGTH]
             for i in range(3):
                 own_course[0, 0, i, 0] = problems[k, i]
-        tube = (own_course, edges, cells, not varying, middle, own_places)
         own = slice(first[k], first[k + 1])
-        walk(
-            problems[k], tube, pressures[own], accuracy, space, values[own], bounds[own], status[own], slack[own],
-            limits[k], stations, profiles[own],
-        )  # fmt: skip
+        for factor in (1, FINER):
+            tube = (own_course, factor * edges, cells, not varying, factor * middle, own_places)
+            walk(
+                problems[k], tube, pressures[own], accuracy, space, values[own], bounds[own], status[own], slack[own],
+                limits[k], stations, profiles[own],
+            )  # fmt: skip
+            if not np.any(status[own] == NOT_CONVERGED):
+                break

@@ -109,9 +109,9 @@ def strays(y, u):
 
 @inlined
 def begin(tube, load, u, ahead, x, y):
-    """A small part of the way to ``load`` and its first shape; returns that part, 0 where there is none."""
+    """A small part of the way to ``load``, half at most, and its first shape; returns that part, 0 where there is none."""
     rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-    part = 1.0
+    part = 0.5
     for _ in range(80):
         now = uniform.between(rest, load, part)
         for k in range(len(u)):

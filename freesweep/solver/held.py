@@ -26,11 +26,14 @@ from .newton import (
 )
 
 FIRST_CHANGE = 1e-3  # relative change of y of the first step of the search for a turning point
-SEARCH_STEPS = 60
-MOST_GAIN = 3.0  # of the multiplier, times the linear prediction: more is another branch
+SEARCH_STEPS = 80
+MOST_GAIN = 1.5  # of the multiplier, times the larger of the two linear predictions: more is another branch
 MOST_STRAY = 0.03  # relative difference from the linear prediction: more is another branch
 LARGEST_GROWTH = 3.0  # of the step from one to the next
-TURNING_TOLERANCE = 1e-12  # change of mu that the next step would bring, relative
+OVERSHOOT = 1.2  # times the way to where the slope would vanish: the search wants both sides
+TURNING_GAIN = 1e-8  # of mu between the two sides, relative: the cubic between them is exact to rounding then
+ROUNDING_GAIN = 1e-11  # of mu
+SMALLEST_SHARE = 1e-13  # of the held integral
 
 
 @kernel
@@ -140,57 +143,90 @@ def strayed(y, n, start, response, change):
 
 
 @kernel
-def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target, turning, tolerance, work):
-    """Solve with the conjugate integral held at ``target``; or, if ``turning``, find the turning point of ``mu`` nearest
-    along the branch through ``y``.
+def turning_point(density, conjugate, x, y, n, free, cells, load, direction, mu, tolerance, work):
+    """The turning point of ``mu`` nearest along the branch through ``y``: ``(status, multiplier)``.
 
-    ``y`` is changed in place; returns ``(status, unstable directions, mu)``. The search is a secant iteration for the zero
-    of 1/sigma over the held integral; it keeps to states that are stable while the integral is held, and leaves in ``y``
-    the state it came from: the turning point itself is no safe start on another mesh.
+    Steps of the held integral C toward it until the slope dmu/dC = 1/sigma changes sign, then false position (Illinois)
+    between. Only states are taken that are stable while C is held and close to their linear prediction. The nearest of
+    them on this side is left in ``y``, the first in ``work[12]``.
     """
-    if turning:
-        target = hold(conjugate, x, y, n, cells, loaded(load, direction, mu), direction, work[8])
-    kept_y, kept_response, first_y = work[10], work[11], work[12]
-    near, near_value, near_mu, sigma, step = target, 0.0, mu, 0.0, 0.0
-    started = False
+    near_y, near_response, first_y = work[10], work[11], work[12]
+    target = hold(conjugate, x, y, n, cells, loaded(load, direction, mu), direction, work[8])
+    status, _, mu, sigma = solve_held(
+        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work
+    )
+    if status != CONVERGED:
+        return status, mu
+    near, near_slope, near_mu = target, 1.0 / sigma, mu
+    far, far_slope, far_mu = 0.0, 0.0, 0.0
+    near_weight, far_weight = 1.0, 1.0
+    for i in range(n + 1):
+        first_y[i], near_y[i], near_response[i] = y[i], y[i], work[9, i] * near_slope
+    # a positive slope lies before the turning point: step toward it, whichever side this is
+    step = FIRST_CHANGE * sigma / largest_change(y, work[9], n)
+    between, status = False, STALLED
     for _ in range(SEARCH_STEPS):
-        status, unstable, mu, sigma = solve_held(
-            density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work
-        )
-        if not turning or (not started and status != CONVERGED):
-            return status, unstable, mu
-        if started and status == CONVERGED:
-            gain = abs(mu - near_mu)
-            if unstable > 0 or gain > MOST_GAIN * abs(near_value * step):
-                status = STALLED
-            elif strayed(y, n, kept_y, kept_response, step) > MOST_STRAY:
-                status = STALLED
-        if status != CONVERGED:
-            step *= 0.25  # back to the last good state, and not so far
-            mu = near_mu
-        else:
-            value = 1.0 / sigma
-            if not started:
-                # a positive 1/sigma lies before the turning point: step toward it, whichever side this is
-                step = FIRST_CHANGE * sigma / largest_change(y, work[9], n)
-                started = True
-                for i in range(n + 1):
-                    first_y[i] = y[i]
-            else:
-                slope = (value - near_value) / (target - near)
-                full = -value / slope if value * slope != 0.0 else 0.0
-                if abs(value * full) < TURNING_TOLERANCE * max(1.0, abs(mu)):
-                    for i in range(n + 1):
-                        y[i] = first_y[i]
-                    return CONVERGED, 0, mu
-                reach = LARGEST_GROWTH * abs(step)
-                step = min(max(full, -reach), reach)
-                if full * value < 0.0:  # 1/sigma grows on the way: the zero lies farther on
-                    step = reach if value > 0.0 else -reach
-            near, near_value, near_mu = target, value, mu
-            for i in range(n + 1):
-                kept_y[i], kept_response[i] = y[i], work[9, i] * value
         target = near + step
         for i in range(n + 1):
-            y[i] = kept_y[i] + step * kept_response[i]
-    return STALLED, 0, mu
+            y[i] = near_y[i] + step * near_response[i]
+        found, unstable, mu, sigma = solve_held(
+            density, conjugate, x, y, n, free, cells, load, direction, near_mu, target, tolerance, work
+        )
+        slope = 1.0 / sigma
+        gain = MOST_GAIN * max(abs(slope), abs(near_slope)) * abs(step) + ROUNDING_GAIN * max(1.0, abs(near_mu))
+        if (
+            found != CONVERGED
+            or unstable > 0
+            or abs(mu - near_mu) > gain
+            or strayed(y, n, near_y, near_response, step) > MOST_STRAY
+        ):
+            step *= 0.25  # back to the last good state, and not so far
+            if abs(step) < SMALLEST_SHARE * abs(near):
+                break
+            continue
+        if slope * near_slope > 0.0:
+            bend = (slope - near_slope) / step
+            growth = LARGEST_GROWTH * step
+            full = -OVERSHOOT * slope / bend if bend * slope * step < 0.0 else growth
+            if not between:
+                step = full if abs(full) < abs(growth) else growth
+            near, near_slope, near_mu = target, slope, mu
+            near_weight, far_weight = 1.0, 0.5 * far_weight
+            for i in range(n + 1):
+                near_y[i], near_response[i] = y[i], work[9, i] * slope
+        else:
+            far, far_slope, far_mu, between = target, slope, mu, True
+            far_weight, near_weight = 1.0, 0.5 * near_weight
+        if between:
+            width = far - near
+            # the tangent bounds mu from above
+            if near_slope * width < TURNING_GAIN * max(1.0, abs(near_mu)) or abs(width) < SMALLEST_SHARE * abs(near):
+                t = near_slope / (near_slope - far_slope)  # top of the cubic through values and slopes at both ends
+                rest = 1.0 - t
+                mu = (1.0 + 2.0 * t) * rest * rest * near_mu + t * t * (3.0 - 2.0 * t) * far_mu
+                mu += t * rest * width * (rest * near_slope - t * far_slope)
+                status = CONVERGED
+                break
+            step = width * near_weight * near_slope / (near_weight * near_slope - far_weight * far_slope)
+    for i in range(n + 1):
+        y[i] = near_y[i]
+    return status, mu
+
+
+@kernel
+def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target, turning, tolerance, work):
+    """Solve with the conjugate integral held at ``target``, or, if ``turning``, find the turning point of ``mu``.
+
+    Returns ``(status, unstable directions, mu)``. ``y`` is changed in place, but for a turning point: that is no safe start
+    on another mesh.
+    """
+    if turning:
+        status, mu = turning_point(density, conjugate, x, y, n, free, cells, load, direction, mu, tolerance, work)
+        if status == CONVERGED:
+            for i in range(n + 1):
+                y[i] = work[12, i]
+        return status, 0, mu
+    status, unstable, mu, _ = solve_held(
+        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work
+    )
+    return status, unstable, mu

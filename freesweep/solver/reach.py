@@ -4,7 +4,7 @@ import numpy as np
 
 from ..jit import inlined
 from . import guide, lagrangian, nested, newton, uniform
-from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep
+from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep, graded_for_turning
 from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK
 
 COLD_REGRADES, WARM_REGRADES = 3, 1
@@ -53,8 +53,9 @@ def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load
                 status, mu = climb(x, y, tube, start, load, flat, work)
             if status == BEYOND_LIMIT:
                 goal = nested.TURNING_POINT
-                regrades = 0  # the climb has graded the mesh; close to a turning point no other is safe
+                regrades = 0  # close to a turning point no other mesh is safe
                 direction = (0.0, 0.0, 0.0, load[3] - start[3], load[4] - start[4], load[5] - start[5], 0.0)
+                graded_for_turning(x, y, len(x) - 1, tube, start, direction, mu, work)
             elif status != OK:
                 return status, 0, limit, limit_bound
             for i in range(len(x)):
