@@ -33,10 +33,11 @@ def draw_line(ax: Axes, x, y, *, error=None, slack=None, unstable=None, **how) -
     width = how.pop("linewidth", style.THICK)
     weak = np.zeros(x.shape, bool) if slack is None else np.asarray(slack, bool)
     loose = np.zeros(x.shape, bool) if unstable is None else np.asarray(unstable, bool)
-    (line,) = ax.plot(x, y, linewidth=style.THIN, **how)
-    firm = np.where(_joined(weak | loose), np.nan, y)
-    quiet = {key: how[key] for key in ("linestyle", "zorder") if key in how}
-    ax.plot(x, firm, linewidth=width, color=line.get_color(), gid="firm", **quiet)
+    marked = np.any(weak | loose)
+    (line,) = ax.plot(x, y, linewidth=style.THIN if marked else width, **how)
+    if marked:
+        firm = np.where(_joined(weak | loose), np.nan, y)
+        ax.plot(x, firm, linewidth=width, color=line.get_color(), gid="firm", zorder=line.get_zorder())
     if loose.any():
         ax.plot(x[loose], y[loose], "o", markersize=2.6, markerfacecolor=style.PAPER, color=line.get_color(),
                 markeredgewidth=0.7, gid="unstable")  # fmt: skip
@@ -175,15 +176,8 @@ def _name_axes(ax, along, shown):
 
 
 def _marked(ax, gid):
-    """Whether some line has nodes with a mark: drawn thin, or as circles."""
-    if gid == "unstable":
-        return any(line.get_gid() == gid for line in ax.lines)
-    pairs = zip(ax.lines, ax.lines[1:])
-    return any(
-        np.isnan(firm.get_ydata()).sum() > np.isnan(line.get_ydata()).sum()
-        for line, firm in pairs
-        if firm.get_gid() == gid
-    )
+    """Whether some line has nodes with a mark: parts that are drawn thin, or circles."""
+    return any(line.get_gid() == gid for line in ax.lines)
 
 
 def _name_choice(ax, point, marks):

@@ -14,7 +14,7 @@ from .prototypes import PSI, SHELL_HEIGHT, SHELL_RADIUS, SLEEVE_LENGTH, sleeve_m
 
 PRESSURES = (0.05e6, 0.10e6, 0.15e6)  # "three different actuation pressures" [Pa]
 MEASURED = np.linspace(5.0 * PSI, 30.0 * PSI, 51)  # the range of section 3.5 [Pa]
-ANGLES = np.linspace(20.0, 60.0, 33)  # [degree]
+ANGLES = np.linspace(20.0, 60.0, 61)  # [degree]
 LENGTHS = np.linspace(0.05, 0.7, 27)  # [m]
 RADII = np.linspace(2.5e-3, 10e-3, 26)  # [m]
 LINES = [("inextensible fibers", {"linestyle": "solid"}), ("fibers extended by 0.75 %", {"linestyle": style.EXTENDED})]

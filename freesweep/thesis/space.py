@@ -65,7 +65,7 @@ def figure_2_4() -> Drawing:
         ax.plot(alpha, closed_form.locked_manifold(alpha), color=style.LOCKED, linewidth=1.6, zorder=2, gid="LM")
         for design in FOUR:
             tube = Actuator(alpha=design[0], beta=design[1], length=LENGTH, radius=RADIUS, wall=WALL, material=RUBBER)
-            state = lock(tube)
+            state = lock(tube, x=0.5 * LENGTH * (1.0 - np.cos(np.linspace(0.0, np.pi, 401))))  # dense where it bends
             after = state["alpha_deformed"].values, state["beta_deformed"].values
             middle = len(after[0]) // 2
             ax.plot(*after, color=style.AFTER[1], linewidth=style.THIN, zorder=3, gid="along the tube")

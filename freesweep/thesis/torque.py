@@ -32,7 +32,9 @@ def figure_2_12() -> Drawing:
             inside = TO[name] >= PRESSURES
             alpha, beta, _ = ROTATING[name]
             ideal = closed_form.blocked_torque(alpha, beta, RADIUS, PRESSURES[inside])
-            ax.plot(1e-3 * PRESSURES[inside], 1e3 * ideal, color=style.QUIET, linewidth=0.9, gid=f"{name} Eq. 2.20")
+            ax.plot(
+                1e-3 * PRESSURES[inside], 1e3 * ideal, color=style.INK, linewidth=0.6, zorder=3, gid=f"{name} Eq. 2.20"
+            )
             numbers.add(prototype=name, curve="Eq. 2.20", pressure=PRESSURES[inside], torque=ideal)
             corrected = corrected_torque(rotating(name), CORRECTED)
             ax.plot(1e-3 * CORRECTED, 1e3 * corrected, color=style.INK, linestyle=(0, (5, 1.2, 1, 1.2)), linewidth=1.2,
@@ -42,7 +44,8 @@ def figure_2_12() -> Drawing:
                 edge = critical(name, energy)
                 state = _branch(name, energy, PRESSURES[inside], edge)
                 of = {"prototype": name, "curve": "exact", "energy": energy}
-                line(ax, numbers, state, "torque", of=of, color=COLOURS[name], linestyle=style.ENERGY[energy])
+                how = {"color": COLOURS[name], "linestyle": style.ENERGY[energy], "linewidth": 2.2}
+                line(ax, numbers, state, "torque", of=of, **how)
                 if edge < TO[name]:
                     ax.axvline(1e-3 * edge, color=COLOURS[name], linewidth=0.5, linestyle=style.ENERGY[energy])
             style.dress(
@@ -50,10 +53,10 @@ def figure_2_12() -> Drawing:
             )
             ax.set(xlim=(0.0, 1e-3 * TO[name]), ylim=(0.0, None))
     key(figure, [
-        ("Eq. 2.20", {"color": style.QUIET, "linewidth": 0.9}),
+        ("Eq. 2.20", {"linewidth": 0.6}),
         ("corrected, Eqs. 2.21 and 2.22", {"linestyle": (0, (5, 1.2, 1, 1.2)), "linewidth": 1.2}),
-        ("exact stable state, principal", {"linestyle": style.ENERGY["principal"]}),
-        ("exact stable state, full", {"linestyle": style.ENERGY["full"]}),
+        ("exact stable state, principal", {"linestyle": style.ENERGY["principal"], "linewidth": 2.2}),
+        ("exact stable state, full", {"linestyle": style.ENERGY["full"], "linewidth": 2.2}),
     ], 2)  # fmt: skip
     note = (
         "The held cylinder follows Eq. 2.20 exactly up to the critical pressure (vertical lines); beyond it "
