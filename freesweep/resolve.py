@@ -54,21 +54,22 @@ class _Points:
         self.data, self.shape, self.dims = data, data["status"].shape, data["status"].dims
         status = data["status"].values
         good = np.flatnonzero(np.isin(status, VALUED))
-        drawn = np.random.default_rng(seed).choice(good, size=min(count, len(good)), replace=False, shuffle=False)
+        rng = np.random.default_rng(seed)
+        drawn = rng.choice(good, size=min(count, len(good)), replace=False, shuffle=False)
         self.index = dict(zip(self.dims, np.unravel_index(np.sort(drawn), self.shape)))
+        held = {name: size for name, size in data.sizes.items() if name not in self.dims}  # axes of held states only
+        self.index |= {name: rng.integers(size, size=len(drawn)) for name, size in held.items()}
         self.count = len(drawn)
         self.column = {name: self.stored(name) for name in (*DESIGN, "pressure")}
         self.radius = self.stored("fiber_radius") if "fiber_radius" in data else self.column["radius"]
         self.first = self._first_pressures(status)
 
-    def stored(self, name, along=()):
-        """Numbers of a variable at the points (n,); of dimensions that the points lack, those ``along`` are kept."""
+    def stored(self, name):
+        """Numbers of a variable at the points (n,)."""
         variable = self.data[name]
-        at = tuple(self.index.get(dim, slice(None) if dim in along else 0) for dim in variable.dims)
-        if variable.size <= MANY or variable.dims[0] not in self.index:
-            return np.broadcast_to(
-                np.asarray(variable.values[at], float), (self.count, *np.shape(variable.values[at])[1:])
-            )
+        at = tuple(self.index[dim] for dim in variable.dims)
+        if variable.size <= MANY:
+            return np.broadcast_to(np.asarray(variable.values[at], float), self.count)
         numbers = np.empty(self.count)
         for row in np.unique(at[0]):
             mine = at[0] == row

@@ -21,6 +21,8 @@ def faults(path) -> list:
     """
     path = Path(path)
     if not path.is_file():
+        if Path(f"{path}.parts").is_dir():
+            return _of_unfinished(path)
         raise FileNotFoundError(f"no atlas at {path}")
     if fault := seal_fault(path):
         return [fault]
@@ -30,6 +32,17 @@ def faults(path) -> list:
         return [str(error)]
     with atlas:
         return [*_of_specification(atlas.data), *_of_content(atlas.data)]
+
+
+def _of_unfinished(path):
+    """What lies there of an atlas that is not made yet."""
+    from .sweep.shards import examine
+
+    whole, faulty = examine(path)
+    found = [
+        f"it is unfinished: {len(whole):,} whole shards in {path}.parts; the sweep goes on when it is started again"
+    ]
+    return found + [f"{path.name} is damaged, stale or swapped: the sweep will solve it again" for path in faulty]
 
 
 def _of_specification(data):

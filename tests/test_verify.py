@@ -9,6 +9,7 @@ from grids import GRID, SMALL, make, spec
 from freesweep import open_atlas
 from freesweep.atlas.seal import SIZE, seal_fault, sealed
 from freesweep.atlas.store import AtlasError, save_atlas
+from freesweep.sweep import run as sweep_run
 from freesweep.sweep.spec import parse
 from freesweep.verify import faults
 
@@ -111,3 +112,44 @@ def test_a_sealed_file_of_other_content_is_found(atlas, tmp_path):
     ]
     assert changed(atlas, tmp_path, lambda data: data.drop_vars("rotation_error")) == ["rotation lacks rotation_error"]
     assert changed(atlas, tmp_path, lambda data: data) == []
+
+
+def test_shards_of_an_unfinished_sweep_are_held_against_their_names(tmp_path, monkeypatch, capsys):
+    """A flipped bit, a cut, two exchanged shards, one of another plan: each is found, and solved again."""
+    axes = {"alpha": [10.0, 20.0, 30.0, 40.0, 50.0], "beta": [-35.0], "pressure": [2e4]}
+    out, other = tmp_path / "atlas.nc", tmp_path / "other.nc"
+    monkeypatch.setattr(sweep_run, "SHARD_EQUILIBRIA", 2)  # one problem each
+    wanted = make(tmp_path / "whole.nc", parse(spec(axes)))
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(sweep_run, "_write", interrupted)
+        for path, own in ((out, axes), (other, axes | {"beta": [-36.0]})):
+            with pytest.raises(KeyboardInterrupt):
+                make(path, parse(spec(own)))
+    shards, others = (sorted((tmp_path / f"{name}.parts").glob("free-*.bin")) for name in ("atlas.nc", "other.nc"))
+    assert len(shards) == len(others) == 5
+    assert faults(out) == [
+        f"it is unfinished: 5 whole shards in {out}.parts; the sweep goes on when it is started again"
+    ]
+    content = [path.read_bytes() for path in shards]
+    assert len({len(one) for one in content}) == 1
+    shards[0].write_bytes(bytes([content[0][0] ^ 1]) + content[0][1:])
+    shards[1].write_bytes(content[1][:-1])
+    # the name of one number on the bytes and the digest of another
+    swapped = shards[2].with_name(f"free-000003-{shards[2].stem.rsplit('-', 1)[1]}.bin")
+    shards[3].unlink()
+    shards[2].rename(swapped)
+    (shards[4].parent / others[4].name).write_bytes(others[4].read_bytes())
+    found = faults(out)
+    assert "1 whole shards" in found[0]
+    assert sorted(line.split(" ")[0] for line in found[1:]) == sorted(
+        [shards[0].name, shards[1].name, swapped.name, others[4].name]
+    )
+    assert "damaged, stale or swapped" in refused(capsys, "verify", str(out))
+    assert make(out, parse(spec(axes))).identical(
+        wanted.assign_attrs(started=make(out, parse(spec(axes))).attrs["started"])
+    )
+    assert faults(out) == []

@@ -1,8 +1,8 @@
 """Shards of a sweep on disk: each whole or absent, found again after any interruption, read where they are needed.
 
 The folder ``<out>.parts`` holds a manifest (which specification, which code, when it was begun), a lock, and one file for
-each finished shard, named after the SHA-256 of its bytes: records of states, then of limits. When the atlas is whole, the
-folder goes.
+each finished shard: records of states, then of limits. Its name carries the SHA-256 of its plan, kind, number and bytes:
+neither a stale nor a swapped shard is taken for another. When the atlas is whole, the folder goes.
 """
 
 import contextlib
@@ -32,7 +32,7 @@ class Shards:
     def __init__(self, out):
         self.out = Path(out)
         self.folder = Path(f"{out}.parts")
-        self.started, self.lock = None, None
+        self.started, self.lock, self.plan = None, None, ""
 
     def hold(self):
         """Make the folder and become its only writer; a process that ends, however it ends, lets go."""
@@ -73,6 +73,7 @@ class Shards:
     def open(self, identity, clear_others=False):
         """Begin, or go on; returns the whole shards already there: (kind, index) -> file."""
         manifest = self.folder / "manifest.json"
+        self.plan = identity["plan_sha256"]
         if manifest.exists():
             found = json.loads(manifest.read_text())
             self.started = found.get("started")
@@ -92,13 +93,20 @@ class Shards:
             write_whole(manifest, json.dumps(identity | {"started": self.started}, indent=1).encode())
         for left in self.out.parent.glob(f".{self.out.name}.*.part"):
             left.unlink(missing_ok=True)
-        return dict(filter(None, map(_checked, sorted(self.folder.glob("*-*.bin")))))
+        done = {}
+        for path in sorted(self.folder.glob("*-*.bin")):
+            if key := _key(path, self.plan):
+                done[key] = path
+            else:
+                path.unlink()
+        return done
 
     def save(self, kind, index, states, limits):
         """Store one finished shard; returns its file."""
         content = states.tobytes() + limits.tobytes()
-        digest = hashlib.sha256(content).hexdigest()[:DIGITS]
-        path = self.folder / f"{kind}-{index:06d}-{digest}.bin"
+        digest = _digest(self.plan, kind, index)
+        digest.update(content)
+        path = self.folder / f"{kind}-{index:06d}-{digest.hexdigest()[:DIGITS]}.bin"
         write_whole(path, content)
         return path
 
@@ -117,17 +125,33 @@ class Shards:
             left.unlink(missing_ok=True)
 
 
-def _checked(path):
-    """``((kind, index), path)`` of a shard file, or None, and no file, if its bytes are not those it was named after."""
+def examine(out):
+    """``(whole, faulty)`` shard files of the unfinished sweep beside ``out``; nothing is changed."""
+    folder = Path(f"{out}.parts")
+    try:
+        plan = json.loads((folder / "manifest.json").read_text()).get("plan_sha256", "")
+    except (OSError, ValueError):
+        plan = ""
+    files = sorted(folder.glob("*-*.bin"))
+    whole = [path for path in files if _key(path, plan)]
+    return whole, [path for path in files if path not in whole]
+
+
+def _digest(plan, kind, index):
+    """What the bytes of a shard are hashed behind: whose shard it is, and which."""
+    return hashlib.sha256(f"{plan} {kind} {index}\n".encode())
+
+
+def _key(path, plan):
+    """``(kind, index)`` of a shard file, or None where its bytes, plan or number are not those it was named after."""
     kind, index, digest = path.stem.rsplit("-", 2)
-    found = hashlib.sha256()
+    if not index.isdigit():
+        return None
+    found = _digest(plan, kind, int(index))
     with path.open("rb") as file:
         while block := file.read(BLOCK):
             found.update(block)
-    if found.hexdigest()[:DIGITS] != digest:
-        path.unlink()
-        return None
-    return (kind, int(index)), path
+    return (kind, int(index)) if found.hexdigest()[:DIGITS] == digest else None
 
 
 class Records:
