@@ -1,6 +1,7 @@
 """Atlases as netCDF4 files: saved whole, opened lazily."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,43 @@ class Atlas:
         slabs = [codes[k : k + rows] for k in range(0, len(codes), rows)] if codes.ndim else [codes]
         counts = sum(np.bincount(slab.values.ravel(), minlength=len(STATUSES)) for slab in slabs)
         return {row.meaning: int(count) for row, count in zip(STATUSES, counts) if count}
+
+    @cached_property
+    def _reader(self):
+        from ..query.query import Reader
+
+        return Reader(self.data)
+
+    def query(self, variables=None, method="cubic", refine=False, x=None, **axes):
+        """What the atlas says of any design and load within its grid.
+
+        Parameters
+        ----------
+        axes : one keyword for each axis, in the units of the API: a number, an array or a DataArray. Plain arrays
+            broadcast as in NumPy, DataArrays by the names of their dimensions. Axes of one value may be left out
+        variables : names of stored variables; default: all
+        method : "cubic" (once continuously differentiable) or "linear"
+        refine : solve exactly where the atlas cannot answer (status 9), with the solver's error bounds
+        x : with ``refine``, stations [m] at which profiles along the tube are solved for and added
+
+        Returns a Dataset: each ``<name>`` with ``<name>_error``, a bound on interpolation and discretization together, its
+        status and flags. Angles that the grid lacks are answered by exchange of the fiber families and by the mirror.
+        Cells that touch a failed node, a limit, the line alpha = beta or a change of stability are not interpolated
+        (status 9), nor are points whose stated error exceeds the atlas' ``interpolation_tolerance``; nothing is
+        extrapolated (status 8). Raises :class:`freesweep.query.faults.QueryError`, which lists every fault.
+        """
+        from ..query.query import query
+
+        return query(self._reader, axes, variables, method, refine, x)
+
+    def interpolator(self, names):
+        """A callable for loops and optimizers: ``f(*values, gradient=False)``, see :class:`freesweep.query.Interpolator`.
+
+        ``names`` is a variable or a list of them; the values are given in the order of ``f.axes``. Raises QueryError.
+        """
+        from ..query.interpolator import Interpolator
+
+        return Interpolator(self._reader, names)
 
     def close(self):
         """Let go of the file."""

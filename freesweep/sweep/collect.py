@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import closed_form, status
+from .. import ideal, status
 from ..atlas.schema import without
 from ..scaling import OUTPUTS, output_scales, wall_volume_inside
 from .grid import Grid
@@ -13,7 +13,6 @@ from .plan import FREE
 from .records import upward
 
 SAME_PROBLEM = 5e-13  # relative: two problems that agree to reduce.KEPT_BITS bits are solved as one
-EPSILON = np.finfo(float).eps
 DOUBLE, BOUND, CODE = np.dtype("<f8"), np.dtype("<f4"), np.dtype("i1")
 
 
@@ -44,9 +43,7 @@ def groups(sweep) -> list:
     ]
     wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
     if not {"alpha", "beta"} & set(sweep.profiles):
-        wanted += [
-            (FREE, _ideal, [name], [f"{name}_status"]) for name in ("ideal_blocked_force", "ideal_blocked_torque")
-        ]
+        wanted += [(FREE, _ideal, [name], [f"{name}_status"]) for name in ideal.NAMES]
     return [_group(sweep, *each) for each in wanted]
 
 
@@ -144,35 +141,14 @@ def _blocked(table, records, at):
 
 def _ideal(table, _, at):
     """Blocked force and torque of inextensible fibers, in closed form, as long as nothing deforms."""
-    design, known = table.grid.columns(at), table.reduced(at).status
+    design, refused = table.grid.columns(at), table.reduced(at).status[:, None] == status.INVALID
     alpha, beta, radius = (design[name][:, None] for name in ("alpha", "beta", "fiber_radius"))
-    ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
-    product = ta * tb
-    # rounding of the tangents, and what is left of it in their product and sum
-    of_ta, of_tb = (
-        2.0 * EPSILON * (np.abs(t) + np.abs(np.radians(a)) * (1.0 + t * t)) for t, a in ((ta, alpha), (tb, beta))
-    )
-    of_product = np.abs(ta) * of_tb + np.abs(tb) * of_ta
-    with np.errstate(divide="ignore", invalid="ignore"):
-        relative = {
-            "ideal_blocked_force": 2.0 * of_product / product**2,
-            "ideal_blocked_torque": of_product / np.abs(ta + tb)
-            + np.abs(2.0 + product) * (of_ta + of_tb) / (ta + tb) ** 2,
-        }
     arrays = {}
-    for name, value in (
-        ("ideal_blocked_force", closed_form.blocked_force(alpha, beta, radius, table.pressure)),
-        ("ideal_blocked_torque", closed_form.blocked_torque(alpha, beta, radius, table.pressure)),
-    ):
-        solved = np.isfinite(value)
-        region_one = (product > 0.0) & (name == "ideal_blocked_force")
-        failed = np.where(region_one, status.COMPRESSED, status.HELD_IMPOSSIBLE)
-        codes = np.where(solved, status.OK, np.where(alpha == beta, status.DEGENERATE, failed))
-        refused = (known == status.INVALID)[:, None]
-        codes, value = np.where(refused, status.INVALID, codes), np.where(refused, np.nan, value)
-        solved = solved & ~refused
-        scale = np.pi * radius**2 * table.pressure * (1.0 if name == "ideal_blocked_force" else radius)
-        arrays[name], arrays[f"{name}_status"] = value, codes
-        bound = scale * np.where(solved, relative[name], 0.0) + 8.0 * EPSILON * (scale + np.abs(value))
-        arrays[f"{name}_error"] = upward(np.where(solved, bound, np.nan))
+    for name in ideal.NAMES:
+        value, bound, codes = ideal.ideal_blocked(name, alpha, beta, radius, table.pressure)
+        arrays[name], arrays[f"{name}_status"] = (
+            np.where(refused, np.nan, value),
+            np.where(refused, status.INVALID, codes),
+        )
+        arrays[f"{name}_error"] = upward(np.where(refused, np.nan, bound))
     return arrays

@@ -1,0 +1,125 @@
+"""Answers of one family of variables at points of an atlas: numbers, stated errors, statuses, flags."""
+
+import numpy as np
+
+from ..status import INACCURATE, NOT_INTERPOLABLE, OK
+from . import calibration, reference, tensor
+from .family import LOOSE, MIRRORED
+from .holes import MIXED
+from .place import place
+from .slack import UNKNOWN, slack_families
+
+CUBIC, LINEAR = "cubic", "linear"
+SORTED = 2000  # points from which on sorting pays
+FLOORS = {reference.ROTATION: 0.1}  # [degree]: smaller rotations are held to the tolerance of this one
+LOAD_FLOOR = 0.01  # of pi r^2 P, pi r^3 P: the same for blocked force and torque
+
+
+class Inquiry:
+    """Points of a question placed in one table; ``values``: axis -> (n,), all that the table knows."""
+
+    def __init__(self, table, values, method=CUBIC):
+        self.table, self.method = table, method
+        asked = np.stack([values[name] for name in table.known], axis=1)
+        self.size, d = len(asked), len(table.axes)
+        self.points, self.states = (
+            np.empty((self.size, len(reference.COLUMNS))),
+            np.empty((self.size, reference.UNIFORM)),
+        )
+        self.pieces, self.shares = np.empty((self.size, d), np.int64), np.empty((self.size, d))
+        self.marks = np.empty((self.size, 7), np.int64)
+        place(
+            asked, table.kinds, table.bounds, table.fixed, table.options, table.packed, table.strides,
+            (table.codes, table.cells), (table.slack, table.slack_cells), self.points, self.states, self.pieces,
+            self.shares, self.marks,
+        )  # fmt: skip
+        self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
+        self.node = self.marks[:, 4]
+        self.exact = self.node >= 0
+        self.order = np.arange(self.size)
+        if self.size > SORTED:
+            tensor.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-2])), self.order)
+
+    @property
+    def valued(self):
+        """Where a number is given (n,)."""
+        return (self.status == OK) | (self.status == INACCURATE)
+
+    def orders(self, derivative=None):
+        """What each axis asks of its weights: values, a slope along one axis, or linear weights."""
+        orders = np.full(len(self.table.axes), -1 if self.method == LINEAR else 0, np.int64)
+        if derivative is not None:
+            orders[derivative] = 1
+        return orders
+
+    def effects(self, name, orders):
+        """Interpolated end effects (n,)."""
+        table, found = self.table, np.empty(self.size)
+        args = (table.packed, table.strides, self.pieces, self.shares, self.order, orders, found)
+        tensor.interpolate(table.variable(name).values, *args)
+        return found
+
+    def estimate(self, name):
+        """``(value, estimate, bound)``: interpolated, what the next order would add, and what was stored wrongly."""
+        table, family = self.table, self.table.family
+        effects = self.effects(name, self.orders())
+        rest = np.empty(self.size)
+        kept = table.variable(name)
+        tensor.remainders(kept.roughness, table.strides, self.pieces, self.shares, self.order, rest)
+        if self.method == LINEAR:
+            rest += np.abs(effects - self.effects(name, np.zeros(len(table.axes), np.int64)))
+        value, estimate, bound = np.empty((3, self.size))
+        reference.restore_all(
+            family.variables[name], family.kind, self.points, self.states, effects, rest, kept.noise[self.cell], value,
+            estimate, bound,
+        )  # fmt: skip
+        return value, estimate, bound
+
+    def answer(self, name, factors):
+        """``(value, error)`` of one variable, (n,) each; stored bits at nodes. NaN where nothing can be said."""
+        value, estimate, bound = self.estimate(name)
+        error = calibration.stated(factors, estimate, bound, self.natural_size(name, value))
+        if self.exact.any():
+            at = self.node[self.exact]
+            value[self.exact], error[self.exact] = self.table.stored(name)[at], self.table.errors(name)[at]
+        if name in MIRRORED:
+            value = np.where(self.marks[:, 6] == 1, -value, value) + 0.0
+        return value, error
+
+    def natural_size(self, name, value):
+        """What an error is relative to, (n,)."""
+        variable, size = self.table.family.variables[name], np.abs(value)
+        if variable in FLOORS:
+            return np.maximum(size, FLOORS[variable])
+        if variable in (reference.HOLDING_FORCE, reference.HOLDING_TORQUE):
+            power = 2 if variable == reference.HOLDING_FORCE else 3
+            load = np.pi * self.points[:, reference.FIBERS] ** power * self.points[:, reference.PRESSURE]
+            return np.maximum(size, LOAD_FLOOR * load)
+        return size
+
+    def is_loose(self, name):
+        """Whether a variable is held to ten times the tolerance of lengths."""
+        return self.table.family.variables[name] in LOOSE
+
+    def exceeds(self, name, value, error, tolerance):
+        """Where an answer's stated error is too large to be given (nodes are given as they are)."""
+        allowed = tolerance * (10.0 if self.is_loose(name) else 1.0)
+        return ~(error <= allowed * self.natural_size(name, value)) & ~self.exact
+
+    def flags(self):
+        """Flags (n,) by name; a point whose flags cannot be told becomes NOT_INTERPOLABLE."""
+        table, found = self.table, {}
+        if table.has_flag:
+            found[table.family.flag] = np.where(self.codes == MIXED, 0, self.codes >> 4)
+        if len(table.slack):
+            slack, exchanged = self.marks[:, 2], self.marks[:, 5] == 1
+            look = (slack == MIXED) & self.valued
+            slack = np.where(slack == MIXED, 0, slack >> 4)
+            if look.any():
+                middle, _, _ = self.estimate("mid_radius")
+                told = np.empty(int(look.sum()), np.uint8)
+                slack_families(self.points[look], self.states[look], middle[look], table.options[1], told)
+                slack[look] = np.where(told == UNKNOWN, 0, told)
+                self.status[np.flatnonzero(look)[told == UNKNOWN]] = NOT_INTERPOLABLE
+            found["slack_fiber"] = np.where(exchanged, (slack & 1) << 1 | slack >> 1 & 1, slack)
+        return found

@@ -1,0 +1,106 @@
+"""One axis of an atlas as the kernels take it: a coordinate in which the physics is smooth, and weights at its nodes.
+
+Cubic Hermite pieces between the nodes, with slopes from the five nearest ones (fourth order): once continuously
+differentiable, local, and a ninth of the error of cubics through four nodes. The coordinate is the square root of a
+pressure (end layers give P^1.5 near zero), the logarithm of a size, else the value itself.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+WINDOW = 6  # nodes that a piece knows
+SLOPE = 5  # nodes that a slope knows
+SQRT, LOG, LINEAR, LABEL = 0, 1, 2, 3
+SIZES = ("length", "radius", "wall", "fiber_radius", "c10")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Nodes (n,) in the unit of the atlas, the coordinate's kind, and per piece i (from node i to i + 1):
+
+    ``first`` (n,) where its window begins; ``left`` and ``right`` (n, 6) slopes at its ends times its width, as weights of
+    the window's nodes; ``remainder`` (n, 6): weights of what the next order would add in the middle of the piece.
+    """
+
+    name: str
+    values: np.ndarray
+    kind: int
+    nodes: np.ndarray
+    first: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    remainder: np.ndarray
+
+    def rate(self, values):
+        """Derivative of the axis' coordinate by its value, at ``values`` (n,)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return (
+                0.5 / np.sqrt(values)
+                if self.kind == SQRT
+                else 1.0 / values
+                if self.kind == LOG
+                else np.ones(len(values))
+            )
+
+    @property
+    def window(self) -> int:
+        """How many nodes a piece knows."""
+        return 1 if self.kind == LABEL else min(WINDOW, len(self.nodes))
+
+
+def make_axis(name: str, values) -> Axis:
+    """The axis of a parameter with two nodes or more, or of labels (``design``)."""
+    count = len(values)
+    if name == "design":
+        nodes, zero = np.arange(count, dtype=float), np.zeros((count, WINDOW))
+        return Axis(name, nodes, LABEL, nodes, np.arange(count), zero, zero, zero)
+    values = np.asarray(values, float)
+    kind = LINEAR
+    if name == "pressure" and values[0] >= 0.0:
+        kind = SQRT
+    elif name in SIZES and values[0] > 0.0:
+        kind = LOG
+    nodes = np.sqrt(values) if kind == SQRT else np.log(values) if kind == LOG else values.copy()
+    window = min(WINDOW, count)
+    first = np.clip(np.arange(count) - WINDOW // 2 + 1, 0, count - window)
+    left, right, remainder = np.zeros((3, count, WINDOW))
+    for i in range(count - 1):
+        places = np.arange(first[i], first[i] + window)
+        width = nodes[i + 1] - nodes[i]
+        left[i, :window] = width * _slope(nodes, i, places)
+        right[i, :window] = width * _slope(nodes, i + 1, places)
+        middle = 0.125 * (left[i] - right[i])
+        middle[i - first[i] : i - first[i] + 2] += 0.5
+        best = np.zeros(WINDOW)
+        best[:window] = _lagrange(nodes[places], nodes[i] + 0.5 * width)
+        if window < SLOPE:  # the cubic is the best there is: what would be without the farthest node?
+            far = np.argmax(np.abs(nodes[places] - nodes[i] - 0.5 * width))
+            others = np.delete(np.arange(window), far)
+            best[:] = 0.0
+            best[others] = _lagrange(nodes[places[others]], nodes[i] + 0.5 * width)
+        remainder[i] = best - middle
+    return Axis(name, values, kind, nodes, first, left, right, remainder)
+
+
+def _slope(nodes, i, places):
+    """Weights, one for each of ``places``, of the slope at node i from the nodes nearest to it."""
+    count = min(SLOPE, len(nodes))
+    start = min(max(i - count // 2, 0), len(nodes) - count)
+    near = np.arange(start, start + count)
+    weights = np.zeros(len(places))
+    x, here = nodes[near], i - start
+    for j in range(count):
+        others = [k for k in range(count) if k != j]
+        if j == here:
+            weight = np.sum(1.0 / (x[here] - x[others]))
+        else:
+            rest = [k for k in others if k != here]
+            weight = np.prod((x[here] - x[rest]) / (x[j] - x[rest])) / (x[j] - x[here])
+        weights[near[j] - places[0]] = weight
+    return weights
+
+
+def _lagrange(x, at):
+    """Weights of the polynomial through all nodes ``x`` at one place."""
+    return np.array([np.prod([(at - x[k]) / (x[j] - x[k]) for k in range(len(x)) if k != j]) for j in range(len(x))])

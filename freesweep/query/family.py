@@ -1,0 +1,40 @@
+"""Families of variables: those that share a status, flags and a kind of uniform state behind them."""
+
+from typing import NamedTuple
+
+from . import reference as r
+
+
+class Family(NamedTuple):
+    """``variables`` maps names to variables of :mod:`reference`; ``status`` and ``flag`` are the names stored beside."""
+
+    kind: int
+    variables: dict
+    status: str | None
+    flag: str | None = None
+
+
+_SHAPE = {
+    "deformed_length": r.DEFORMED_LENGTH,
+    "rotation": r.ROTATION,
+    "mid_radius": r.MID_RADIUS,
+    "volume": r.VOLUME,
+    "strain_energy": r.ENERGY,
+}
+
+FAMILIES = {
+    "state": Family(r.LOADED, _SHAPE, "status", "stable"),
+    "locked": Family(r.LOCKED, {f"locked_{name}": variable for name, variable in _SHAPE.items()}, "locked_status"),
+    "blocked_force": Family(
+        r.LENGTH_HELD, {"blocked_force": r.HOLDING_FORCE}, "blocked_force_status", "blocked_force_stable"
+    ),
+    "blocked_torque": Family(
+        r.ROTATION_HELD, {"blocked_torque": r.HOLDING_TORQUE}, "blocked_torque_status", "blocked_torque_stable"
+    ),
+    "limit": Family(r.NONE, {"limit_pressure": r.PLAIN}, None, "limit_found"),
+}
+FAMILY_OF = {name: key for key, family in FAMILIES.items() for name in family.variables}
+IDEAL = ("ideal_blocked_force", "ideal_blocked_torque")  # closed forms: evaluated, never interpolated
+
+MIRRORED = ("rotation", "locked_rotation", "blocked_torque", "ideal_blocked_torque")  # turn round with both angles
+LOOSE = (r.ROTATION, r.ENERGY, r.HOLDING_FORCE, r.HOLDING_TORQUE)  # ten times the tolerance of lengths

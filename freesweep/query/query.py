@@ -1,0 +1,212 @@
+"""What an atlas answers at any point: numbers with their stated error, or the status that says why there is none."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+
+import numpy as np
+
+from ..atlas.schema import PARAMETERS, attributes
+from ..status import NOT_INTERPOLABLE, OUTSIDE, status_attributes
+from . import calibration
+from .answer import CUBIC, LINEAR, Inquiry
+from .ask import read_question
+from .family import FAMILIES, FAMILY_OF, IDEAL
+from .faults import QueryError, unknown
+from .frame import Frame
+from .ideal import ideal_answer
+from .table import Table
+
+CHUNK = 1 << 18  # points answered together: their arrays fit in memory, and many share a cell
+ALONE = 1 << 14  # points for which a second thread is not worth its start
+NEAR = 1e-12
+
+
+class Reader:
+    """An atlas ready for questions: its tables, made when first needed and kept."""
+
+    def __init__(self, data):
+        self.data, self.frame = data, Frame(data)
+        self.tolerance = calibration.tolerance(data)
+        self.names = [name for name in data.data_vars if name in FAMILY_OF or name in IDEAL]
+        self._tables, self._factors, self._attributes = {}, {}, {}
+
+    def table(self, key) -> Table:
+        """The table of a family of variables."""
+        if key not in self._tables:
+            self._tables[key] = Table(self.data, self.frame, key)
+        return self._tables[key]
+
+    def factors(self, name) -> calibration.Factors:
+        """What was measured of one variable's stated errors."""
+        if name not in self._factors:
+            self._factors[name] = calibration.factors(self.data, name)
+        return self._factors[name]
+
+    def attributes(self, name) -> dict:
+        """CF attributes of a variable of an answer."""
+        if name not in self._attributes:
+            if name == "limit_pressure_status":
+                self._attributes[name] = {"long_name": "status of the limit pressure", **status_attributes()}
+            else:
+                self._attributes[name] = attributes(name)
+        return self._attributes[name]
+
+    def needed(self, names) -> list:
+        """Axes that must be given for some variables."""
+        dims = dict.fromkeys(dim for name in names for dim in self.frame.dims[name])
+        order = [dim for dim in self.frame.sizes if dim in dims]
+        return [name for name in order if len(self.frame.values[name]) > 1]
+
+    def complete(self, values, size) -> dict:
+        """``values`` of a question with what the atlas fixes added, axis -> (n,)."""
+        full = dict(values)
+        for name in self.frame.asked:
+            if name not in full and len(self.frame.values[name]) == 1:
+                only = 0.0 if name == "design" else float(self.frame.values[name][0])
+                full[name] = np.full(size, only)
+        return full
+
+    def answer(self, values, size, names, method=CUBIC, tolerance=None) -> dict:
+        """Name -> (n,) of numbers, errors, statuses and flags; ``values``: axis -> (n,)."""
+        values = self.complete(values, size)
+        tolerance = self.tolerance if tolerance is None else tolerance
+        found = {}
+        for key in FAMILIES:
+            own = [name for name in names if FAMILY_OF.get(name) == key]
+            if own:
+                found |= self._in_chunks(self.table(key), values, size, own, method, tolerance)
+        for name in names:
+            if name in IDEAL:
+                found |= ideal_answer(self.frame, name, values)
+        return found
+
+    def _in_chunks(self, table, values, size, names, method, tolerance):
+        bounds = [*range(0, size, CHUNK), size]
+        if ALONE < size <= CHUNK:
+            bounds = [0, size // 2, size]
+        parts = list(pairwise(bounds)) or [(0, 0)]
+
+        def one(part):
+            own = {name: values[name][slice(*part)] for name in table.known}
+            return self._answer_chunk(table, own, names, method, tolerance)
+
+        if len(parts) == 1:
+            return one(parts[0])
+        for name in (*names, *(("mid_radius",) if len(table.slack) else ())):
+            table.variable(name)  # made here, not by two threads
+        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+            answers = list(pool.map(one, parts))
+        return {name: np.concatenate([answer[name] for answer in answers]) for name in answers[0]}
+
+    def _answer_chunk(self, table, values, names, method, tolerance):
+        inquiry = Inquiry(table, values, method)
+        flags = inquiry.flags()
+        found, too_large = {}, np.zeros(inquiry.size, bool)
+        for name in names:
+            value, error = inquiry.answer(name, self.factors(name))
+            too_large |= inquiry.exceeds(name, value, error, tolerance)
+            found[name], found[f"{name}_error"] = value, error
+        status = inquiry.status.astype(np.int8)
+        valued = inquiry.valued
+        if table.family.status is None:  # that there is no limit pressure is an answer, too
+            too_large &= inquiry.codes != 0
+        status[valued & too_large] = NOT_INTERPOLABLE
+        valued &= ~too_large
+        for name in found:
+            found[name] = np.where(valued, found[name], np.nan)
+        for name, flag in flags.items():
+            found[name] = np.where(valued, flag, 0).astype(np.int8)
+        found[table.family.status or f"{names[0]}_status"] = status
+        return found
+
+
+def check_names(reader, variables) -> list:
+    """The variables of a question; raises :class:`QueryError`."""
+    if variables is None:
+        return list(reader.names)
+    try:
+        names = list(dict.fromkeys([variables] if isinstance(variables, str) else variables))
+    except TypeError:
+        raise QueryError([f"variables: found {type(variables).__name__}; give a name or a list of names"]) from None
+    faults = [unknown("variable", name, reader.names) for name in names if name not in reader.names]
+    if faults or not names:
+        raise QueryError(faults or [f"variables: found none; known: {', '.join(reader.names)}"])
+    return names
+
+
+def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
+    """The Dataset that answers keywords ``axes``: see :meth:`freesweep.Atlas.query`."""
+    import xarray as xr
+
+    names = check_names(reader, variables)
+    faults = []
+    if method not in (CUBIC, LINEAR):
+        faults.append(f"method: found {method!r:.40}; allowed: {CUBIC}, {LINEAR}")
+    if not isinstance(refine, bool | np.bool_):
+        faults.append(f"refine: found {refine!r:.40}; give True or False")
+    elif x is not None and not refine:
+        faults.append("x: an atlas stores no profiles along the tube; refine=True solves for them")
+    if faults:
+        raise QueryError(faults)
+    question = read_question(axes, reader.frame, reader.needed(names))
+    found = reader.answer(question.values, question.size, names, method)
+    _refuse_single(reader, question, found)
+    if refine:
+        from .refine import refine_answers
+
+        refine_answers(reader, question, names, found)
+    dataset = {
+        name: xr.Variable(question.dims, array.reshape(question.shape), reader.attributes(name))
+        for name, array in found.items()
+    }
+    result = xr.Dataset(dataset, _coordinates(reader, question, axes), {"title": reader.frame.title, "method": method})
+    if x is not None:
+        from .refine import profiles
+
+        result = xr.merge([result, profiles(reader, question, x)])
+    return result
+
+
+def _coordinates(reader, question, axes):
+    import xarray as xr
+
+    coordinates = {}
+    for name, (dims, array) in question.coordinates.items():
+        if name == "design":
+            array = reader.frame.values["design"][array.astype(int)]
+        coordinates[name] = xr.Variable(dims, array, reader.frame.attributes[name])
+    for value in axes.values():  # a DataArray brings the coordinates of its dimensions
+        if isinstance(value, xr.DataArray):
+            for dim in value.dims:
+                if dim in value.coords and dim not in question.coordinates:
+                    own = value.coords[dim].variable
+                    if not coordinates.setdefault(dim, own).equals(own):
+                        raise QueryError([f"{dim}: two arrays have other coordinates along it; align them first"])
+    return coordinates
+
+
+def _refuse_single(reader, question, found):
+    """A single number beyond the grid is an error that names the nearest bound: the whole answer would be empty."""
+    faults, angles = [], {"alpha", "beta"}
+    for name in sorted(question.single - {"design"}):
+        value, unit = question.coordinates[name][1].item(), PARAMETERS[name].units
+        low, high = reader.frame.ranges[name]
+        slack = NEAR * max(abs(low), abs(high))
+        if not np.isfinite(value):
+            faults.append(f"{name}: found {value}; give a finite number in [{unit}]")
+        elif name not in angles and not low - slack <= value <= high + slack:
+            span = f"only {low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
+            nearest = low if value < low else high
+            faults.append(f"{name}: found {value:.6g}; the atlas holds {span} [{unit}], the nearest is {nearest:.6g}")
+    statuses = [array for name, array in found.items() if name.endswith("status")]
+    alone = question.single == set(question.values) and angles <= question.single
+    if alone and not faults and any(array[0] == OUTSIDE for array in statuses):
+        held = "; ".join("{} {:g} to {:g}".format(name, *reader.frame.ranges[name]) for name in sorted(angles))
+        at = ", ".join(f"{question.coordinates[name][1].item():g}" for name in sorted(angles))
+        faults.append(
+            f"alpha, beta: found {at}; the atlas holds {held} [degree], and neither the exchange of the fiber families nor"
+            " the mirror brings the point there"
+        )
+    if faults:
+        raise QueryError(faults)

@@ -1,0 +1,164 @@
+"""The closed form that stands behind each stored variable, and the scale of what the clamped ends add to it.
+
+A stored number is ``offset + scale * end_effect``, or ``offset + base * exp(scale * end_effect)``. The uniform tube carries
+the poles (blocked force at straight fibers, blocked torque at alpha = -beta), the swelling near alpha = beta and the
+lengthening near 90 degrees. The scale vanishes where the ends change nothing: the end effect is a smooth number near one,
+and small values stay relatively exact. Rotation carries H, every change of shape q - 1, the energy that of the uniform wall.
+Volumes and the middle's radius, which the ends may change by decades, are taken as logarithms.
+"""
+
+import math
+
+from ..jit import entry_point, kernel
+from .uniform_tube import energy, kinematics, locked_squared_stretch, squared_stretch
+
+# columns of a point: one design and its load, in SI units and degrees; HELD: length ratio [1] or rotation [degree]
+COLUMNS = (
+    "alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "c10", "c01", "force", "torque",
+    "pressure", "held",
+)  # fmt: skip
+ALPHA, BETA, LENGTH, RADIUS, WALL, FIBERS, EXTENSION, C10, C01, FORCE, TORQUE, PRESSURE, HELD = range(13)
+
+NONE, LOADED, LOCKED, LENGTH_HELD, ROTATION_HELD = range(5)  # kinds of states
+PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE = range(8)  # of variables
+
+UNIFORM = 8  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier
+TINY = 1e-5  # what the middle of a long tube lacks is not told from nothing below it, of its swelling
+ROUNDING = 1e-12  # of a value, and of the closed form
+LEAST = 1e-7  # q - 1 or H below it: what the ends add cannot be told from rounding
+
+
+@kernel
+def uniform(kind, point, shear, out):
+    """The uniform state of a kind at a point (13,) into ``out`` (UNIFORM,); NaN where there is none."""
+    ta, tb = math.tan(math.radians(point[ALPHA])), math.tan(math.radians(point[BETA]))
+    h, d, gamma = 0.5 * (ta + tb), 0.5 * (ta - tb), point[EXTENSION]
+    r, c10 = point[FIBERS], point[C10]
+    area = ((point[RADIUS] + point[WALL]) ** 2 - point[RADIUS] ** 2) / (r * r)
+    ratio, p = point[C01] / c10, point[PRESSURE] / c10
+    f, m = point[FORCE] / (math.pi * r * r * c10), point[TORQUE] / (math.pi * r * r * r * c10)
+    out[:] = math.nan
+    out[0], out[1], out[2] = h, ta * tb, area
+    q = math.nan
+    if kind == NONE or d == 0.0:
+        return
+    if kind == LOADED:
+        q = squared_stretch((h, d, area, gamma, ratio, shear, f, m), p)
+    elif kind == LOCKED:
+        q = locked_squared_stretch(h, d, gamma)
+    elif kind == LENGTH_HELD:  # G(q) = ratio^2: the root that is 1 for inextensible fibers at rest
+        g2 = gamma * gamma
+        middle = g2 * (1.0 + h * h + d * d) - point[HELD] ** 2
+        root = math.sqrt(max(middle * middle - 4.0 * g2 * g2 * d * d * h * h, 0.0))
+        q = (middle + root) / (2.0 * d * d) if d * d > h * h else 2.0 * g2 * g2 * h * h / (middle + root)
+    elif kind == ROTATION_HELD:
+        q = gamma * gamma / (1.0 + math.radians(point[HELD]) * r / (point[LENGTH] * h))
+    if not q > 0.0:
+        return
+    state = kinematics(q, h, d, gamma)
+    w, w1, _ = energy(q, state, ratio, shear)
+    if not state[0] > 0.0:
+        return
+    s = math.sqrt(state[0])
+    s1 = 0.5 * state[1] / s
+    out[3], out[4], out[5], out[6] = q, s, state[3], w
+    if kind == LENGTH_HELD:
+        out[7] = -(p * (s + q * s1) - area * w1 + m * state[4]) / s1
+    elif kind == ROTATION_HELD:
+        out[7] = -(p * s + (p * q + f) * s1 - area * w1) / state[4]
+
+
+@kernel
+def reference(variable, kind, point, u):
+    """``(offset, base, scale)`` of a variable where the uniform state is ``u``, for :func:`restore`; SI units, degrees."""
+    r, length = point[FIBERS], point[LENGTH]
+    q = u[3]
+    if variable == PLAIN:
+        return 0.0, 0.0, 1.0
+    swelling = q - 1.0
+    if variable == DEFORMED_LENGTH:
+        return length * u[4], 0.0, r * swelling
+    if variable == ROTATION:
+        return math.degrees(length / r * u[5]), 0.0, math.degrees(u[0] * swelling)
+    if variable == ENERGY:
+        stored = math.pi * r * r * point[C10] * u[2] * u[6]
+        return stored * length, 0.0, stored * r
+    if variable == VOLUME:
+        inside = math.pi * (r * r - point[RADIUS] ** 2) * length  # an incompressible wall keeps its volume
+        return -inside, math.pi * r * r * length * q * u[4], (math.sqrt(q) - 1.0) * r / length
+    if variable == MID_RADIUS:  # what the middle lacks falls off exponentially with the length
+        wider = r * (math.sqrt(q) - 1.0)
+        return r + wider * (1.0 + TINY), -wider, 1.0 if wider != 0.0 else 0.0
+    # poles divided out: blocked force times ta tb, blocked torque times ta + tb
+    if variable == HOLDING_FORCE:
+        force = math.pi * r * r * point[C10]
+        return force * u[7], 0.0, force / u[1]
+    torque = math.pi * r * r * r * point[C10]
+    return torque * u[7], 0.0, torque / u[0]
+
+
+@kernel
+def restore(offset, base, scale, effect):
+    """``(value, slope)`` of a variable at an end effect, the slope by the end effect."""
+    if base == 0.0:
+        return offset + scale * effect, scale
+    part = base * math.exp(scale * effect)
+    return offset + part, scale * part
+
+
+@kernel
+def _inverse(stored, offset, base, scale):
+    if base == 0.0:
+        return (stored - offset) / scale
+    part = (stored - offset) / base
+    return math.log(part) / scale if part > 0.0 else math.nan
+
+
+@entry_point
+def uniform_states(kind, points, shear, out):
+    """:func:`uniform` of points (n, 13) into ``out`` (n, UNIFORM)."""
+    for k in range(len(points)):
+        uniform(kind, points[k], shear, out[k])
+
+
+@entry_point
+def restore_all(variable, kind, points, states, effects, rests, noise, values, estimates, bounds):
+    """From interpolated end effects (n,), what the next order would add and their bounds, to values and theirs, (n,) each.
+
+    ``points`` (n, 13) with uniform states (n, UNIFORM).
+    """
+    for k in range(len(points)):
+        offset, base, scale = reference(variable, kind, points[k], states[k])
+        value, slope = restore(offset, base, scale, effects[k])
+        estimate = abs(slope) * rests[k]
+        if base != 0.0:
+            estimate = abs(value - offset) * math.expm1(min(abs(scale) * rests[k], 50.0))
+        noise_slope = base if variable == MID_RADIUS else slope
+        values[k], estimates[k], bounds[k] = value, estimate, abs(noise_slope) * noise[k]
+        bounds[k] += ROUNDING * (abs(value) + abs(offset) + abs(base))
+
+
+@entry_point
+def end_effects(variable, kind, points, states, which, stored, errors, effects, noise):
+    """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); point k has state ``which[k]``.
+
+    NaN where the end effect cannot be told: the neighbours will say.
+    """
+    for k in range(len(stored)):
+        u = states[which[k]]
+        offset, base, scale = reference(variable, kind, points[k], u)
+        effects[k] = _inverse(stored[k], offset, base, scale)
+        _, slope = restore(offset, base, scale, effects[k])
+        if variable == MID_RADIUS:
+            slope = base
+        noise[k] = errors[k] / abs(slope)
+        shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE
+        if kind == LOADED and points[k, PRESSURE] == 0.0 and u[3] == 1.0 and shape:
+            # at rest; the width of the end layer goes with the square root of pressure
+            effects[k], noise[k] = math.log(TINY) if variable == MID_RADIUS else 0.0, 0.0
+        elif (
+            (shape and abs(u[3] - 1.0) < LEAST)
+            or (variable == ROTATION and abs(u[0]) < LEAST)
+            or not (math.isfinite(effects[k]) and math.isfinite(noise[k]))
+        ):
+            effects[k], noise[k] = math.nan, 0.0

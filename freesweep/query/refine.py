@@ -1,0 +1,119 @@
+"""Answers that an atlas cannot give, solved exactly: all points of a question in one batch for each family."""
+
+import numpy as np
+
+from ..status import NOT_INTERPOLABLE, VALUED
+from . import reference
+from .answer import Inquiry
+from .exact import solve
+from .family import FAMILIES, FAMILY_OF
+from .faults import QueryError
+
+MOST_PROFILES = 10_000  # each is solved on its own
+TURNED_COLUMNS = [reference.ALPHA, reference.BETA, reference.TORQUE]
+
+
+def refine_answers(reader, question, names, found) -> None:
+    """Put exact solutions into ``found`` (name -> (n,)) where the status is NOT_INTERPOLABLE."""
+    values = reader.complete(question.values, question.size)
+    for key, family in FAMILIES.items():
+        own = [name for name in names if FAMILY_OF.get(name) == key]
+        if not own:
+            continue
+        code = family.status or f"{own[0]}_status"
+        todo = np.flatnonzero(found[code] == NOT_INTERPOLABLE)
+        if not len(todo):
+            continue
+        if not reader.frame.uniform_along_x:
+            raise QueryError(["refine: the tubes of this atlas vary along x; solve them with freesweep.inflate"])
+        points = as_points(reader, key, {name: array[todo] for name, array in values.items()})
+        put(found, todo, exact_answers(reader, key, points, own))
+
+
+def as_points(reader, key, values):
+    """Points (n, 13) of one family, as they were asked: ``values`` axis -> (n,)."""
+    inquiry = Inquiry(reader.table(key), {name: values[name] for name in reader.table(key).known})
+    points = inquiry.points
+    exchanged, mirrored = inquiry.marks[:, 5] == 1, inquiry.marks[:, 6] == 1
+    points[exchanged, :2] = points[exchanged, 1::-1]
+    points[np.ix_(mirrored, TURNED_COLUMNS)] *= -1.0
+    if reader.table(key).family.kind == reference.ROTATION_HELD:
+        points[mirrored, reference.HELD] *= -1.0
+    return points
+
+
+def exact_answers(reader, key, points, names, accuracy=None) -> dict:
+    """Exact answers of one family at points (n, 13): name -> (n,), as :meth:`Reader.answer` gives them."""
+    family, frame = FAMILIES[key], reader.frame
+    accuracy = frame.accuracy if accuracy is None else accuracy
+    limit = key == "limit"
+    most = frame.ranges["pressure"][1] if limit else None
+    solved = solve(reference.LOADED if limit else family.kind, points, frame.energy, accuracy, most)
+    found = {}
+    for name in names:
+        of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
+        found[name], found[f"{name}_error"] = solved[of], solved[f"{of}_error"]
+    if limit:
+        found["limit_found"] = np.isfinite(solved["limit_pressure"]).astype(np.int8)
+        known = np.isin(solved["status"], VALUED) | np.isfinite(solved["limit_pressure"])
+        found["limit_pressure_status"] = np.where(known, 0, solved["status"]).astype(np.int8)
+        return found
+    found[family.status] = solved["status"]
+    if family.flag in frame.dims:
+        found[family.flag] = np.where(np.isin(solved["status"], VALUED), solved["stable"], 0).astype(np.int8)
+    if key == "state" and "slack_fiber" in frame.dims:
+        found["slack_fiber"] = solved["slack_fiber"]
+    return found
+
+
+def put(found, places, answers) -> None:
+    """Write ``answers`` (name -> (k,)) into ``found`` (name -> (n,)) at ``places`` (k,)."""
+    for name, array in answers.items():
+        if name in found:
+            found[name][places] = array
+
+
+def profiles(reader, question, x):
+    """Profiles along the tube at stations ``x`` [m] for each point of a question: a Dataset over its dimensions and ``x``.
+
+    Raises :class:`QueryError`, or ActuatorError for stations outside a tube.
+    """
+    import xarray as xr
+
+    from ..actuator import Actuator, MooneyRivlin
+    from ..atlas.schema import PROFILES, attributes
+
+    if "state" not in {FAMILY_OF.get(name) for name in reader.names} or not reader.frame.uniform_along_x:
+        raise QueryError(["x: this atlas holds no states under pressure whose profiles could be solved"])
+    if question.size > MOST_PROFILES:
+        raise QueryError([f"x: {question.size:,} points, at most {MOST_PROFILES:,} with profiles; ask in parts"])
+    values = reader.complete(question.values, question.size)
+    points = as_points(reader, "state", values)
+    try:
+        stations = np.atleast_1d(np.asarray(x, float))
+    except (TypeError, ValueError):
+        raise QueryError(["x: give ascending stations [m], from 0 to the undeformed length"]) from None
+    arrays = {name: np.full((question.size, len(stations)), np.nan) for name in PROFILES}
+    energy = reader.frame.energy
+    for k, point in enumerate(points):
+        design = dict(zip(reference.COLUMNS, point.tolist()))
+        state = _inflated(design, stations, energy, Actuator, MooneyRivlin)
+        for name in PROFILES if state is not None else ():
+            arrays[name][k] = state[name].values
+    dims = (*question.dims, "x")
+    data = {name: (dims, array.reshape(*question.shape, -1), attributes(name)) for name, array in arrays.items()}
+    return xr.Dataset(data, {"x": ("x", stations, attributes("x"))})
+
+
+def _inflated(design, stations, energy, actuator, material):
+    from ..actuator import ActuatorError
+    from ..statics import inflate
+
+    loads = {name: design.pop(name) for name in ("pressure", "force", "torque")}
+    design.pop("held")
+    rubber = material(design.pop("c10"), design.pop("c01"))
+    try:
+        tube = actuator(**design, material=rubber, energy=energy)
+    except ActuatorError:
+        return None  # no such tube: its status says why
+    return inflate(tube, **loads, x=stations)

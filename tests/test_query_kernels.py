@@ -1,0 +1,184 @@
+"""The kernels behind the query: cubics that reproduce cubics, the uniform tube, what the ends add, slack fibers."""
+
+import numpy as np
+import pytest
+
+from freesweep import Actuator, MooneyRivlin, closed_form, inflate
+from freesweep.query import reference, tensor
+from freesweep.query.axis import make_axis
+from freesweep.query.holes import fill
+from freesweep.query.slack import UNKNOWN, slack_families
+from freesweep.query.uniform_tube import balance, energy, kinematics, squared_stretch
+
+RUBBER = MooneyRivlin(0.17e6, 0.08e6)
+
+
+def cubic_table(axes, function):
+    """A table of a function of the axes' coordinates, with exact slopes along the last two."""
+    grids = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")
+    h = 1e-5
+    *outer, r, p = grids
+    columns = [
+        function(*grids),
+        (function(*outer, r, p + h) - function(*outer, r, p - h)) / (2 * h),
+        (function(*outer, r + h, p) - function(*outer, r - h, p)) / (2 * h),
+        (function(*outer, r + h, p + h) - function(*outer, r + h, p - h) - function(*outer, r - h, p + h)
+         + function(*outer, r - h, p - h)) / (4 * h * h),
+    ]  # fmt: skip
+    return np.stack(columns, axis=-1).ravel()
+
+
+def packed(axes):
+    most = max(len(axis.nodes) for axis in axes)
+    nodes, first = np.zeros((len(axes), most)), np.zeros((len(axes), most), np.int64)
+    weights = np.zeros((3, len(axes), most, 6))
+    for a, axis in enumerate(axes):
+        own = slice(0, len(axis.nodes))
+        nodes[a, own], first[a, own] = axis.nodes, axis.first
+        weights[0, a, own], weights[1, a, own], weights[2, a, own] = axis.left, axis.right, axis.remainder
+    counts = np.array([len(axis.nodes) for axis in axes])
+    return (
+        nodes, counts, np.array([axis.window for axis in axes]), np.array([axis.kind for axis in axes]), first, *weights
+    )  # fmt: skip
+
+
+def test_tensor_cubics_reproduce_cubics_on_any_grid():
+    axes = [make_axis("alpha", [0.0, 1.0, 1.5, 3.0, 4.0, 6.0, 7.0]), make_axis("beta", [-2.0, -1.0, 0.5, 1.0]),
+            make_axis("force", [0.0, 0.3, 1.0, 1.2, 2.0]), make_axis("torque", [0.0, 1.0, 1.5, 2.5, 3.0])]  # fmt: skip
+
+    def function(a, b, f, m):
+        return 1.0 + a**3 - 2.0 * a * b**3 + f**3 * m - a * b * f * m**3 + m**2
+
+    shape = np.array([len(axis.nodes) for axis in axes])
+    strides = np.array([int(np.prod(shape[k + 1 :])) for k in range(4)])
+    draw = np.random.default_rng(0)
+    at = np.column_stack([draw.uniform(axis.nodes[0], axis.nodes[-1], 200) for axis in axes])
+    pieces = np.column_stack([np.searchsorted(axis.nodes, at[:, k], side="right") - 1 for k, axis in enumerate(axes)])
+    left = np.column_stack([axis.nodes[pieces[:, k]] for k, axis in enumerate(axes)])
+    right = np.column_stack([axis.nodes[pieces[:, k] + 1] for k, axis in enumerate(axes)])
+    shares = (at - left) / (right - left)
+    table, found = cubic_table(axes, function), np.empty(200)
+    args = (table, packed(axes), strides, pieces, shares, np.arange(200))
+    tensor.interpolate(*args, np.zeros(4, np.int64), found)
+    np.testing.assert_allclose(found, function(*at.T), rtol=1e-5, atol=1e-5)
+    tensor.interpolate(*args, np.array([1, 0, 0, 0]), found)
+    a, b, f, m = at.T
+    np.testing.assert_allclose(found, 3 * a**2 - 2 * b**3 - b * f * m**3, rtol=1e-4, atol=1e-4)
+    tensor.interpolate(*args, np.array([0, 0, 0, 1]), found)
+    np.testing.assert_allclose(found, f**3 - 3 * a * b * f * m**2 + 2 * m, rtol=1e-4, atol=1e-4)
+
+
+@pytest.mark.parametrize("count", [17, 33])
+def test_slopes_are_of_fourth_order_and_the_remainder_is_the_error(count):
+    nodes = np.linspace(0.0, 2.0, count)
+    axis = make_axis("force", nodes)
+    values = np.sin(3.0 * nodes)
+    for i in range(2, count - 4):
+        window = values[axis.first[i] : axis.first[i] + 6]
+        width = nodes[1]
+        assert abs(axis.left[i] @ window / width - 3.0 * np.cos(3.0 * nodes[i])) < 0.05 * (3.0 * width) ** 4 * 3.0
+        middle = 0.5 * (values[i] + values[i + 1]) + 0.125 * (axis.left[i] - axis.right[i]) @ window
+        error = np.sin(3.0 * (nodes[i] + 0.5 * width)) - middle
+        scale = (3.0 * width) ** 4 / 384.0
+        assert abs(axis.remainder[i] @ window - error) < (0.1 + 1.8 * width) * scale
+
+
+def test_holes_are_filled_by_the_polynomial_of_their_neighbours():
+    x, y = np.arange(9.0), np.arange(8.0)
+    values = x[:, None] ** 3 - 2.0 * y**2 + x[:, None] * y
+    holed = values.copy()
+    holed[4, 4] = holed[0, 0] = holed[5, 5] = np.nan
+    flat = holed.ravel()
+    nodes = np.zeros((2, 9))
+    nodes[0], nodes[1, :8] = x, y
+    fill(flat, np.array([9, 8]), np.array([8, 1]), nodes)
+    np.testing.assert_allclose(flat.reshape(9, 8), values, atol=1e-9)
+
+
+PROBLEMS = [
+    (0.3, 0.9, 0.7, 1.0, 0.5, 1.0, 0.0, 0.0),
+    (1.2, 0.4, 0.4, 1.005, 0.5, 0.0, 0.2, -0.1),
+    (0.0, 1.7, 1.3, 1.01, 0.0, 1.0, -0.05, 0.0),
+]
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_the_uniform_balance_is_the_derivative_of_the_lagrangian(problem):
+    h, d, area, gamma, ratio, shear, f, m = problem
+    p, step = 0.8, 1e-5
+
+    def density(q):
+        state = kinematics(q, h, d, gamma)
+        return (p * q + f) * np.sqrt(state[0]) - area * energy(q, state, ratio, shear)[0] + m * state[3]
+
+    for q in (0.9, 1.05, 1.2):
+        first, second = balance(q, problem, p)
+        assert first == pytest.approx((density(q + step) - density(q - step)) / (2 * step), rel=1e-7, abs=1e-8)
+        slope = (balance(q + step, problem, p)[0] - balance(q - step, problem, p)[0]) / (2 * step)
+        assert second == pytest.approx(slope, rel=1e-6, abs=1e-7)
+    q = squared_stretch(problem, p)
+    assert abs(balance(q, problem, p)[0]) < 1e-12
+
+
+def point(alpha, beta, length, radius, pressure):
+    wall, c10, c01 = 1.59e-3, RUBBER.c10, RUBBER.c01
+    return np.array([alpha, beta, length, radius, wall, radius, 1.0, c10, c01, 0.0, 0.0, pressure, 1.0])
+
+
+@pytest.mark.parametrize(("alpha", "beta", "pressure"), [(30, -30, 1e5), (10, 50, 5e4), (75, -65, 2e5)])
+def test_far_from_its_ends_a_long_tube_is_uniform(alpha, beta, pressure):
+    here = point(alpha, beta, 0.6, 4e-3, pressure)[None]
+    states = np.empty((1, reference.UNIFORM))
+    reference.uniform_states(reference.LOADED, here, 1.0, states)
+    tube = Actuator(alpha=alpha, beta=beta, length=0.6, radius=4e-3, wall=1.59e-3, material=RUBBER)
+    solved = inflate(tube, pressure, x=0.0)
+    assert 4e-3 * np.sqrt(states[0, 3]) == pytest.approx(solved["mid_radius"].item(), rel=1e-8)
+    reference.uniform_states(reference.LOCKED, here, 1.0, states)
+    assert np.sqrt(states[0, 3]) == pytest.approx(closed_form.locked_stretch(alpha, beta), rel=1e-13)
+
+
+@pytest.mark.parametrize("variable", range(1, 8))
+def test_end_effects_give_back_what_was_stored(variable):
+    held = {reference.HOLDING_FORCE: reference.LENGTH_HELD, reference.HOLDING_TORQUE: reference.ROTATION_HELD}
+    kind = held.get(variable, reference.LOADED)
+    points = np.array([point(25.0, -40.0, 0.12, 5e-3, 5e4), point(20.0, 55.0, 0.1, 4e-3, 3e4)])
+    points[:, reference.HELD] = 1.0 if kind == reference.LENGTH_HELD else 0.0
+    points[:, reference.EXTENSION] = 1.002
+    states = np.empty((2, reference.UNIFORM))
+    reference.uniform_states(kind, points, 1.0, states)
+    stored = np.array(
+        [reference.restore(*reference.reference(variable, kind, points[k], states[k]), 0.3)[0] for k in (0, 1)]
+    )
+    effects, noise = np.empty(2), np.empty(2)
+    errors = 1e-9 * np.abs(stored)
+    reference.end_effects(variable, kind, points, states, np.arange(2), stored, errors, effects, noise)
+    np.testing.assert_allclose(effects, 0.3, rtol=1e-6)
+    values, estimates, bounds = np.empty((3, 2))
+    args = (effects, np.full(2, 1e-3), noise, values, estimates, bounds)
+    reference.restore_all(variable, kind, points, states, *args)
+    np.testing.assert_allclose(values, stored, rtol=1e-12)
+    assert (bounds >= errors * (1 - 1e-9)).all()
+    assert (estimates > 0.0).all()
+
+
+def test_slack_fibers_follow_from_the_stretch_in_the_middle():
+    draw = np.random.default_rng(2)
+    count = 60
+    columns = [draw.uniform(5, 70, count), draw.uniform(-70, 70, count), draw.uniform(0.08, 0.2, count),
+               draw.uniform(3e-3, 8e-3, count), draw.uniform(5e3, 1.5e5, count)]  # fmt: skip
+    points, middle, expected = [], [], []
+    for alpha, beta, length, radius, pressure in zip(*columns):
+        if abs(alpha - beta) > 3.0:
+            tube = Actuator(alpha=alpha, beta=beta, length=length, radius=radius, wall=1.59e-3, material=RUBBER)
+            solved = inflate(tube, pressure, x=0.0)
+            points.append(point(alpha, beta, length, radius, pressure))
+            middle.append(solved["mid_radius"].item())
+            expected.append(solved["slack_fiber"].item())
+    points, expected = np.array(points), np.array(expected)
+    states, found = np.empty((len(points), reference.UNIFORM)), np.empty(len(points), np.uint8)
+    reference.uniform_states(reference.LOADED, points, 1.0, states)
+    slack_families(points, states, np.array(middle), 1.0, found)
+    known = found != UNKNOWN
+    assert known.mean() > 0.9
+    np.testing.assert_array_equal(found[known], expected[known])
+    assert len(set(expected.tolist())) > 2
