@@ -67,6 +67,7 @@ class AtlasWriter:
             if self.file.digest().digest() != hashlib.sha256(content).digest():
                 raise self._misread()
             self.store = h5py.File(self.file, "r+")
+            self.variables = {name: self.store[name] for name in variables}
         except BaseException:
             self.file.discard()
             raise
@@ -84,9 +85,9 @@ class AtlasWriter:
         """Store one chunk, ``packed``; of a variable without dimensions, the number itself."""
         self.sums[name, offset] = zlib.crc32(content)
         if offset == ():
-            self.store[name][()] = content
+            self.variables[name][()] = content
         else:
-            self.store[name].id.write_direct_chunk(offset, content)
+            self.variables[name].id.write_direct_chunk(offset, content)
         self.file.check()
 
     def publish(self):
@@ -110,7 +111,10 @@ class AtlasWriter:
 
         try:
             with h5py.File(self.file, "r") as store:
-                return all(zlib.crc32(_part(store[name], offset)) == sum for (name, offset), sum in self.sums.items())
+                found = {name: store[name] for name in self.variables}
+                return all(
+                    zlib.crc32(_part(found[name], offset)) == known for (name, offset), known in self.sums.items()
+                )
         except Exception:  # whatever the HDF5 library makes of a broken structure
             return False
 
