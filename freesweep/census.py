@@ -84,7 +84,8 @@ class Census:
         self.counts = {kind: dict.fromkeys(range(len(STATUSES)), 0) for kind in KINDS}
         self.kept = {}
         self.ratios = {name: [] for name in OUTPUTS}  # bound/difference, of each audited output
-        self.audited, self.broken, self.differing = 0, 0, 0
+        self.audited, self.differing = 0, 0
+        self.breaches = []  # (output, difference/bound, design) of every broken bound
 
     def add(self, kind, designs, status):
         """Count states (n,) and keep their designs (n, 10) where there is no plain result."""
@@ -95,15 +96,21 @@ class Census:
                 if sum(map(len, kept)) < KEPT:
                     kept.append(designs[status == value])
 
-    def audit(self, states, finer):
-        """Hold records of states against those of a finer mesh."""
+    @property
+    def broken(self) -> int:
+        """Number of bounds that do not hold."""
+        return len(self.breaches)
+
+    def audit(self, designs, states, finer):
+        """Hold records of states of ``designs`` (n, 10) against those of a finer mesh."""
         both = np.isin(states["status"], VALUED) & np.isin(finer["status"], VALUED)
         self.differing += int(np.count_nonzero(np.isin(states["status"], VALUED) != np.isin(finer["status"], VALUED)))
         self.audited += int(np.count_nonzero(both))
         for k, name in enumerate(OUTPUTS):
             difference = np.abs(states["values"][both, k] - finer["values"][both, k])
             bound = states["bounds"][both, k].astype(float)
-            self.broken += int(np.count_nonzero(difference > bound + finer["bounds"][both, k]))
+            for row in np.flatnonzero(difference > bound + finer["bounds"][both, k]).tolist():
+                self.breaches.append((name, difference[row] / bound[row], designs[both][row]))
             self.ratios[name].append(bound / np.maximum(difference, 1e-300))
 
     def report(self) -> str:
@@ -145,9 +152,7 @@ class Census:
             for row in np.concatenate(kept)
         ]
         lines = [f"{len(found):,} not_converged"] if found else ["every state is solved, or has a physical reason"]
-        for kind, row in found[:LISTED]:
-            lines.append(f"  {kind}: " + ", ".join(f"{name} {value!r}" for name, value in zip(COLUMNS, row.tolist())))
-        return lines
+        return lines + [f"  {kind}: {_words(row)}" for kind, row in found[:LISTED]]
 
     def _audit(self):
         if not self.audited:
@@ -161,7 +166,13 @@ class Census:
         for name, ratios in self.ratios.items():
             all_of = np.concatenate(ratios)
             lines.append(f"  {name:<16} median bound/difference {np.median(all_of):>9.3g}, least {np.min(all_of):.3g}")
-        return lines
+        worst = sorted(self.breaches, key=lambda breach: -breach[1])[:LISTED]
+        return lines + [f"  {name} off by {ratio:.3g} times its bound: {_words(row)}" for name, ratio, row in worst]
+
+
+def _words(row):
+    """A design in full."""
+    return ", ".join(f"{name} {value!r}" for name, value in zip(COLUMNS, row.tolist()))
 
 
 def census(count, seed=0, *, audit=1000, threads=None, progress=True) -> Census:
@@ -226,7 +237,9 @@ def _solve(drawn, audited):
     job = Job(
         FREE, problems[:audited], nothing[:audited], first[: audited + 1], pressures[:audited].ravel(), [], nothing
     )
-    return counted, (states[:part], _finer(job))
+    locked = np.full((count, 1), np.inf)
+    every = _rows(drawn.designs, np.column_stack([drawn.pressures, locked])).reshape(-1, len(COLUMNS))
+    return counted, (every[:part], states[:part], _finer(job))
 
 
 def _finer(job):

@@ -57,7 +57,7 @@ def _resolve(atlas, options):
 
     comparisons, notes = resolve(atlas.data, options.resolve, options.seed)
     print("solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n")
-    print(table(comparisons), *notes, sep="\n")
+    print(*([table(comparisons)] if comparisons else []), *notes, sep="\n")
     if broken := sum(int(compared.broken.sum()) for compared in comparisons):
         raise AtlasError(f"{broken:,} stored numbers lie farther from the second method's than both errors allow")
 

@@ -41,6 +41,8 @@ def resolve(data, count, seed=0):
             " integral exists only for tubes that are the same all along"
         )
     points = _Points(data, count, seed)
+    if not points.count:
+        return [], ["no point of this atlas has a result"]
     notes = []
     found = [*_shapes(points, "", *_free(points, notes)), *_shapes(points, "locked_", *_locked(points))]
     found += [_limits(points), *_blocked(points), *_ideal(points)]
@@ -56,7 +58,7 @@ class _Points:
         good = np.flatnonzero(np.isin(status, VALUED))
         rng = np.random.default_rng(seed)
         drawn = rng.choice(good, size=min(count, len(good)), replace=False, shuffle=False)
-        self.index = dict(zip(self.dims, np.unravel_index(np.sort(drawn), self.shape)))
+        self.index = dict(zip(self.dims, np.unravel_index(np.sort(drawn), self.shape) if self.shape else ()))
         held = {name: size for name, size in data.sizes.items() if name not in self.dims}  # axes of held states only
         self.index |= {name: rng.integers(size, size=len(drawn)) for name, size in held.items()}
         self.count = len(drawn)

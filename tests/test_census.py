@@ -52,10 +52,12 @@ def test_a_bound_that_does_not_hold_is_counted():
     states["values"][1, 2] = 3e-6
     states["bounds"], finer["bounds"] = 2e-6, 1e-8
     finer["status"][2] = NOT_CONVERGED
-    found = Census(3, 0)
-    found.audit(states, finer)
+    found, designs = Census(3, 0), np.arange(30.0).reshape(3, 10)
+    found.audit(designs, states, finer)
     assert (found.audited, found.broken, found.differing) == (2, 1, 1)
-    assert f"{2 * len(OUTPUTS)} bounds, 1 broken (10 %); 1 states" in found.report()
+    report = found.report()
+    assert f"{2 * len(OUTPUTS)} bounds, 1 broken (10 %); 1 states" in report
+    assert "rotation off by 1.5 times its bound: alpha 10.0, beta 11.0" in report
 
 
 def test_defects_are_listed_in_full_and_failures_by_where_they_lie():

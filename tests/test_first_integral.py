@@ -210,6 +210,15 @@ def test_a_number_outside_its_bound_is_found(atlas, tmp_path, capsys):
     assert "1 stored numbers lie farther" in capsys.readouterr().err
 
 
+def test_atlases_of_one_point_and_of_none(atlas):
+    with open_atlas(atlas) as opened:
+        one = opened.data.isel({name: -1 for name in opened.data["status"].dims})
+        comparisons, _ = resolve(one, 5)
+        assert {len(compared.difference) for compared in comparisons if compared.name == "rotation"} == {1}
+        none = opened.data.isel(alpha=[2], beta=[1])  # alpha = beta: degenerate
+        assert resolve(none, 5) == ([], ["no point of this atlas has a result"])
+
+
 def test_what_cannot_be_solved_anew_is_refused(atlas, capsys):
     with open_atlas(atlas) as opened, pytest.raises(ValueError, match="alpha is no number in this atlas"):
         resolve(opened.data.isel(alpha=0).drop_vars("alpha"), 5)
