@@ -84,7 +84,7 @@ class Census:
         self.counts = {kind: dict.fromkeys(range(len(STATUSES)), 0) for kind in KINDS}
         self.kept = {}
         self.ratios = {name: [] for name in OUTPUTS}  # bound/difference, of each audited output
-        self.audited, self.differing = 0, 0
+        self.audited, self.differing, self.acquitted = 0, 0, 0
         self.breaches = []  # (output, difference/bound, design) of every broken bound
 
     def add(self, kind, designs, status):
@@ -102,16 +102,28 @@ class Census:
         return len(self.breaches)
 
     def audit(self, designs, states, finer):
-        """Hold records of states of ``designs`` (n, 10) against those of a finer mesh."""
-        both = np.isin(states["status"], VALUED) & np.isin(finer["status"], VALUED)
-        self.differing += int(np.count_nonzero(np.isin(states["status"], VALUED) != np.isin(finer["status"], VALUED)))
-        self.audited += int(np.count_nonzero(both))
-        for k, name in enumerate(OUTPUTS):
-            difference = np.abs(states["values"][both, k] - finer["values"][both, k])
-            bound = states["bounds"][both, k].astype(float)
-            for row in np.flatnonzero(difference > bound + finer["bounds"][both, k]).tolist():
-                self.breaches.append((name, difference[row] / bound[row], designs[both][row]))
-            self.ratios[name].append(bound / np.maximum(difference, 1e-300))
+        """Hold records of states of ``designs`` (n, 10) against those of a finer mesh; where the two contradict each
+        other, quadrature of the first integral decides.
+        """
+        valued = np.isin(states["status"], VALUED), np.isin(finer["status"], VALUED)
+        self.differing += int(np.count_nonzero(valued[0] != valued[1]))
+        both = valued[0] & valued[1]
+        designs, states, finer = designs[both], states[both], finer[both]
+        self.audited += len(states)
+        bounds, difference = states["bounds"].astype(float), np.abs(states["values"] - finer["values"])
+        for name, ratios in zip(OUTPUTS, (bounds / np.maximum(difference, 1e-300)).T):
+            self.ratios[name].append(ratios)
+        apart = difference > bounds + finer["bounds"]
+        if (rows := np.flatnonzero(apart.any(axis=1))).size:
+            exact, own = quadrature(designs[rows], states["values"][rows, 4])
+            missed = np.abs(states["values"][rows] - exact)
+            missed = np.where(np.isnan(missed), difference[rows], missed)
+            for row, k in np.argwhere(apart[rows]).tolist():
+                if missed[row, k] <= bounds[rows[row], k] + np.nan_to_num(own[row, k]):
+                    self.acquitted += 1
+                else:
+                    ratio = missed[row, k] / bounds[rows[row], k]
+                    self.breaches.append((OUTPUTS[k], ratio, designs[rows[row]]))
 
     def report(self) -> str:
         """Counts, the ranges in which failures lie, and the audit, in words."""
@@ -163,11 +175,36 @@ class Census:
             f"bounds held against a mesh {FINER} times finer: {self.audited:,} states, {every:,} bounds, {self.broken:,}"
             f" broken ({100.0 * self.broken / every:.3g} %); {self.differing:,} states with a result on one mesh only",
         ]
+        if self.acquitted:
+            lines.append(
+                f"  {self.acquitted:,} more seemed broken, but quadrature of the first integral confirms them: the finer"
+                " mesh is off"
+            )
         for name, ratios in self.ratios.items():
             all_of = np.concatenate(ratios)
             lines.append(f"  {name:<16} median bound/difference {np.median(all_of):>9.3g}, least {np.min(all_of):.3g}")
         worst = sorted(self.breaches, key=lambda breach: -breach[1])[:LISTED]
         return lines + [f"  {name} off by {ratio:.3g} times its bound: {_words(row)}" for name, ratio, row in worst]
+
+
+def quadrature(designs, mid_radius):
+    """Values and errors (n, 5) of ``designs`` (n, 10) by the second method, as the kernels give them; NaN: not judged."""
+    from .first_integral.folded import solve_near
+    from .first_integral.tube import SOLVED, solve
+    from .first_integral.uniform import Tubes
+
+    alpha, beta, length, wall, gamma, ratio, force, torque, pressure, full = designs.T
+    ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
+    loaded = np.isfinite(pressure)
+    loads = np.where(loaded, pressure, 1.0), np.where(loaded, force, 0.0), np.where(loaded, torque, 0.0)
+    area, half = wall * (2.0 + wall), 0.5 * length
+    tubes = Tubes(0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, *loads, loaded.astype(float), half)
+    found = solve(tubes, loads[0])
+    if (lost := np.flatnonzero(found.reason != SOLVED)).size:
+        again = solve_near(tubes.at(lost), mid_radius[lost])
+        found.values[lost], found.errors[lost] = again.values, again.errors
+    of_half = np.array([0.5, 0.5, 0.5, 0.5, 1.0])
+    return found.values * of_half, found.errors * of_half
 
 
 def _words(row):

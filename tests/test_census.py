@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from commands import refused, run
 
-from freesweep.census import BLOCK, COLUMNS, PRESSURES, Census, census, draw
+from freesweep.census import BLOCK, COLUMNS, PRESSURES, Census, census, draw, quadrature
 from freesweep.scaling import OUTPUTS
 from freesweep.status import NOT_CONVERGED, OK
 from freesweep.sweep.records import FREE_STATE
@@ -47,17 +47,28 @@ def test_threads_change_nothing(small):
     assert alone.report() == small.report()
 
 
-def test_a_bound_that_does_not_hold_is_counted():
-    states, finer = np.zeros(3, FREE_STATE), np.zeros(3, FREE_STATE)
-    states["values"][1, 2] = 3e-6
-    states["bounds"], finer["bounds"] = 2e-6, 1e-8
-    finer["status"][2] = NOT_CONVERGED
-    found, designs = Census(3, 0), np.arange(30.0).reshape(3, 10)
+def records(designs, values):
+    found = np.zeros(len(designs), FREE_STATE)
+    found["values"], found["bounds"] = values, 1e-8
+    return found
+
+
+def test_a_bound_that_does_not_hold_is_counted_and_the_quadrature_decides_which():
+    design = np.array([30.0, -50.0, 10.0, 0.3, 1.0, 0.5, 0.0, 0.0, 0.8, 1.0])
+    designs = np.array([design, design, design, design])
+    exact, own = quadrature(designs, np.ones(4))
+    assert np.all(own < 1e-10)
+    states, finer = records(designs, exact), records(designs, exact)
+    states["values"][1, 2] += 3e-8  # beyond its bound
+    finer["values"][2, 0] += 3e-8  # the reference is off
+    finer["status"][3] = NOT_CONVERGED
+    found = Census(4, 0)
     found.audit(designs, states, finer)
-    assert (found.audited, found.broken, found.differing) == (2, 1, 1)
+    assert (found.audited, found.broken, found.acquitted, found.differing) == (3, 1, 1, 1)
     report = found.report()
-    assert f"{2 * len(OUTPUTS)} bounds, 1 broken (10 %); 1 states" in report
-    assert "rotation off by 1.5 times its bound: alpha 10.0, beta 11.0" in report
+    assert f"{3 * len(OUTPUTS)} bounds, 1 broken (6.67 %); 1 states" in report
+    assert "1 more seemed broken" in report
+    assert "rotation off by 3 times its bound: alpha 30.0, beta -50.0" in report
 
 
 def test_defects_are_listed_in_full_and_failures_by_where_they_lie():
