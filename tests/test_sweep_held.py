@@ -133,7 +133,7 @@ def test_the_map_of_blocked_torque_turns_its_sign_in_the_mirror(data):
     quadrant = data.sel(alpha=[-20.0, 0.0], beta=[-40.0, -30.0])  # the other one is its mirror
     sheet = plane(quadrant, "blocked_torque", point)
     assert own != 0.0
-    assert sheet.values[sheet.beta.tolist().index(40.0), sheet.alpha.tolist().index(20.0)] == -own
+    assert sheet.values[sheet.y.tolist().index(40.0), sheet.x.tolist().index(20.0)] == -own
     with pytest.raises(ValueError, match="fewer than two nodes"):  # the mirror would hold the other rotation
         plane(quadrant, "blocked_torque", point | {"held_rotation": -8.0})
 
