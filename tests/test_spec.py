@@ -450,6 +450,8 @@ def test_the_shipped_sweeps_have_the_size_they_say():
         "design-space",
         "prototypes",
         "quick",
+        "validity-full",
+        "validity-principal",
     ]
     quick, space, prototypes = (read_file(SWEEPS / f"{name}.toml") for name in ("quick", "design-space", "prototypes"))
     assert quick.points == 25_092
@@ -460,6 +462,11 @@ def test_the_shipped_sweeps_have_the_size_they_say():
     assert prototypes.designs["names"] == ("McKibben 30", "McKibben 35", "McKibben 40", "A", "B", "C")
     assert prototypes.designs["columns"]["c01"].tolist() == [60e3, 120e3, 100e3, 80e3, 80e3, 80e3]
     assert prototypes.axes["pressure"][-1] == 200e3
+    for energy in ("full", "principal"):
+        validity = read_file(SWEEPS / f"validity-{energy}.toml")
+        assert validity.energy == energy
+        assert validity.points == 15_750
+        assert "15 750" in validity.text
 
 
 def test_a_file_with_a_byte_order_mark_and_windows_line_ends_is_read(tmp_path):
