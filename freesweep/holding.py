@@ -1,4 +1,9 @@
-"""Blocked force and blocked torque: the deformed length or the rotation of the free end is held (Eqs. 2.16 - 2.22)."""
+"""Blocked force and blocked torque: the deformed length or the rotation of the free end is held (Eqs. 2.16 - 2.22).
+
+Where several states are possible, the one given lies on the branch that begins without load: pressure, the load that is
+given and fiber extension - 1 rise in proportion while the undeformed length (no rotation) is held, then what is held changes
+to the value asked for.
+"""
 
 import numpy as np
 
@@ -12,7 +17,14 @@ HALF_CELLS = 48  # of half a tube that is the same all along
 CORRECTION_STATIONS = 2001
 
 
-def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *, x=None, accuracy=1e-6):
+BOTH_HELD = (
+    "length and rotation are held both: force and torque are then not separately determined, only"
+    " F = -pi r^2 P (1 + 2/(tan alpha tan beta)) + M (tan alpha + tan beta)/(r tan alpha tan beta); hold one, give the load"
+    " that works on the other"
+)
+
+
+def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *, rotation=None, x=None, accuracy=1e-6):
     """The axial force that holds the deformed length, the free end being free to rotate (Eqs. 2.16, 2.18).
 
     Parameters
@@ -20,17 +32,22 @@ def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *,
     tube : the actuator; any profile and fiber extension
     pressure, torque : number or 1-D array [Pa, N m]
     deformed_length : held length [m], number or 1-D array (a force-stroke curve); default: the undeformed length
+    rotation : None; a held rotation beside the held length is refused, with the reason
     x, accuracy : as in :func:`freesweep.lock`
 
     Returns a Dataset with ``force`` [N], positive in tension, on the coordinate ``deformed_length``, and what else deforms.
     Where the wall would have to be pushed (region I, low pressure with fiber extension) there is no result: status 3.
     Raises :class:`ActuatorError`.
     """
+    if rotation is not None:
+        raise ActuatorError([f"rotation: {BOTH_HELD}"])
     held = tube.length if deformed_length is None and isinstance(tube, Actuator) else deformed_length
     return _hold(tube, "deformed_length", held, "torque", torque, "force", pressure, x, accuracy)
 
 
-def blocked_torque(tube: Actuator, pressure, rotation=0.0, force=0.0, *, buckled=False, x=None, accuracy=1e-6):
+def blocked_torque(
+    tube: Actuator, pressure, rotation=0.0, force=0.0, *, deformed_length=None, buckled=False, x=None, accuracy=1e-6
+):
     """The torque that holds the rotation of the free end, the length being free (Eqs. 2.19, 2.20).
 
     Parameters
@@ -38,6 +55,7 @@ def blocked_torque(tube: Actuator, pressure, rotation=0.0, force=0.0, *, buckled
     tube : the actuator; any profile and fiber extension, but alpha = -beta has no rotation to hold
     pressure, force : number or 1-D array [Pa, N]
     rotation : held rotation [degree], number or 1-D array (a torque-rotation curve)
+    deformed_length : None; a held length beside the held rotation is refused, with the reason
     buckled : beyond the critical pressure (:func:`freesweep.closed_form.critical_pressure`) the straight cylinder is
         unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Below
         that pressure there is none: status 4
@@ -46,6 +64,8 @@ def blocked_torque(tube: Actuator, pressure, rotation=0.0, force=0.0, *, buckled
     Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``
     counts every mode of the whole tube while the rotation stays held. Raises :class:`ActuatorError`.
     """
+    if deformed_length is not None:
+        raise ActuatorError([f"deformed_length: {BOTH_HELD}"])
     if not isinstance(buckled, bool):
         raise ActuatorError([f"buckled: found {buckled!r:.40}; give True or False"])
     if isinstance(tube, Actuator):

@@ -40,6 +40,8 @@ def table(dataset) -> str:
         lines.append(f"limit pressure: {dataset['limit_pressure'].item() * 1e-3:.6g} kPa")
     if bool((dataset["slack_fiber"] > 0).any()):
         lines.append("slack: the state relies on a fiber family that would have to push somewhere; fibers cannot")
+    if any("unstable" in row[-1] for row in rows):
+        lines.append("unstable: an equilibrium that the smallest disturbance makes the tube leave")
     if not all(int(value) in VALUED for value in dataset["status"].values.ravel()):
         lines.append("a dash stands where there is no result")
     return "\n".join(lines)

@@ -17,12 +17,14 @@ STATUSES = (
     Status(
         2,
         "beyond_limit_pressure",
-        "the branch from zero pressure ended at a lower pressure (limit_pressure; NaN: at part of the other loads)",
+        "the branch from zero pressure ended at a lower pressure (limit_pressure; NaN: at part of the other loads): the tube"
+        " snaps there, and no rising pressure leads to the locked shape without that snap",
     ),
     Status(
         3,
         "meridional_compression",
-        "the wall would have to be pushed along its length (p y^2 + f <= 0); raise the pressure or the axial force",
+        "the wall would have to be pushed along its length (p y^2 + f <= 0): it wrinkles; raise the pressure or the axial"
+        " force (a held length that needs a push at any pressure, as of fibers that both lean the same way, has no result)",
     ),
     Status(
         4,
@@ -58,6 +60,13 @@ FLAGS = {
 }
 
 
+FLAG_COMMENTS = {
+    "stable": "0 also where there is no result: read the status first. The smallest disturbance ends an unstable state",
+    "limit_found": "0 also where no branch was followed: read the status first. Beyond a limit pressure the tube snaps",
+    "slack_fiber": "0 also where there is no result. A family that would have to push cannot: the tube deforms otherwise",
+}
+
+
 def status_attributes() -> dict:
     """CF attributes of a status variable."""
     return {"flag_values": [s.value for s in STATUSES], "flag_meanings": " ".join(s.meaning for s in STATUSES)}
@@ -65,4 +74,5 @@ def status_attributes() -> dict:
 
 def flag_attributes(name: str) -> dict:
     """CF attributes of one of FLAGS."""
-    return {"flag_values": list(FLAGS[name]), "flag_meanings": " ".join(FLAGS[name].values())}
+    meanings = " ".join(FLAGS[name].values())
+    return {"flag_values": list(FLAGS[name]), "flag_meanings": meanings, "comment": FLAG_COMMENTS[name]}

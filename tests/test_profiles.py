@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 import pytest
-from test_holding import by_collocation
+from held_tubes import by_collocation
 
 from freesweep import Actuator, ActuatorError, MooneyRivlin, closed_form, inflate, lock
 from freesweep.atlas.schema import PROFILES

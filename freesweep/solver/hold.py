@@ -1,117 +1,29 @@
 """Held states: the deformed length or the rotation of the free end is given, the force or the torque that keeps it unknown.
 
-The straight cylinder y = 1 of a tube that is the same all along is an equilibrium under the load that makes L_y(1, 0) = 0.
-From there one march leads to the state asked for: the course along the tube, the held quantity and the pressure change in
-small steps, the multiplier follows. Beyond a critical pressure of blocked torque the cylinder is unstable (its first mode
-is antisymmetric); ``buckled`` starts from that mode instead, and takes the stable state beside it.
-"""
+The state meant is the one on the branch that begins without load: pressure, the other load and fiber extension - 1 rise in
+proportion while the undeformed length (no rotation) is held, then what is held changes to its target; the multiplier
+follows in small steps. The straight cylinder y = 1 of a tube that is the same all along is an equilibrium on this way under
+the load that makes L_y(1, 0) = 0: there the march begins at once. A tube that varies goes all of it (``march.from_rest``);
+only where its wall would have to be pushed on the way, it is blended from a straight one at the load asked for.
 
-from math import pi, sin
+Beyond a critical pressure of blocked torque the cylinder is unstable (its first mode is antisymmetric); ``buckled``
+starts from that mode instead, and takes the stable state beside it.
+"""
 
 import numpy as np
 
 from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested, newton
 from .branch import GAMMA, RATIO, SHEAR
-from .climb import largest_drift, pushed, regraded
-from .course import fill
+from .climb import pushed
+from .march import LOWERINGS, begin, buckled_at, cylinder_multiplier, from_rest, march
 from .profile import FIELDS, at_stations
 from .slack import slack_fibers
 from .stability import unstable_directions
 from .status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
-from .uniform import between
 
 HELD_LENGTH, HELD_ROTATION = 0, 1
-STEP, SMALLEST_STEP = 0.1, 1e-4  # of a march
-LARGEST_STEP_CHANGE = 0.05  # relative change of y in one step of a march
 RAISES = 40  # of the pressure by a half, until the wall of the starting cylinder is under tension
-AMPLITUDES = (0.02, 0.04, 0.08, 0.15, 0.25, 0.35)  # of the antisymmetric mode, tried in turn
-LOWERING, LOWERINGS = 0.93, 16  # of the pressure, until the buckled state is found; then up again
-BUCKLED = 1e-4  # |y - 1| from which a state counts as buckled
-
-
-@kernel
-def cylinder_multiplier(cell, load, direction):
-    """The multiplier that makes y = 1 an equilibrium of a tube that is ``cell`` all along."""
-    return -lagrangian.density(1.0, 0.0, cell, load)[1] / lagrangian.conjugate(1.0, 0.0, cell, load, direction)[1]
-
-
-@kernel
-def blend(course, cell, t, out):
-    """The course a fraction ``t`` of the way from a tube that is ``cell`` all along."""
-    for s in range(course.shape[0]):
-        for piece in range(course.shape[1]):
-            for k in range(3):
-                for power in range(4):
-                    start = cell[k] if power == 0 else 0.0
-                    out[s, piece, k, power] = start + t * (course[s, piece, k, power] - start)
-
-
-@kernel
-def march(x, y, tube, course, cell, start, end, direction, mu, first, target, tolerance, work):
-    """From the tube ``cell`` at load ``start`` with ``first`` held to ``course`` at ``end`` with ``target`` held.
-
-    ``tube`` holds the course that is changed on the way. Returns ``(status, multiplier)``.
-    """
-    own, edges, cells, free, _, _ = tube
-    n = len(x) - 1
-    kept_x, kept_y, kept_mu = np.empty(n + 1), np.empty(n + 1), mu
-    t, step = 0.0, STEP
-    while t < 1.0:
-        for i in range(n + 1):
-            kept_x[i], kept_y[i] = x[i], y[i]
-        ahead = min(1.0, t + step)
-        blend(course, cell, ahead, own)
-        load = between(start, end, ahead)
-        status, _, mu, _ = held.solve_held(
-            lagrangian.density, lagrangian.conjugate, x, y, n, free, fill(own, edges, x, n, n, cells), load, direction,
-            kept_mu, first + ahead * (target - first), tolerance, work,
-        )  # fmt: skip
-        if status == newton.CONVERGED and largest_drift(y, kept_y) < LARGEST_STEP_CHANGE:
-            t, step, kept_mu = ahead, 1.6 * step, mu
-            regraded(x, y, n, tube, held.loaded(load, direction, mu), work)
-            continue
-        for i in range(n + 1):
-            x[i], y[i] = kept_x[i], kept_y[i]
-        step *= 0.5
-        if step < SMALLEST_STEP:
-            last = held.loaded(between(start, end, t), direction, kept_mu)
-            return (COMPRESSED if pushed(y, last) else HELD_IMPOSSIBLE), kept_mu
-    blend(course, cell, 1.0, own)
-    return OK, kept_mu
-
-
-@kernel
-def buckle(x, y, tube, load, direction, mu, target, work):
-    """A stable state beside the straight cylinder, swollen in its first half; returns ``(status, multiplier)``."""
-    course, edges, cells, free, _, places = tube
-    n = len(x) - 1
-    for amplitude in AMPLITUDES:
-        even_mesh(x, places, edges)
-        for i in range(n + 1):
-            y[i] = 1.0 + amplitude * sin(2.0 * pi * x[i] / x[n])
-        status, unstable, trial, _ = held.solve_held(
-            lagrangian.density, lagrangian.conjugate, x, y, n, free, fill(course, edges, x, n, n, cells), load, direction,
-            mu, target, 1e-11, work,
-        )  # fmt: skip
-        largest = 0.0
-        for i in range(n + 1):
-            largest = max(largest, abs(y[i] - 1.0))
-        if status == newton.CONVERGED and unstable == 0 and largest > BUCKLED:
-            if y[n // 4] < 1.0:  # the mirror image is as good a state: keep to one of the two
-                for i in range(n // 2):
-                    y[i], y[n - i] = y[n - i], y[i]
-            return OK, trial
-    return HELD_IMPOSSIBLE, mu
-
-
-@kernel
-def even_mesh(x, places, edges):
-    """Equal cells within each segment."""
-    for s in range(len(edges) - 1):
-        a, b = edges[s], edges[s + 1]
-        for i in range(a, b + 1):
-            x[i] = places[s] + (places[s + 1] - places[s]) * (i - a) / (b - a)
 
 
 @kernel
@@ -146,29 +58,28 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     scale = max(abs(mu), p)
     direction = tuple_times(unit, scale)
     mu /= scale
-    even_mesh(x, places, edges)
-    for i in range(base + 1):
-        y[i] = 1.0
+    begin(x, y, tube)
     first = lagrangian.conjugate(1.0, 0.0, cell, start, unit)[0] * total * scale
     wanted = target * scale
     found, regrades = OK, 1
+    varying = course.shape[0] > 1 or course.shape[1] > 1
     for tries in range(2):  # a buckled shape that no mesh holds is come to from a lower pressure
         if buckled:
-            lower, actual = load, guide.cell_along(tube, 0.5)
-            found = HELD_IMPOSSIBLE
-            # close above the critical pressure the mode is small: there it is found
-            for attempt in range(tries, LOWERINGS):
-                lower = (gamma, problem[RATIO], problem[SHEAR], p * LOWERING**attempt, force, torque, 1.0)
-                found, mu = buckle(x, y, tube, lower, direction, mu, wanted, work)
-                if found == OK:
-                    break
-            if found == OK and lower[3] != p:
-                found, mu = march(x, y, tube, course, actual, lower, load, direction, mu, wanted, wanted, 1e-10, work)
+            found, mu = buckled_at(x, y, tube, course, load, (tries, LOWERINGS), direction, mu, wanted, work)
         else:
-            found, mu = march(x, y, tube, course, cell, start, start, direction, mu, first, wanted, 1e-10, work)
-            if found == OK and start[3] != p:
-                actual = guide.cell_along(tube, 0.5)
-                found, mu = march(x, y, tube, course, actual, start, load, direction, mu, wanted, wanted, 1e-10, work)
+            if varying:
+                natural = total * scale if kind == HELD_LENGTH else 0.0
+                found, mu = from_rest(x, y, tube, course, cell, load, direction, natural, wanted, work)
+            if not varying or found == COMPRESSED:
+                begin(x, y, tube)
+                mu = cylinder_multiplier(cell, start, direction)
+                found, mu = march(
+                    x, y, tube, course, cell, True, start, start, direction, mu, first, wanted, 1e-10, work
+                )
+                if found == OK and start[3] != p:
+                    found, mu = march(
+                        x, y, tube, course, cell, False, start, load, direction, mu, wanted, wanted, 1e-10, work
+                    )
         if found != OK:
             return found, 0, 0, 0.0, load
         status, _, doublings, _ = nested.solve(
