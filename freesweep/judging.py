@@ -78,7 +78,7 @@ def _run_bench(options):
 
 
 def _run_census(options):
-    from .census import census
+    from .census.run import census
 
     found = census(
         options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from commands import refused, run
 
-from freesweep.census import BLOCK, COLUMNS, PRESSURES, Census, census, draw, quadrature
+from freesweep.census.count import Census
+from freesweep.census.designs import BLOCK, COLUMNS, PRESSURES, draw, quadrature
+from freesweep.census.run import census
 from freesweep.scaling import OUTPUTS
 from freesweep.status import NOT_CONVERGED, OK
 from freesweep.sweep.records import FREE_STATE

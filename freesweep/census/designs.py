@@ -1,0 +1,77 @@
+"""The designs of a census: drawn over the whole domain, and solved by the second method where that is asked."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+BLOCK = 256  # designs that are drawn, solved and counted together
+PRESSURES = 4  # of each design, beside its locked shape
+COLUMNS = (
+    "alpha", "beta", "length/radius", "wall/radius", "fiber_extension", "c01/c10", "force", "torque", "pressure", "full",
+)  # fmt: skip
+
+
+class Drawn(NamedTuple):
+    """Designs (n, 10): COLUMNS but pressure, angles in degrees, loads in pi r^2 C10 and pi r^3 C10; ``pressures`` (n, m)."""
+
+    designs: np.ndarray
+    pressures: np.ndarray
+
+    def problems(self):
+        """As the kernels take them (n, 9)."""
+        alpha, beta, length, wall, gamma, ratio, force, torque, full = self.designs.T
+        ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
+        columns = (0.5 * (ta + tb), 0.5 * (ta - tb), wall * (2.0 + wall), gamma, ratio, full, force, torque, length)
+        return np.column_stack(columns)
+
+
+def draw(count, seed, block) -> Drawn:
+    """Random designs of one block: angles 2..85 degrees of both signs and half a degree apart, length/radius 2..200,
+    wall/radius 0.03..1, fiber extension 1 (half of them) to 1.02, C01/C10 0..2, force -1..3, torque -1.5..1.5 (each 0 in two
+    of five), both strain energies, P/C10 0.003..10.
+    """
+    rng = np.random.default_rng([seed, block])
+    signs = rng.choice([-1.0, 1.0], (2, BLOCK))
+    alpha, beta = signs * rng.uniform(2.0, 85.0, (2, BLOCK))
+    beta = np.where(np.abs(alpha - beta) < 0.5, -beta, beta)
+    columns = [
+        alpha, beta, _spread(rng, 2.0, 200.0), _spread(rng, 0.03, 1.0),
+        np.where(rng.random(BLOCK) < 0.5, 1.0, rng.uniform(1.0, 1.02, BLOCK)),
+        np.where(rng.random(BLOCK) < 0.25, 0.0, rng.uniform(0.0, 2.0, BLOCK)),
+        np.where(rng.random(BLOCK) < 0.4, 0.0, rng.uniform(-1.0, 3.0, BLOCK)),
+        np.where(rng.random(BLOCK) < 0.4, 0.0, rng.uniform(-1.5, 1.5, BLOCK)),
+        np.where(rng.random(BLOCK) < 0.5, 1.0, 0.0),
+    ]  # fmt: skip
+    pressures = np.sort(_spread(rng, 0.003, 10.0, (BLOCK, PRESSURES)), axis=1)
+    return Drawn(np.column_stack(columns)[:count], pressures[:count])
+
+
+def _spread(rng, low, high, shape=BLOCK):
+    """Numbers of evenly spread size."""
+    return np.exp(rng.uniform(np.log(low), np.log(high), shape))
+
+
+def with_pressures(designs, pressures):
+    """Designs with each of their pressures (n, m, 10), in the order of COLUMNS."""
+    repeated = np.broadcast_to(designs[:, None, :], (*pressures.shape, designs.shape[1]))
+    return np.concatenate([repeated[..., :8], pressures[..., None], repeated[..., 8:]], axis=2)
+
+
+def quadrature(designs, mid_radius):
+    """Values and errors (n, 5) of ``designs`` (n, 10) by the second method, as the kernels give them; NaN: not judged."""
+    from ..first_integral.folded import solve_near
+    from ..first_integral.tube import SOLVED, solve
+    from ..first_integral.uniform import Tubes
+
+    alpha, beta, length, wall, gamma, ratio, force, torque, pressure, full = designs.T
+    ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
+    loaded = np.isfinite(pressure)
+    loads = np.where(loaded, pressure, 1.0), np.where(loaded, force, 0.0), np.where(loaded, torque, 0.0)
+    area, half = wall * (2.0 + wall), 0.5 * length
+    tubes = Tubes(0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, *loads, loaded.astype(float), half)
+    found = solve(tubes, loads[0])
+    if (lost := np.flatnonzero(found.reason != SOLVED)).size:
+        again = solve_near(tubes.at(lost), mid_radius[lost])
+        found.values[lost], found.errors[lost] = again.values, again.errors
+    of_half = np.array([0.5, 0.5, 0.5, 0.5, 1.0])
+    return found.values * of_half, found.errors * of_half

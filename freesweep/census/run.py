@@ -1,0 +1,93 @@
+"""Solves the designs of a census on threads, and counts what became of them."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from .count import FINER, Census
+from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures
+
+HELD_EVERY = 16  # one design in that many is also held at its length and at its rotation
+ACCURACY, AUDIT_ACCURACY = 1e-6, 1e-8
+
+
+def census(count, seed=0, *, audit=1000, threads=None, progress=True) -> Census:
+    """Draw ``count`` designs, solve them, count their statuses, and audit the bounds of about ``audit`` states.
+
+    Raises ValueError for numbers below what makes sense. No result depends on ``threads`` (default: one for each core).
+    """
+    from ..sweep.estimate import cores
+
+    faults = [f"{name}: found {n}; give 1 or more" for name, n in (("N", count), ("threads", threads or 1)) if n < 1]
+    faults += [f"audit: found {audit}; give 0 or more"] if audit < 0 else []
+    faults += [f"seed: found {seed}; give 0 or more"] if seed < 0 else []
+    if faults:
+        raise ValueError("\n".join(faults))
+    blocks = -(-count // BLOCK)
+    audited = -(-audit // (blocks * (PRESSURES + 1)))  # designs of each block
+    found = Census(count, seed)
+
+    def run(block):
+        size = min(BLOCK, count - block * BLOCK)
+        return size, *_solve(draw(size, seed, block), min(size, audited))
+
+    _solve(draw(1, seed, 0), 0)  # compiles, or loads what is compiled
+    with ThreadPoolExecutor(threads or cores()) as pool, _bar(count, progress) as bar:
+        for first in range(0, blocks, 64):  # a few at a time: what is done is counted and let go
+            for size, counted, compared in pool.map(run, range(first, min(first + 64, blocks))):
+                for kind, designs, status in counted:
+                    found.add(kind, designs, status)
+                if compared:
+                    found.audit(*compared)
+                bar.update(size)
+    return found
+
+
+def _solve(drawn, audited):
+    """``(kind, designs with pressures, status)`` of all states of a block, and its audited records beside finer ones."""
+    from ..sweep.plan import FREE, Job
+    from ..sweep.solve import solve_shard
+
+    problems, count = drawn.problems(), len(drawn.designs)
+    nothing = np.zeros(count)
+    pressures = np.column_stack([drawn.pressures, np.full(count, np.inf)])
+    first = np.arange(count + 1, dtype=np.int64) * pressures.shape[1]
+    states, _ = solve_shard(Job(FREE, problems, nothing, first, pressures.ravel(), [], nothing), ACCURACY)
+    counted = []
+    grid = states["status"].reshape(count, -1)
+    rows = with_pressures(drawn.designs, drawn.pressures)
+    counted.append(("free", rows.reshape(-1, len(COLUMNS)), grid[:, :-1].ravel()))
+    counted.append(("locked", rows[:, -1], grid[:, -1]))
+    for kind, load, target in (("blocked_force", 6, problems[:, 8]), ("blocked_torque", 7, nothing)):
+        some = slice(0, count, HELD_EVERY)
+        held, unloaded = problems[some].copy(), drawn.designs[some].copy()
+        held[:, load], unloaded[:, load] = 0.0, 0.0
+        each = np.arange(len(held) + 1, dtype=np.int64)
+        job = Job(kind, held, target[some], each, drawn.pressures[some, -1].copy(), [], nothing[some])
+        counted.append(
+            (kind, with_pressures(unloaded, drawn.pressures[some, -1:])[:, 0], solve_shard(job, ACCURACY)[0]["status"])
+        )
+    if not audited:
+        return counted, None
+    part = first[audited]
+    job = Job(
+        FREE, problems[:audited], nothing[:audited], first[: audited + 1], pressures[:audited].ravel(), [], nothing
+    )
+    locked = np.full((count, 1), np.inf)
+    every = with_pressures(drawn.designs, np.column_stack([drawn.pressures, locked])).reshape(-1, len(COLUMNS))
+    return counted, (every[:part], states[:part], _finer(job))
+
+
+def _finer(job):
+    """Records of a job on a finer mesh."""
+    from ..sweep import solve
+
+    edges = np.array([0, FINER * solve.BASE_CELLS])
+    tube = (solve.UNIFORM[0], edges, solve.UNIFORM[2])
+    return solve._solve_free(job.kind, job.problems, job.targets, job.first, job.pressures, tube, AUDIT_ACCURACY)[0]
+
+
+def _bar(total, progress):
+    from tqdm import tqdm
+
+    return tqdm(total=total, unit=" designs", unit_scale=True, disable=not progress, dynamic_ncols=True)
