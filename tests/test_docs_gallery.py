@@ -4,6 +4,12 @@ import re
 import shlex
 from pathlib import Path
 
+import matplotlib
+
+matplotlib.use("Agg")
+
+from matplotlib import pyplot
+
 from freesweep.cli import parser
 
 DOCS = Path(__file__).parent.parent / "docs"
@@ -39,3 +45,11 @@ def test_sweeps_are_there():
 def test_pictures_are_small():
     for path in (DOCS / "gallery").iterdir():
         assert path.stat().st_size <= LARGEST, path.name
+
+
+def test_python_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"^```python\n(.*?)^```", TEXT, re.DOTALL | re.MULTILINE)
+    exec(compile(code, "gallery.md", "exec"), {})
+    pyplot.close("all")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["locked.png", "rotation.svg"]

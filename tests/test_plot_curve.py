@@ -9,10 +9,12 @@ matplotlib.use("Agg")
 
 from commands import refused, run
 from matplotlib import pyplot
+from matplotlib.colors import to_rgb
 
 from freesweep import status
 from freesweep.atlas import schema
 from freesweep.atlas.store import save_atlas
+from freesweep.plot import style
 from freesweep.plot.curve import MOST, curve, spread
 
 ANGLES, PRESSURES = np.linspace(10.0, 80.0, 8), np.linspace(0.0, 2e5, 11)
@@ -91,6 +93,14 @@ def test_slack_parts_are_thin_and_unstable_nodes_are_circles(data):
     np.testing.assert_allclose(circles.get_xdata(), PRESSURES[PRESSURES > 1.5e5] * 1e-3)
     words = [text.get_text().replace("\n", " ") for text in ax.texts if text.get_gid() == "chosen"]
     assert "open circles: unstable" in words[0]
+
+
+def test_type_is_dark_enough_to_read():
+    for colour in (*style.SERIES, *style.ramp(9)):
+        rgb = np.array(to_rgb(style.legible(colour)))
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        assert 1.05 / (linear @ [0.2126, 0.7152, 0.0722] + 0.05) > 3.5  # contrast to white
+    assert style.legible(style.INK) == style.INK
 
 
 def test_many_nodes_give_a_few_lines_first_and_last_among_them(data):

@@ -120,7 +120,7 @@ def test_some_figures_their_claims_and_the_page(tmp_path):
     assert {row["claim"] for row in table_rows} == {
         one.text for one in table.CLAIMS if {"2-4", "3-7"} & set(one.figures)
     }
-    assert page.rows == len(table_rows) + 1
+    assert page.rows == len(table_rows) + 1 + 4  # and Table 1
     first = {path.name: path.read_bytes() for path in index.parent.iterdir()}
     make(["2-4", "3-7", "table-1"], index.parent)
     assert {path.name: path.read_bytes() for path in index.parent.iterdir()} == first

@@ -81,9 +81,10 @@ def label_ends(ax: Axes, lines, texts) -> list:
     for place, (x, y, text, colour) in zip(places, ends):
         far = abs(place - y) > 0.4 * step or x < right - 1e-6 * abs(right)
         joint = {"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 0.0}
+        how = {"color": style.legible(colour), "fontsize": style.NORMAL, "va": "center", "gid": "end"}
         labels.append(ax.annotate(
-            text, (x, y), xytext=(BESIDE, place), textcoords=ax.get_yaxis_transform(), va="center", color=colour, gid="end",
-            fontsize=style.NORMAL, annotation_clip=False, arrowprops={**joint, "relpos": (0.0, 0.5)} if far else None,
+            text, (x, y), xytext=(BESIDE, place), textcoords=ax.get_yaxis_transform(), annotation_clip=False,
+            arrowprops={**joint, "relpos": (0.0, 0.5)} if far else None, **how,
         ))  # fmt: skip
     return labels
 

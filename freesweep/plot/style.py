@@ -11,7 +11,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap, to_hex
+from matplotlib.colors import LinearSegmentedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
 
 INCH = 25.4  # [mm]
@@ -34,6 +34,7 @@ BAND = 0.25  # opacity of an error band
 THICK, THIN = 1.4, 0.7  # lines of data; where a fiber family would have to push [points]
 DESIGN = {"color": INK, "markerfacecolor": PAPER, "markersize": 3.4, "markeredgewidth": 0.8}  # the dot of a design
 
+LIGHTEST_TYPE = 0.24  # relative luminance: a contrast of 3.6 to paper
 SMALL, NORMAL, LARGE = 7.0, 8.0, 10.0  # type [points]
 
 SETTINGS = {
@@ -86,6 +87,20 @@ def new_figure(width: float, height: float) -> Figure:
 def ramp(count: int) -> list[str]:
     """``count`` colours of a growing quantity, such as pressure, from light to dark; none too light for a line."""
     return [to_hex(colour) for colour in SEQUENTIAL(np.linspace(1.0, 0.38, count)[::-1])]
+
+
+def legible(colour: str) -> str:
+    """The colour of type beside a line of ``colour``: darker where that is too light to read on paper."""
+    rgb = np.array(to_rgb(colour))
+    while _luminance(rgb) > LIGHTEST_TYPE:
+        rgb = 0.95 * rgb
+    return to_hex(rgb)
+
+
+def _luminance(rgb):
+    """Relative luminance, 0 to 1, of sRGB."""
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
 
 
 def dress(ax: Axes, xlabel: str, ylabel: str, heading: str = "") -> Axes:

@@ -1,6 +1,7 @@
 """The page that leads to everything: the table of claims, then every figure with what was chosen for it."""
 
 from html import escape
+from typing import NamedTuple
 
 from .. import __version__
 from .claims.claim import NO, PARTLY, UNKNOWN, YES
@@ -25,8 +26,19 @@ img { max-width: 100%; height: auto; }
 CLASSES = {YES: "yes", PARTLY: "part", NO: "no", UNKNOWN: "unknown"}
 
 
+class Entry(NamedTuple):
+    """One figure or table: its name, what it shows, what was chosen for it, and its files."""
+
+    name: str
+    title: str
+    note: str
+    files: tuple
+    width: float = 0.0  # of the picture [mm]
+    rows: tuple = ()  # of a table: texts, the heads first
+
+
 def page(made, judged) -> str:
-    """The page as HTML: ``made`` lists (name, title, note, files, width of the picture [mm]), ``judged`` the claims."""
+    """The page as HTML: ``made`` lists an :class:`Entry` for each figure and table, ``judged`` the claims."""
     parts = [
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">',
         f"<title>The source, recomputed</title><style>{STYLE}</style></head><body>",
@@ -38,13 +50,7 @@ def page(made, judged) -> str:
     ]
     if judged:
         parts += ["<h2>Claims</h2>", f"<p>{summary(judged)}</p>", _table(judged)]
-    for name, title, note, files, width in made:
-        links = " · ".join(f'<a href="{file}">{file.rpartition(".")[2].upper()}</a>' for file in files)
-        picture = next((file for file in files if file.endswith(".png")), None)
-        heading = name if name.startswith("Table") else f"Figure {name}"
-        image = f'<img src="{picture}" alt="{escape(title)}" style="width:{width:.0f}mm">' if picture else ""
-        caption = f"<b>{heading}.</b> {escape(title)} {escape(note)}<br>{links}"
-        parts.append(f'<figure id="{name}">{image}<figcaption>{caption}</figcaption></figure>')
+    parts += [_entry(entry) for entry in made]
     return "\n".join([*parts, "</body></html>", ""])
 
 
@@ -59,6 +65,25 @@ def summary(judged) -> str:
         + ", ".join(f"{counts[verdict]} {verdict}" for verdict in order if verdict in counts)
         + "."
     )
+
+
+def _entry(entry):
+    """A picture or a table with what it shows and the links to its files."""
+    links = " · ".join(f'<a href="{file}">{file.rpartition(".")[2].upper()}</a>' for file in entry.files)
+    shown = ""
+    for file in entry.files:
+        if file.endswith(".png"):
+            shown = f'<img src="{file}" alt="{escape(entry.title)}" style="width:{entry.width:.0f}mm">'
+    if entry.rows:
+        cells = ["".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in row) for tag, row in _tagged(entry.rows)]
+        shown = "<table>" + "".join(f"<tr>{row}</tr>" for row in cells) + "</table>"
+    heading = entry.name if entry.rows else f"Figure {entry.name}"
+    caption = f"<b>{heading}.</b> {escape(entry.title)} {escape(entry.note)}<br>{links}"
+    return f'<figure id="{escape(entry.name)}">{shown}<figcaption>{caption}</figcaption></figure>'
+
+
+def _tagged(rows):
+    return [("th", rows[0]), *(("td", row) for row in rows[1:])]
 
 
 def _table(judged):

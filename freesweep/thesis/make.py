@@ -9,7 +9,7 @@ from ..atlas.files import write_whole
 from ..plot import style
 from .claims.table import COLUMNS, judged, rows_of
 from .figures import FIGURES, title
-from .index import page
+from .index import Entry, page
 from .muscles import table_1_rows
 
 TABLES = {"table-1": "Table 1", "claims": "claims"}
@@ -46,9 +46,7 @@ def make(names=(), out="thesis", progress=None, resolution=style.RESOLUTION) -> 
             tell(f"figure {name}")
             made.append(_figure(name, out, resolution))
     if "table-1" in wanted:
-        _write(out / "table-1.csv", table_1_rows().csv())
-        made.append(("Table 1", "Constants of the three muscles.", "As printed, with the fiber extension of section 2.3.4.",
-                     ["table-1.csv"], 0.0))  # fmt: skip
+        made.append(_table_1(out))
     figures = [name for name in wanted if name in FIGURES]
     rows = []
     if figures or "claims" in wanted:
@@ -66,7 +64,16 @@ def _figure(name, out, resolution):
     style.save(drawing.figure, out / f"{stem}.svg", resolution)
     _write(out / f"{stem}.csv", drawing.numbers.csv())
     width = drawing.figure.get_size_inches()[0] * style.INCH
-    return name, title(name), drawing.note, [f"{stem}.{suffix}" for suffix in ("png", "svg", "csv")], width
+    return Entry(name, title(name), drawing.note, tuple(f"{stem}.{suffix}" for suffix in ("png", "svg", "csv")), width)
+
+
+def _table_1(out):
+    text = table_1_rows().csv()
+    _write(out / "table-1.csv", text)
+    note = "As printed, in SI units, with the fiber extension of section 2.3.4."
+    return Entry(
+        "Table 1", "Constants of the three muscles.", note, ("table-1.csv",), rows=tuple(csv.reader(io.StringIO(text)))
+    )
 
 
 def _claims_csv(rows):
