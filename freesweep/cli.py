@@ -8,6 +8,7 @@ import contextlib
 import signal
 import sys
 
+from .asking import add_query
 from .calibration.command import add_calibrate
 from .judging import add_judging
 from .pictures import add_plot, check_map, draw_map
@@ -64,6 +65,7 @@ def parser() -> argparse.ArgumentParser:
     _sweep(commands)
     add_plot(commands)
     _info(commands)
+    add_query(commands)
     add_single(commands)
     add_judging(commands)
     add_calibrate(commands)

@@ -19,7 +19,7 @@ def add_judging(commands):
         "bench", help="how fast this is on this machine, beside its peers, and with which errors"
     )
     bench.add_argument(
-        "subject", nargs="?", choices=("solver",), default="solver", help="what is timed (default: solver)"
+        "subject", nargs="?", choices=("solver", "query"), default="solver", help="what is timed (default: solver)"
     )
     bench.add_argument("--quick", action="store_true", help="few designs: a first look in seconds")
     bench.add_argument("--json", metavar="FILE", help="keep all figures, too")
@@ -67,9 +67,12 @@ def _run_bench(options):
     import sys
 
     from .atlas.files import write_whole
-    from .bench.solver import measure
-    from .bench.table import table
 
+    if options.subject == "query":
+        from .bench.query import measure, table
+    else:
+        from .bench.solver import measure
+        from .bench.table import table
     found = measure(options.quick, lambda text: print(f"{text} ...", file=sys.stderr))
     print(table(found))
     if options.json:

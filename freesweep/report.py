@@ -31,7 +31,7 @@ def table(dataset) -> str:
         row = [f"{state['pressure'].item() * 1e-3:.6g}"] if "pressure" in points.dims else []
         for name in columns:
             _, scale = SHOWN[dataset[name].attrs["units"]]
-            row.append(_number(state[name].item() * scale, state[f"{name}_error"].item() * scale))
+            row.append(number(state[name].item() * scale, state[f"{name}_error"].item() * scale))
         rows.append([*row, STATUSES[int(state["status"])].meaning + _flags(state)])
     lines = aligned([[*heads, "status"], *rows])
     seen = sorted({int(value) for value in dataset["status"].values.ravel()} - {0})
@@ -47,7 +47,7 @@ def table(dataset) -> str:
     return "\n".join(lines)
 
 
-def _number(value, error):
+def number(value, error):
     """A value with the digits that its error bound leaves, seven at most."""
     if value != value:
         return "-"
@@ -66,6 +66,7 @@ def _flags(state):
 
 
 def aligned(rows):
+    """Lines of columns, flush right."""
     """Rows of texts as lines, columns set flush right."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]

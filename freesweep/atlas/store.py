@@ -68,6 +68,16 @@ class Atlas:
 
         return query(self._reader, axes, variables, method, refine, x)
 
+    def curve(self, along, values=None, **query):
+        """Answers along one axis, such as "pressure": :meth:`query` at ``values`` or at 201 of them over its range.
+
+        A force-stroke or torque-rotation family is the curve of an atlas with held lengths or rotations along that axis.
+        ``query`` holds the other axes, and ``variables``, ``method``, ``refine``. Raises QueryError.
+        """
+        from ..query.query import curve
+
+        return curve(self._reader, along, values, query)
+
     def interpolator(self, names):
         """A callable for loops and optimizers: ``f(*values, gradient=False)``, see :class:`freesweep.query.Interpolator`.
 
@@ -150,6 +160,10 @@ def describe(atlas) -> str:
             f"  {status}",
             *(f"    {meaning:<26}{count:>12,}" for meaning, count in atlas.status_counts(status).items()),
         ]
+    from ..query.calibration import ATTRIBUTE, describe_measured
+
+    lines += describe_measured(data)
+    apart = ("specification", "title", ATTRIBUTE)
     lines += ["", "provenance"]
-    lines += [f"  {name:<22}{value}" for name, value in data.attrs.items() if name not in ("specification", "title")]
+    lines += [f"  {name:<22}{value}" for name, value in data.attrs.items() if name not in apart]
     return "\n".join(lines)

@@ -90,6 +90,20 @@ class AtlasWriter:
             self.variables[name].id.write_direct_chunk(offset, content)
         self.file.check()
 
+    def dataset(self):
+        """What was put so far as an xarray Dataset, read when it is used; close it before the file is published."""
+        import xarray as xr
+
+        self.store.flush()
+        self.file.check()
+        return xr.open_dataset(self.file.temporary, engine="netcdf4", decode_times=False)
+
+    def describe(self, attrs):
+        """Add attributes of the atlas: name -> text."""
+        for name, value in attrs.items():
+            self.store.attrs[name] = value
+        self.file.check()
+
     def publish(self):
         """Finish the file, read it back, and let it appear."""
         self._close()

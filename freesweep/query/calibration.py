@@ -60,3 +60,23 @@ def classes(estimate, size) -> np.ndarray:
 def tolerance(data) -> float:
     """Largest stated error of an answer, relative: lengths and volumes; ten times that for angles, loads, energies."""
     return float(data.attrs.get(TOLERANCE, DEFAULT_TOLERANCE))
+
+
+def describe_measured(data) -> list:
+    """Lines that tell what an atlas measured of itself."""
+    found = read(data)
+    if not found.get("variables"):
+        return ["", "between its nodes", "  not measured: stated errors are cautious"]
+    shares = ", ".join(f"{family.replace('_', ' ')} {share:.1%}" for family, share in found.get("answered", {}).items())
+    lines = [
+        "",
+        f"between its nodes, against {found['designs']:,} random designs solved exactly",
+        f"  answered within the tolerance {tolerance(data):g} (angles, loads, energies: ten times that): {shares}",
+        f"  {'relative error of the answered':<34}{'designs':>9}{'answered':>10}{'median':>10}{'99 %':>10}{'worst':>10}",
+    ]
+    for name, measured in found["variables"].items():
+        for region, row in measured["regions"].items():
+            title = name if region == "all" else f"  region {region}"
+            numbers = "".join(f"{'-' if number is None else format(number, '.1e'):>10}" for number in row[2:5])
+            lines.append(f"  {title:<34}{row[0]:>9,}{row[1]:>10.1%}{numbers}")
+    return lines

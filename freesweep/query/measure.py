@@ -88,6 +88,8 @@ def _family(reader, key, names, values):
         stated = calibration.stated(factors, estimate, bound, size)
         good &= stated <= reader.tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
         kept[name] = (error, stated, size, factors)
+        if name != "mid_radius":  # the flags ask for it
+            table.forget(name)
     answered = np.zeros(inquiry.size, bool)
     answered[places[good]] = True
     regions, results = _regions(inquiry), {}

@@ -19,7 +19,8 @@ from .table import Table
 
 CHUNK = 1 << 18  # points answered together: their arrays fit in memory, and many share a cell
 ALONE = 1 << 14  # points for which a second thread is not worth its start
-NEAR = 1e-12
+NEAR = 1e-12  # relative: what counts as the end of an axis
+CURVE = 201  # points of a curve
 
 
 class Reader:
@@ -166,6 +167,25 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
 
         result = xr.merge([result, profiles(reader, question, x)])
     return result
+
+
+def curve(reader, along, values, rest):
+    """The answers along one axis: see :meth:`freesweep.Atlas.curve`."""
+    if along not in reader.frame.ranges or along in reader.frame.by_design:
+        axes = [name for name in reader.frame.asked if name in reader.frame.ranges]
+        raise QueryError([unknown("axis", along, axes)])
+    if along in rest:
+        raise QueryError([f"{along}: given as a number, too; the curve runs along it"])
+    if values is None:
+        low, high = reader.frame.ranges[along]
+        if not low < high:
+            raise QueryError([f"{along}: the atlas holds only {low:g}; a curve needs an axis of several values"])
+        root = along == "pressure" and low >= 0.0
+        values = np.linspace(np.sqrt(low), np.sqrt(high), CURVE) ** 2 if root else np.linspace(low, high, CURVE)
+        values[-1] = high
+    options = {name: rest[name] for name in ("variables", "method", "refine", "x") if name in rest}
+    axes = {name: value for name, value in rest.items() if name not in options}
+    return query(reader, {**axes, along: values}, **options)
 
 
 def _coordinates(reader, question, axes):

@@ -134,6 +134,11 @@ class Table:
             self._errors[name] = self._grid(bound) if bound in self.frame.dims else np.zeros(int(np.prod(self.shape)))
         return self._errors[name]
 
+    def forget(self, name):
+        """Let go of the arrays of one variable."""
+        for kept in (self._variables, self._stored, self._errors):
+            kept.pop(name, None)
+
     def variable(self, name):
         """The :class:`Interpolant` of one variable."""
         if name not in self._variables:

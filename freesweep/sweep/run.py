@@ -25,6 +25,7 @@ HELD_COST, VARYING_COST = (
     32,
     8,
 )  # of a held state, and of a tube that varies, in those of a free state of one that does not
+LEAST_MEASURED, MOST_MEASURED = 5_000, 15_000_000  # points of an atlas that measures itself: 1 GB of tables at most
 AHEAD = 4  # jobs for each thread that are begun or waited for
 
 
@@ -176,6 +177,12 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
                 for chunk in chunks:
                     writer.put(*chunk)
                 bar.update(1)
+        if LEAST_MEASURED <= sweep.points <= MOST_MEASURED:
+            from ..query.measure import measure
+
+            with writer.dataset() as data:
+                found = measure(data)
+            writer.describe(found)
         writer.publish()
 
 

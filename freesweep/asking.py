@@ -1,0 +1,210 @@
+"""The command query: one point, or a CSV of points with units in its header; out as table, CSV or JSON."""
+
+MAX_ROWS = 1_000_000  # of a CSV
+MOST_FAULTS = 20  # of one that are listed
+FORMATS = ("table", "csv", "json")
+
+
+def add_query(commands):
+    """Add the command of this module to the command line."""
+    from .atlas.schema import PARAMETERS
+
+    command = commands.add_parser("query", help="what an atlas says of any design within its grid")
+    command.add_argument("atlas")
+    for name, parameter in PARAMETERS.items():
+        command.add_argument(
+            f"--{name.replace('_', '-')}", metavar="Q", help=f"{parameter.long_name}, such as {_example(name)}"
+        )
+    command.add_argument("--design", metavar="NAME", help="of a list of named designs")
+    command.add_argument(
+        "--points", metavar="FILE.csv", help='many points: a header such as "alpha [deg], pressure [kPa]"'
+    )
+    command.add_argument("--variable", nargs="+", metavar="NAME", help="which (default: all)")
+    command.add_argument("--method", default="cubic", choices=("cubic", "linear"), help="default: cubic")
+    command.add_argument("--refine", action="store_true", help="solve exactly what the atlas cannot answer")
+    command.add_argument("--format", choices=FORMATS, default="table", help="default: table")
+    command.add_argument("-o", "--out", metavar="FILE", help="write there instead of to the screen")
+    command.set_defaults(run=_run)
+
+
+def _example(name):
+    from .atlas.schema import PARAMETERS
+
+    return {"degree": "25deg", "m": "'4.76 mm'", "Pa": "'0.1 MPa'", "N": "'5 N'", "N m": "'0.1 N m'"}.get(
+        PARAMETERS[name].units, "1.005"
+    )
+
+
+def _run(options):
+    from .atlas.files import write_whole
+    from .atlas.store import open_atlas
+
+    with open_atlas(options.atlas) as atlas:
+        axes = _axes(options)
+        found = atlas.query(options.variable, options.method, options.refine, **axes)
+    text = {"table": _table, "csv": _csv, "json": _json}[options.format](found)
+    if options.out:
+        write_whole(options.out, (text + "\n").encode())
+        print(options.out)
+    else:
+        print(text)
+
+
+def _axes(options):
+    """Axes from the options, and from the CSV if there is one; raises ValueError with every fault."""
+    from .atlas.schema import PARAMETERS
+    from .units import quantity
+
+    faults, axes = [], {}
+    for name in PARAMETERS:
+        if (given := getattr(options, name)) is not None:
+            try:
+                axes[name] = quantity(given, PARAMETERS[name].units)
+            except ValueError as error:
+                faults.append(f"--{name.replace('_', '-')}: {error}")
+    if options.design is not None:
+        axes["design"] = options.design
+    if options.points:
+        columns = _read_points(options.points, faults)
+        for name in sorted(set(columns) & set(axes)):
+            faults.append(f"{name}: given as an option and in {options.points}; remove one")
+        axes |= columns
+    if faults:
+        raise ValueError("\n".join(["cannot read this question:", *(f"  - {fault}" for fault in faults)]))
+    return axes
+
+
+def _read_points(path, faults):
+    """Columns of a CSV: name -> list of numbers in the units of the API. A header cell is ``name`` or ``name [unit]``."""
+    import csv
+
+    from .units import quantity
+
+    rows = []
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            for row in csv.reader(file, skipinitialspace=True):
+                if any(cell.strip() for cell in row):
+                    rows.append([cell.strip() for cell in row])
+                if len(rows) > MAX_ROWS + 1:
+                    break
+    except FileNotFoundError:
+        faults.append(f"--points: there is no file {path!r}")
+        return {}
+    except (UnicodeDecodeError, csv.Error) as error:
+        faults.append(f"--points: {path} is no CSV text: {error}")
+        return {}
+    if len(rows) < 2 or len(rows) > MAX_ROWS + 1:
+        faults.append(f"--points: {path} holds {len(rows) - 1} points; give a header and 1 to {MAX_ROWS:,} lines")
+        return {}
+    head, *lines = rows
+    names = [_column(cell, path, faults) for cell in head]
+    if len(set(names)) < len(names):
+        faults.append(f"--points: {path} names a column twice")
+    columns = {name: [] for name, _ in names if name}
+    for number, line in enumerate(lines, start=2):
+        if len(line) != len(names):
+            faults.append(f"--points: line {number} of {path} has {len(line)} cells, its header {len(names)}")
+        for (name, units), cell in zip(names, line):
+            if name == "design":
+                columns[name].append(cell)
+            elif name:
+                try:
+                    columns[name].append(quantity(f"{cell} {units[1]}" if units[1] else cell, units[0]))
+                except ValueError as error:
+                    faults.append(f"--points: line {number}, {name}: {error}")
+        if len(faults) > MOST_FAULTS:
+            faults.append("and so on")
+            break
+    return columns
+
+
+def _column(cell, path, faults):
+    """``(name, (kept unit, unit of the column))`` of a header cell."""
+    from .atlas.schema import PARAMETERS
+    from .query.faults import unknown
+
+    name, _, unit = cell.partition("[")
+    name, unit = name.strip().replace("-", "_"), unit.strip().removesuffix("]").strip()
+    if name == "design":
+        return name, ("", "")
+    if name not in PARAMETERS:
+        faults.append(f"--points: {path}: {unknown('column', name, list(PARAMETERS))}")
+        return None, ("", "")
+    return name, (PARAMETERS[name].units, unit)
+
+
+def _records(found):
+    """One dictionary for each point: what was asked, then what was answered; statuses in words."""
+    import numpy as np
+
+    from .status import STATUSES
+
+    asked = [name for name in found.coords if found[name].ndim <= 1]
+    points = [{}] if not found.dims else [{} for _ in range(int(np.prod(list(found.sizes.values()))))]
+    for name in [*asked, *found.data_vars]:
+        array = found[name].broadcast_like(next(iter(found.data_vars.values()))) if found.dims else found[name]
+        for point, value in zip(points, array.values.ravel().tolist()):
+            point[name] = STATUSES[value].meaning if name.endswith("status") else value
+    return points
+
+
+def _csv(found):
+    import csv
+    import io
+
+    records = _records(found)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    units = {name: found[name].attrs.get("units", "") for name in records[0]}
+    writer.writerow([f"{name} [{unit}]" if unit and unit != "1" else name for name, unit in units.items()])
+    for record in records:
+        writer.writerow(["" if value != value else value for value in record.values()])
+    return text.getvalue().rstrip("\n")
+
+
+def _json(found):
+    import json
+
+    records = [{key: None if value != value else value for key, value in record.items()} for record in _records(found)]
+    units = {name: found[name].attrs["units"] for name in records[0] if "units" in found[name].attrs}
+    return json.dumps({"units": units, "points": records}, indent=1)
+
+
+def _table(found):
+    """Everyday units; one line for each variable of a single point, else one for each point."""
+    from .report import SHOWN, aligned, number
+    from .status import STATUSES
+
+    records = _records(found)
+    values = [name for name in found.data_vars if f"{name}_error" in found]
+    statuses = [name for name in found.data_vars if name.endswith("status")]
+    flags = [
+        name for name in found.data_vars if name not in statuses and name not in values and not name.endswith("_error")
+    ]
+    shown = {name: SHOWN.get(found[name].attrs.get("units", ""), ("", 1.0)) for name in [*found.coords, *values]}
+
+    def cell(record, name):
+        scale = shown[name][1]
+        return number(record[name] * scale, record[f"{name}_error"] * scale)
+
+    if len(records) == 1:
+        record = records[0]
+        rows = [("", "", "stated error")]
+        for name in values:
+            error = record[f"{name}_error"] * shown[name][1]
+            rows.append((name, f"{cell(record, name)} {shown[name][0]}", "-" if error != error else f"{error:.1e}"))
+        rows += [(name, record[name], "") for name in statuses]
+        rows += [(name, str(record[name]), "") for name in flags]
+        lines = aligned(rows)
+    else:
+        varying = [name for name in found.coords if name in records[0] and found[name].ndim]
+        heads = [f"{name} [{shown[name][0]}]" if shown[name][0] else name for name in [*varying, *values]]
+        rows = [[*heads, *statuses]]
+        for record in records:
+            given = [f"{record[name] * shown[name][1]:.6g}" if name != "design" else record[name] for name in varying]
+            rows.append([*given, *(cell(record, name) for name in values), *(record[name] for name in statuses)])
+        lines = aligned(rows)
+    seen = sorted({record[name] for record in records for name in statuses} - {"ok"})
+    lines += [f"{status.meaning}: {status.sentence}" for status in STATUSES if status.meaning in seen]
+    return "\n".join(lines)

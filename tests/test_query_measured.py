@@ -1,0 +1,157 @@
+"""Atlases that measure themselves, curves, and the command: what is stated is what was measured; files in, files out."""
+
+import json
+
+import numpy as np
+import pytest
+from commands import refused, run
+from grids import FIXED, spec
+
+from freesweep import Actuator, MooneyRivlin, inflate, run_sweep, status
+from freesweep.atlas.store import describe
+from freesweep.bench.query import table
+from freesweep.cli import DONE
+from freesweep.query import calibration
+from freesweep.query.faults import QueryError
+from freesweep.query.measure import calibrate
+from freesweep.sweep.spec import parse
+
+AXES = {
+    "alpha": np.linspace(10.0, 60.0, 9).tolist(),
+    "beta": np.linspace(-70.0, -20.0, 9).tolist(),
+    "length": [0.1, 0.14, 0.2, 0.3],
+    "pressure": (np.linspace(0.0, np.sqrt(1e5), 17) ** 2).tolist(),
+}
+POINT = {"alpha": 24.0, "beta": -43.0, "length": 0.12, "pressure": 3.7e4}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    out = tmp_path_factory.mktemp("measured") / "atlas.nc"
+    with run_sweep(parse(spec(AXES)), out, threads=2, progress=False) as atlas:
+        yield atlas
+
+
+def test_an_atlas_knows_how_well_it_answers(made):
+    found = calibration.read(made.data)
+    assert found["designs"] >= 200
+    assert 0.5 < found["answered"]["state"] <= 1.0
+    for name in ("deformed_length", "rotation", "volume", "locked_volume"):
+        rows = found["variables"][name]["regions"]
+        assert set(rows) == {"all", "IIa", "IIb"}  # opposite signs: no region I
+        count, share, median, high, worst, ratio = rows["all"]
+        assert count == found["designs"]
+        assert 0.5 < share <= 1.0
+        assert 0.0 <= median <= high <= worst <= 1e-3
+        assert 1.0 < ratio < 100.0
+    text = describe(made)
+    assert "random designs solved exactly" in text
+    assert "region IIb" in text
+
+
+def test_stated_errors_hold_at_designs_that_were_not_measured(made):
+    draw = np.random.default_rng(4)
+    points = {name: draw.uniform(values[0], values[-1], 300) for name, values in AXES.items()}
+    found = made.query(**points, variables=["deformed_length", "rotation", "volume"])
+    answered = np.flatnonzero(found["status"] == status.OK)
+    missed = 0
+    for k in answered[::2]:
+        own = {name: points[name][k] for name in ("alpha", "beta", "length")}
+        rest = {name: FIXED[name] for name in ("radius", "wall")}
+        tube = Actuator(**own, **rest, material=MooneyRivlin(FIXED["c10"], FIXED["c01"]))
+        solved = inflate(tube, points["pressure"][k], x=0.0, accuracy=1e-8)
+        for name in ("deformed_length", "rotation", "volume"):
+            gap = abs(found[name][k] - solved[name])
+            missed += bool(gap > found[f"{name}_error"][k] + solved[f"{name}_error"])
+            assert gap <= 1e-3 * max(abs(solved[name]), 0.1)
+    assert missed <= 1
+
+
+def test_factors_are_the_least_that_hold():
+    draw = np.random.default_rng(0)
+    estimate = 10.0 ** draw.uniform(-9, -3, 20_000)
+    bound = np.full(20_000, 1e-8)
+    error = estimate * draw.uniform(0.0, 3.0, 20_000) + 0.1 * bound * draw.uniform(0.0, 1.0, 20_000)
+    factors = calibrate(error, estimate, bound, np.ones(20_000))
+    stated = calibration.stated(factors, estimate, bound, np.ones(20_000))
+    assert (stated >= error).mean() >= 0.999
+    assert np.median(stated / error) < 4.0
+    few = calibrate(error[:50], estimate[:50], bound[:50], np.ones(50))
+    assert (few.classes == calibration.UNMEASURED).all()
+    assert few.bound == 1.0
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"variables": {"rotation": {"factors": [1], "bound": 0}}}'])
+def test_what_cannot_be_read_of_a_measurement_is_replaced_by_caution(made, text):
+    data = made.data.assign_attrs({calibration.ATTRIBUTE: text})
+    assert (calibration.factors(data, "rotation").classes == calibration.UNMEASURED).all()
+
+
+def test_curves_run_along_one_axis(made):
+    rest = {name: POINT[name] for name in ("alpha", "beta", "length")}
+    curve = made.curve("pressure", **rest, variables="rotation")
+    assert curve["rotation"].dims == ("pressure",)
+    assert curve["pressure"][0] == 0.0
+    assert curve["pressure"][-1] == made.data["pressure"][-1]
+    assert (curve["status"] == status.OK).mean() > 0.9
+    some = made.curve("length", [0.12, 0.15], alpha=24.0, beta=-43.0, pressure=3.7e4, variables="rotation")
+    assert some["rotation"][0] == made.query(**POINT, variables="rotation")["rotation"]
+    with pytest.raises(QueryError, match="axis 'presure' is unknown here; did you mean 'pressure'"):
+        made.curve("presure", **rest)
+    with pytest.raises(QueryError, match="radius: the atlas holds only"):
+        made.curve("radius", **POINT)
+
+
+# --- the command
+
+ASKED = ("--alpha", "24deg", "--beta", "-43deg", "--length", "120 mm", "--pressure", "37 kPa")
+
+
+def test_one_point_on_the_screen(made, capsys):
+    assert run("query", str(made.path), *ASKED, "--variable", "deformed_length", "rotation") == DONE
+    out = capsys.readouterr().out
+    value = made.query(**POINT, variables="deformed_length")["deformed_length"].item()
+    assert f"{1e3 * value:.7g}"[:6] in out
+    assert "stated error" in out
+
+
+def test_a_csv_of_points_in_their_own_units(made, tmp_path, capsys):
+    points = tmp_path / "points.csv"
+    points.write_text("alpha [rad], beta [deg], length [mm], pressure [psi]\n0.42, -43, 120, 5\n0.5, -43, 120, 50\n")
+    words = ("query", str(made.path), "--points", str(points), "--variable", "rotation")
+    assert run(*words, "--format", "json") == DONE
+    found = json.loads(capsys.readouterr().out)
+    asked = {"alpha": np.degrees(0.42), "beta": -43.0, "length": 0.12, "pressure": 5 * 6894.757293168361}
+    answer = made.query(**asked, variables="rotation")
+    assert found["points"][0]["rotation"] == pytest.approx(answer["rotation"].item(), rel=1e-12)
+    assert found["points"][1]["status"] == "outside_atlas"
+    assert found["points"][1]["rotation"] is None
+    assert run(*words, "--format", "csv", "-o", str(tmp_path / "answers.csv")) == DONE
+    head, first, second = (tmp_path / "answers.csv").read_text().splitlines()
+    assert head.startswith(
+        "alpha [degree],beta [degree],length [m],pressure [Pa],rotation [degree],rotation_error [degree]"
+    )
+    assert float(first.split(",")[4]) == found["points"][0]["rotation"]
+    assert second.endswith(",outside_atlas")
+
+
+def test_faults_of_a_question_are_listed(made, tmp_path, capsys):
+    name = str(made.path)
+    text = refused(
+        capsys, "query", name, "--alpha", "24 mm", "--beta", "-43deg", "--points", str(tmp_path / "none.csv")
+    )
+    assert "--alpha: expects an angle" in text
+    assert "there is no file" in text
+    assert "pressure: is missing" in refused(capsys, "query", name, "--alpha", "24deg", "--beta", "-43deg")
+    bad = tmp_path / "bad.csv"
+    bad.write_text("alpha [deg], pressur\n24\nx, 3\n")
+    text = refused(capsys, "query", name, "--points", str(bad))
+    for part in ("did you mean 'pressure'", "line 2 of", "line 3, alpha: expects an angle"):
+        assert part in text
+
+
+def test_the_benchmark_of_the_query_is_one_table():
+    row = {"points": 1000, "rate": 1e6, "single": 2e-5, "error": 1e-7}
+    text = table({"nodes": 10, "repeats": 3, "rows": [{"way": "a way", **row}]})
+    assert "1,000,000" in text
+    assert "1.0e-07" in text
