@@ -46,7 +46,13 @@ def resolve(data, count, seed=0):
     notes = []
     found = [*_shapes(points, "", *_free(points, notes)), *_shapes(points, "locked_", *_locked(points))]
     found += [_limits(points), *_blocked(points), *_ideal(points)]
-    return [compared for compared in found if compared is not None], notes
+    found = [compared for compared in found if compared is not None]
+    if any(compared.unjudged for compared in found):
+        notes.append(
+            "not judged: shapes that turn back between end and middle, as held states do that wave about the cylinder, and"
+            " limit pressures at which the second method finds no longest tube"
+        )
+    return found, notes
 
 
 class _Points:

@@ -184,7 +184,7 @@ def test_stored_points_lie_within_their_bounds(atlas, capsys):
         comparisons, notes = resolve(opened.data, 200, seed=3)
         names = {compared.name for compared in comparisons}
         assert names >= {"rotation", "volume", "locked_strain_energy", "blocked_force", "ideal_blocked_torque"}
-        assert notes == []
+        assert all(note.startswith("not judged: shapes that turn back") for note in notes)
         for compared in comparisons:
             assert not compared.broken.any(), compared.name
             # blocked states that wave about the straight cylinder are unstable, and not judged
