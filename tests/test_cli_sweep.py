@@ -66,7 +66,7 @@ def test_a_sweep_names_its_atlas_after_the_specification_and_may_be_quiet(specif
 def test_a_dry_run_says_what_would_be_solved_and_makes_nothing(specification, tmp_path, capsys):
     assert run("sweep", specification, "--dry-run") == DONE
     # six of nine designs are different: 0/20 and 20/40 occur twice, 20/20 is degenerate; three pressures and locked
-    says = ["A tiny sweep", "27 grid points, 24 distinct equilibria -> tiny.nc"]
+    says = ["A tiny sweep", "27 grid points, 24 distinct equilibria of 6 distinct problems -> tiny.nc"]
     lines = capsys.readouterr().out.splitlines()
     assert lines[:2] == says
     assert [line.split(":")[0] for line in lines[2:]] == ["memory", "disk", "time"]

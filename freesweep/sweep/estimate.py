@@ -86,7 +86,11 @@ def dry_run(sweep, out, threads=None) -> str:
     }
     most = "" if tables else "at most "
     lines = [sweep.title] if sweep.title else []
-    lines.append(f"{sweep.points:,} grid points, {most}{equilibria[FREE]:,} distinct equilibria -> {out}")
+    problems = tables[FREE].count if tables else grids(sweep)[FREE]
+    lines.append(
+        f"{sweep.points:,} grid points, {most}{equilibria[FREE]:,} distinct equilibria of {problems:,} distinct problems"
+        f" -> {out}"
+    )
     lines += [
         f"{kind.replace('_', ' ')}: {grids(sweep)[kind] * steps:,} grid points, {most}{count:,} held states"
         for kind, count in equilibria.items()

@@ -6,6 +6,7 @@ neither a stale nor a swapped shard is taken for another. When the atlas is whol
 """
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
@@ -19,6 +20,7 @@ from ..atlas.files import BLOCK, EnvironmentFault, write_whole
 from .records import LIMIT, state
 
 GAP = 64  # records that are read along rather than passed over
+NO_LOCKS = (errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS)  # of a file system without them
 DIGITS = 32  # of the SHA-256 in a name
 
 
@@ -36,30 +38,45 @@ class Shards:
 
     def hold(self):
         """Make the folder and become its only writer; a process that ends, however it ends, lets go."""
+        while not self._is_there():  # another process may finish, and remove the folder, in between
+            self._let_go()
+            try:
+                self.folder.mkdir(exist_ok=True)
+            except OSError as error:
+                raise EnvironmentFault(f"cannot make the folder {self.folder}: {error.strerror}") from error
+            with contextlib.suppress(FileNotFoundError):
+                self._lock()
+
+    def _lock(self):
         try:
             import fcntl
         except ImportError:  # not a POSIX system
             fcntl = None
         try:
-            self.folder.mkdir(exist_ok=True)
             self.lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT, 0o644)
             if fcntl:
                 fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            os.close(self.lock)
-            self.lock = None
+            self._let_go()
             raise SweepError(
                 f"another process is sweeping into {self.out}; wait for it, or choose another output"
             ) from None
+        except FileNotFoundError:
+            raise
         except OSError as error:
-            raise EnvironmentFault(f"cannot make the folder {self.folder}: {error.strerror}") from error
-        if not self._is_there():  # another process finished in between
+            if error.errno in NO_LOCKS:  # a network disk: the user is trusted to start one sweep
+                return
+            self._let_go()
+            raise EnvironmentFault(f"cannot lock the folder {self.folder}: {error.strerror}") from error
+
+    def _let_go(self):
+        if self.lock is not None:
             os.close(self.lock)
-            self.hold()
+            self.lock = None
 
     def _is_there(self):
         with contextlib.suppress(FileNotFoundError):
-            return os.path.samestat(os.fstat(self.lock), os.stat(self.folder / "lock"))
+            return self.lock is not None and os.path.samestat(os.fstat(self.lock), os.stat(self.folder / "lock"))
         return False
 
     def release(self):
@@ -67,8 +84,7 @@ class Shards:
         if self.lock is not None:
             if not any(self.folder.glob("*.bin")):
                 shutil.rmtree(self.folder, ignore_errors=True)
-            os.close(self.lock)
-            self.lock = None
+            self._let_go()
 
     def open(self, identity, clear_others=False):
         """Begin, or go on; returns the whole shards already there: (kind, index) -> file."""
