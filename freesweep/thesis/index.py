@@ -60,11 +60,8 @@ def summary(judged) -> str:
     for row in judged:
         counts[row.verdict] = counts.get(row.verdict, 0) + 1
     order = [*CLASSES, *(verdict for verdict in counts if verdict not in CLASSES)]
-    return (
-        f"{len(judged)} claims: "
-        + ", ".join(f"{counts[verdict]} {verdict}" for verdict in order if verdict in counts)
-        + "."
-    )
+    words = [f"{verdict}: {counts[verdict]}" for verdict in order if verdict in counts]
+    return f"{len(judged)} claims. {'; '.join(words)}."
 
 
 def _entry(entry):
