@@ -103,7 +103,14 @@ def _table_1(ax):
     for row, (angle, (_, c10, c01, extension)) in enumerate(MUSCLES.items()):
         words = (f"±{angle}°", f"{c10 * 1e-6:.2f}", f"{c01 * 1e-6:.2f}", f"{100.0 * (extension - 1.0):.2f} %")
         for k, word in enumerate(words):
-            ax.text(0.08 + 0.3 * k, 0.72 - 0.1 * row, word, ha="center", color=COLOURS[angle], transform=ax.transAxes)
+            ax.text(
+                0.08 + 0.3 * k,
+                0.72 - 0.1 * row,
+                word,
+                ha="center",
+                color=style.legible(COLOURS[angle]),
+                transform=ax.transAxes,
+            )
 
 
 def table_1_rows() -> Numbers:
