@@ -26,7 +26,7 @@ def source_hash(room: str) -> str:
     """Hash of this file, of every source in one room ("solver", "atlas"), of Numba's version and of Python's."""
     here = Path(__file__).parent
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    for path in [Path(__file__), *sorted((here / room).glob("*.py"))]:
+    for path in [Path(__file__), *sorted((here / room).rglob("*.py"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 

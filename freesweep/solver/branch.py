@@ -16,7 +16,7 @@ from . import guide, lagrangian, nested
 from .profile import FIELDS, at_stations
 from .reach import reach
 from .slack import slack_fibers
-from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK
+from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 
 # columns of a problem: what one design is, dimensionless
 PROBLEM_SIZE = 9
@@ -25,8 +25,10 @@ FINER = 4  # times the cells of the base mesh, for a walk that did not converge
 
 
 @inlined
-def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slack, limit, stations, profiles):
+def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slack, limit, stations, profiles, state):
     """Equilibria of one design at rising ``pressures``, on the branch that the module describes.
+
+    Rows whose status is not PENDING are passed over.
 
     Arguments
     ---------
@@ -38,6 +40,7 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     status, slack : (n,) codes; values are NaN unless the status is OK or INACCURATE
     limit : (2,) limit pressure and its bound, NaN if none was met
     stations, profiles : (m,), (n, FIELDS, m): see :func:`at_stations`; m = 0 for none
+    state : (2, base + 2) from where to go on: see :func:`lanes.walk.walk_lanes`
     """
     fine, shapes, guides = space[0], space[4], space[5]
     base = tube[1][len(tube[1]) - 1]
@@ -58,8 +61,17 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
         clamped = min(clamped, 1.0 + stretch)
     for k in range(places):
         u[k] = 1.0
+    last = state.shape[1] - 1
+    if places == 1 and not np.isnan(state[0, last]):
+        started, u[0] = True, state[1, last]
+        before = (gamma, problem[RATIO], problem[SHEAR], state[0, last], f, m, 1.0)
+        for k in range(base + 1):
+            x[k], y[k] = state[0, k], state[1, k]
+            last_x[k], last_y[k] = x[k], y[k]
     limit[0], limit[1] = np.nan, np.nan
     for i in range(len(pressures)):
+        if status[i] != PENDING:
+            continue
         p = pressures[i]
         slack[i] = 0
         for k in range(5):
@@ -136,6 +148,7 @@ def walk_many(
     limits,
     stations,
     profiles,
+    states,
 ):
     """:func:`walk` for each row of ``problems``; problem k owns rows ``first[k]`` to ``first[k + 1]`` of all others.
 
@@ -168,11 +181,15 @@ def walk_many(
             for i in range(3):
                 own_course[0, 0, i, 0] = problems[k, i]
         own = slice(first[k], first[k + 1])
+        if not np.any(status[own] == PENDING):
+            limits[k] = np.nan
+            continue
         for factor in (1, FINER):
             tube = (own_course, factor * edges, cells, not varying, factor * middle, own_places)
             walk(
                 problems[k], tube, pressures[own], accuracy, space, values[own], bounds[own], status[own], slack[own],
-                limits[k], stations, profiles[own],
+                limits[k], stations, profiles[own], states[k],
             )  # fmt: skip
-            if not np.any(status[own] == NOT_CONVERGED):
+            if factor == FINER or not np.any(status[own] == NOT_CONVERGED):
                 break
+            status[own], states[k] = PENDING, np.nan  # all of it again

@@ -168,22 +168,24 @@ def fiber_multipliers(y, v, cell, load):
 
 
 @kernel
-def scales(outputs, load, length, tolerance, scale, floor):
-    """By what each output's error is measured, and the error that rounding and Newton's
-    last step (relative ``tolerance``) make (length, volume, twist, energy,
-    middle stretch, multiplier).
+def scales(outputs, load, length, tolerance):
+    """By what each output's error is measured, and the error that rounding and Newton's last step (relative
+    ``tolerance``) make: two tuples (length, volume, twist, energy, middle stretch, multiplier).
 
     Lengths count per undeformed length, stretch per radius, rotation per radian or relative to itself, the rest
     relative to itself. The energy of a hardly strained wall carries the rounding of y - 1, as work of the loads.
     """
-    work = abs(load[3] * outputs[1]) + abs(load[4] * outputs[0]) + abs(load[5] * outputs[2])
-    scale[0] = length
-    scale[1] = outputs[1]
-    scale[2] = max(0.5, abs(outputs[2]))  # half a tube: half a radian
-    scale[3] = max(outputs[3], 1e-9 * work)
-    scale[4] = 1.0
-    scale[5] = max(abs(load[3]), abs(load[4]), abs(load[5]))
-    for k in range(6):
-        floor[k] = (ROUNDING + LAST_STEP * tolerance) * scale[k]
-    floor[3] += (ENERGY_ROUNDING + tolerance) * work
-    floor[4] += ROUNDING * outputs[4]
+    share = ROUNDING + LAST_STEP * tolerance
+    volume, turn, energy = outputs[1], outputs[2], outputs[3]
+    work = abs(load[3] * volume) + abs(load[4] * outputs[0]) + abs(load[5] * turn)
+    by_turn = max(0.5, abs(turn))  # half a tube: half a radian
+    by_energy = max(energy, 1e-9 * work)
+    by_load = max(abs(load[3]), max(abs(load[4]), abs(load[5])))
+    return (length, volume, by_turn, by_energy, 1.0, by_load), (
+        share * length,
+        share * volume,
+        share * by_turn,
+        share * by_energy + (ENERGY_ROUNDING + tolerance) * work,
+        share + ROUNDING * outputs[4],
+        share * by_load,
+    )

@@ -167,7 +167,7 @@ def solve(
         integrate(integrands, xs, ys, count, own, now, row)
         row[MIDDLE], row[MULTIPLIER] = ys[middle * count // n], mu
         if level >= 3:
-            scales(row, now, x[n] - x[0], tolerance, out[2], out[3])
+            out[2], out[3] = scales(row, now, x[n] - x[0], tolerance)
             if extrapolate(table, level, out[2], out[3], out[0], out[1]) <= accuracy:
                 return newton.CONVERGED, unstable, level - 1, on_base
             if level == MAX_DOUBLINGS + 1:

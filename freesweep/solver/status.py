@@ -7,3 +7,5 @@ HELD_IMPOSSIBLE = 4
 INACCURATE = 5
 NOT_CONVERGED = 6
 INVALID = 7
+
+PENDING = -1  # not looked at yet; never in a result

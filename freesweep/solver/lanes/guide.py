@@ -1,0 +1,89 @@
+"""The uniform tube of :mod:`freesweep.solver.uniform` as a guide, for a vector of designs.
+
+L_y and L_yy are linear in pressure, force and torque: their values at the two ends of a path give them all along it.
+"""
+
+
+from ...jit import kernel
+from .. import lagrangian
+from ..guide import STRAY
+from ..uniform import FIRST_STEP, ITERATIONS, LARGEST_CHANGE, SCAN, between
+from .vector import HUGE, get, mask_of, select, some, spread
+
+SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernels
+
+
+@kernel
+def rising(u, trial, cell, start, end, asked):
+    """Where the load rises all the way from ``u`` to ``trial``: see :func:`uniform.rising`."""
+    change = trial - u
+    still = abs(change) < 1e-9 * u
+    samples = 2.0 + abs(change) / (SCAN * min(u, trial))
+    risen = still | (asked & ~still)
+    first, second = spread(0.0), spread(0.0)
+    ahead = select(change > 0.0, spread(1.0), spread(-1.0))
+    i = 0
+    while True:
+        within = asked & ~still & (samples + 1.0 > i)
+        if not some(within):
+            break
+        share = min(i / samples, 1.0)
+        _, L_y, _, L_yy, _, _ = lagrangian.density(u + change * share, 0.0, cell, start)
+        _, end_y, _, end_yy, _, _ = lagrangian.density(u + change * share, 0.0, cell, end)
+        drive = end_y - L_y
+        slope = -(L_yy - L_y / drive * (end_yy - L_yy)) / drive * ahead
+        risen = risen & (~within | (slope > 0.0))
+        if i >= 2:
+            dips = within & (second < first) & (second < slope)
+            bend = first - 2.0 * second + slope
+            low = second - (slope - first) * (slope - first) / (8.0 * bend)
+            risen = risen & (~dips | (low > 0.0))
+        first, second = second, slope
+        i += 1
+    return risen
+
+
+@kernel
+def follow(u, cell, start, end, asked):
+    """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the lanes that arrived."""
+    t, step = spread(0.0), spread(FIRST_STEP)
+    todo, done = asked, mask_of(0)
+    while some(todo):
+        ahead = min(t + step, 1.0)
+        trial, before = u, spread(HUGE)
+        going, arrived = todo, mask_of(0)
+        for _ in range(ITERATIONS):
+            room, L_y, _, L_yy, _, _ = lagrangian.density(trial, 0.0, cell, between(start, end, ahead))
+            going = going & (room > 0.0) & (L_yy < 0.0)
+            change = -L_y / L_yy
+            trial = select(going, trial + change, trial)
+            going = going & (abs(trial - u) < LARGEST_CHANGE * u)
+            size = abs(change)
+            there = going & ((size < 1e-13 * u) | ((size < 1e-10 * u) & (size >= 0.5 * before)))
+            arrived, going, before = arrived | there, going & ~there, size
+            if not some(going):
+                break
+        arrived = rising(u, trial, cell, start, end, arrived) & arrived
+        t, u = select(arrived, ahead, t), select(arrived, trial, u)
+        step = select(arrived, 2.0 * step, 0.5 * step)
+        done = done | (todo & (t >= 1.0))
+        todo = todo & (t < 1.0) & (step > SMALLEST_STEP)
+    return u, done
+
+
+@kernel
+def locked(cell, gamma):
+    """The uniform locked stretch (Eq. 2.12)."""
+    return lagrangian.locked_stretch(cell, gamma)
+
+
+@kernel
+def within(y, n, u):
+    """Where the shape lies between 1 and the uniform stretch; elsewhere it is another branch."""
+    slack = STRAY * abs(u - 1.0) + 1e-6
+    low, high = spread(HUGE), spread(-HUGE)
+    for i in range(n + 1):
+        low, high = min(low, get(y, i)), max(high, get(y, i))
+    return (min(u, 1.0) - slack <= low) & (high <= max(u, 1.0) + slack)
+
+

@@ -1,0 +1,158 @@
+"""Nested meshes of :mod:`freesweep.solver.nested` for a vector of designs: the same values, the same bounds.
+
+A lane whose bounds meet the accuracy keeps its numbers; the others go on to finer meshes. A lane that needs more than
+``LANE_DOUBLINGS``, or fails, is left to the scalar kernels.
+"""
+
+from ...jit import kernel
+from .. import lagrangian
+from ..nested import LIKELY, SAFETY, SMALLEST_TOLERANCE
+from ..newton import SMALL_STEP
+from . import mesh, newton
+from .slack import pushing
+from .vector import HUGE, get, mask_of, put, select, some, spread
+
+OUTPUTS = 5  # length, volume, twist, energy, middle stretch
+LANE_DOUBLINGS = 6  # of the base mesh
+LANE_STEP_SHARE = 1e-4  # of the accuracy: what Newton's last step may leave; what it left is counted in the bounds
+ROUGH_STEP = 2e-3  # last step on a mesh that serves to grade the next one
+MAX_REGRADES = 4  # of the base mesh
+LARGEST_MOVE = 0.5  # of a node in the last of them, in cells
+
+
+@kernel
+def integrate(x, y, n, cell, load, row):
+    """Integrals over the tube on one mesh, and the stretch in the middle."""
+    length, volume, twist, energy = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    x_left, y_left = get(x, 0), get(y, 0)
+    for j in range(n):
+        x_right, y_right = get(x, j + 1), get(y, j + 1)
+        h = x_right - x_left
+        s, v, t, w = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
+        length = length + h * s
+        volume = volume + h * v
+        twist = twist + h * t
+        energy = energy + h * w
+        x_left, y_left = x_right, y_right
+    put(row, 0, length)
+    put(row, 1, volume)
+    put(row, 2, twist)
+    put(row, 3, energy)
+    put(row, 4, y_left)
+
+
+@kernel
+def extrapolate(table, level, load, length, error, sizes, values, bounds):
+    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound, rounding left out."""
+    row = table[level]
+    outputs = (get(row, 0), get(row, 1), get(row, 2), get(row, 3), get(row, 4))
+    scale, floor = lagrangian.scales(outputs, load, length, error)
+    put(sizes, 0, scale[0])
+    put(sizes, 1, scale[1])
+    put(sizes, 2, scale[2])
+    put(sizes, 3, scale[3])
+    put(sizes, 4, scale[4])
+    fourth, second_order, largest = spread(0.0), spread(1e-300), spread(0.0)
+    for k in range(OUTPUTS):
+        a, b, c, d = get(table[level - 3], k), get(table[level - 2], k), get(table[level - 1], k), get(row, k)
+        first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
+        estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
+        put(values, k, third)
+        put(bounds, k, SAFETY * estimate)
+        fourth = fourth + estimate / get(sizes, k)
+        second_order = second_order + abs(d - c) / get(sizes, k)
+    for k in range(OUTPUTS):
+        likely = fourth / second_order * abs(get(row, k) - get(table[level - 1], k))
+        bound = max(get(bounds, k), LIKELY * likely)
+        largest = max(largest, bound / get(sizes, k))
+        put(bounds, k, bound)
+    put(bounds, 0, get(bounds, 0) + floor[0])
+    put(bounds, 1, get(bounds, 1) + floor[1])
+    put(bounds, 2, get(bounds, 2) + floor[2])
+    put(bounds, 3, get(bounds, 3) + floor[3])
+    put(bounds, 4, get(bounds, 4) + floor[4])
+    return largest
+
+
+@kernel
+def foresee(half_x, half_y, x, y, n, fine_x, fine_y, change, both):
+    """First guess on twice as many cells: the solution on n cells, carried on by the change from n/2 cells, which doubling
+    the cells will repeat at a quarter.
+    """
+    for i in range(n // 2 + 1):
+        put(change, i, 0.25 * (get(y, 2 * i) - get(half_y, i)))
+    mesh.prolong(half_x, change, n // 2, x, both)
+    for i in range(n + 1):
+        put(both, i, get(both, i) + get(y, i))
+    mesh.prolong(x, both, n, fine_x, fine_y)
+
+
+@kernel
+def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out):
+    """Solve the ``active`` lanes; ``x`` and ``y`` (n + 1, WIDTH) are the graded base mesh and a first guess, replaced by the
+    adapted mesh and its solution; ``safe`` is an admissible shape.
+
+    ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
+    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. Returns masks: ``(met, alpha fibers would have
+    to push, beta fibers would)``.
+    """
+    tolerance = max(LANE_STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
+    density, integrands = lagrangian.density, lagrangian.integrands
+    todo, moving = active, active
+    for _ in range(MAX_REGRADES):  # on a mesh that may be far from what the solution needs
+        if not some(moving):
+            break
+        converged, _ = newton.solve(density, x, y, n, True, cell, load, moving, safe, ROUGH_STEP, HUGE, work)
+        todo = todo & (converged | ~moving)
+        moving = moving & converged
+        new_x, new_y = meshes[0], meshes[1]
+        mesh.adapt(integrands, x, y, n, True, cell, load, work, new_x, new_y)
+        moved = mesh.farthest(x, new_x, n)
+        for i in range(n + 1):
+            put(x, i, select(moving, get(new_x, i), get(x, i)))
+            put(y, i, select(moving, get(new_y, i), get(y, i)))
+            put(safe, i, select(moving, get(y, i), get(safe, i)))
+        moving = moving & (moved > LARGEST_MOVE)
+    converged, error = newton.solve(density, x, y, n, True, cell, load, todo, safe, SMALL_STEP, tolerance, work)
+    todo = todo & converged
+    integrate(x, y, n, cell, load, table[1])
+    half_x, half_y, here_x, here_y, fine_x, fine_y = meshes[0], meshes[1], meshes[2], meshes[3], meshes[4], meshes[5]
+    for i in range(n // 2 + 1):
+        put(half_x, i, get(x, 2 * i))
+        put(half_y, i, get(y, 2 * i))
+    for i in range(n + 1):
+        put(here_x, i, get(x, i))
+        put(here_y, i, get(y, i))
+    mesh.merge(integrands, x, y, n, cell, load, safe)
+    converged, _ = newton.solve(
+        density, half_x, half_y, n // 2, True, cell, load, todo, safe, SMALL_STEP, tolerance, work
+    )
+    todo = todo & converged
+    integrate(half_x, half_y, n // 2, cell, load, table[0])
+    met, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
+    level, count = 1, n
+    while some(todo) and level <= LANE_DOUBLINGS:
+        level += 1
+        mesh.split(x, n, 1 << (level - 1), fine_x)
+        foresee(half_x, half_y, here_x, here_y, count, fine_x, fine_y, work[0], work[1])
+        safe = meshes[6]
+        mesh.halve(integrands, here_x, here_y, count, cell, load, fine_x, safe)
+        count *= 2
+        half_x, half_y, here_x, here_y, fine_x, fine_y = here_x, here_y, fine_x, fine_y, half_x, half_y
+        coarser = error
+        converged, error = newton.solve(
+            density, here_x, here_y, count, True, cell, load, todo, safe, SMALL_STEP, tolerance, work
+        )
+        todo = todo & converged
+        integrate(here_x, here_y, count, cell, load, table[level])
+        if level >= 3:
+            largest = extrapolate(table, level, load, length, max(error, coarser), sizes, found[0], found[1])
+            ready = todo & (largest <= accuracy)
+            for k in range(OUTPUTS):
+                put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
+                put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
+            if some(ready):
+                alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
+                alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
+            met, todo = met | ready, todo & ~ready
+    return met, alpha, beta
