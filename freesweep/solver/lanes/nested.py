@@ -14,7 +14,7 @@ from .vector import HUGE, get, mask_of, put, select, some, spread
 
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
 LANE_DOUBLINGS = 6  # of the base mesh
-LANE_STEP_SHARE = 1e-4  # of the accuracy: what Newton's last step may leave; what it left is counted in the bounds
+LANE_STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave; what it left is counted in the bounds
 ROUGH_STEP = 2e-3  # last step on a mesh that serves to grade the next one
 MAX_REGRADES = 4  # of the base mesh
 LARGEST_MOVE = 0.5  # of a node in the last of them, in cells
