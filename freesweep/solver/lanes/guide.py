@@ -3,7 +3,6 @@
 L_y and L_yy are linear in pressure, force and torque: their values at the two ends of a path give them all along it.
 """
 
-
 from ...jit import kernel
 from .. import lagrangian
 from ..guide import STRAY
@@ -85,5 +84,3 @@ def within(y, n, u):
     for i in range(n + 1):
         low, high = min(low, get(y, i)), max(high, get(y, i))
     return (min(u, 1.0) - slack <= low) & (high <= max(u, 1.0) + slack)
-
-

@@ -93,8 +93,8 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
     adapted mesh and its solution; ``safe`` is an admissible shape.
 
     ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
-    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. Returns masks: ``(met, alpha fibers would have
-    to push, beta fibers would)``.
+    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. Returns masks: ``(met, alpha fibers would
+    have to push, beta fibers would)``.
     """
     tolerance = max(LANE_STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     density, integrands = lagrangian.density, lagrangian.integrands

@@ -20,7 +20,8 @@ def eliminate(density, x, y, step, fraction, convex, n, free, cell, load, ratio,
     """Newton's equations at ``y + fraction step``, factored, eliminated forward into ``ratio`` and ``value``.
 
     Returns ``(admissible, definite, slope along the step, slope of the new step, last value)``; node 0 is held, node n
-    unless ``free``. ``steepness`` takes the relative loss of room of each cell per difference of the step at its ends. In ``convex`` lanes whatever makes a cell's own Hessian indefinite is dropped.
+    unless ``free``. ``steepness`` takes the relative loss of room of each cell per difference of the step at its ends. In
+    ``convex`` lanes whatever makes a cell's own Hessian indefinite is dropped.
     """
     bent = some(convex)
     zero = spread(0.0)
@@ -96,7 +97,7 @@ def substitute(y, step, fraction, n, accepted, ratio, value, steepness, last):
 
 @kernel
 def solve(density, x, y, n, free, cell, load, active, safe, small, tolerance, work):
-    """From ``y`` (changed in place in the ``active`` lanes) to a relative error of ``tolerance``, by a last step below ``small``.
+    """From ``y`` (changed in place in ``active`` lanes) to a relative error of ``tolerance``, by a last step below ``small``.
     A lane whose ``y`` is not admissible starts from ``safe``; if that is not either, from a shape ever closer to y = 1.
 
     Returns ``(converged, error)``: masks, and what the last step may have left. ``work`` is scratch (4, > n, WIDTH).

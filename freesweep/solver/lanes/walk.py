@@ -41,7 +41,7 @@ def loads(columns, locked):
 
 
 @kernel
-def begin(lane, columns, base, stretch, x, y, tube, line):
+def begin(lane, columns, base, stretch, x, y, safe, tube, line):
     """Mesh and first shape of one lane, from its uniform ``stretch``."""
     course, _, _, _, _, places = tube
     for k in range(3):
@@ -51,9 +51,10 @@ def begin(lane, columns, base, stretch, x, y, tube, line):
         columns[GAMMA, lane], columns[RATIO, lane], columns[SHEAR, lane], columns[PRESSURE, lane],
         columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
     )  # fmt: skip
-    guide.start(tube, line[2, :1] * 0.0 + stretch, load, line[0], line[1])
+    line[2, 0] = stretch
+    guide.start(tube, line[2, :1], load, line[0], line[1])
     for i in range(base + 1):
-        x[i, lane], y[i, lane] = line[0, i], line[1, i]
+        x[i, lane], y[i, lane], safe[i, lane] = line[0, i], line[1, i], line[1, i]
 
 
 @kernel
@@ -140,13 +141,26 @@ def walk_lanes(problems, first, pressures, order, base, accuracy, values, bounds
                 active |= 1 << lane
                 columns[WEIGHT, lane] = 0.0
                 cell = (problems[k, H], problems[k, D], problems[k, AREA])
-                begin(lane, columns, base, lagrangian.locked_stretch(cell, problems[k, GAMMA]), x, y, tube, line)
-                safe[: base + 1, lane] = y[: base + 1, lane]
+                begin(lane, columns, base, lagrangian.locked_stretch(cell, problems[k, GAMMA]), x, y, safe, tube, line)
         if active != 0:
             cell, _, now = loads(columns, True)
             asked = mask_of(active)
             met, alpha, beta = nested.solve(
-                x, y, safe, base, cell, now, get(columns, LENGTH), asked, accuracy, meshes, work, table, sizes, found, out
+                x,
+                y,
+                safe,
+                base,
+                cell,
+                now,
+                get(columns, LENGTH),
+                asked,
+                accuracy,
+                meshes,
+                work,
+                table,
+                sizes,
+                found,
+                out,
             )
             record(bits(met), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
 
@@ -176,23 +190,30 @@ def walk_lanes(problems, first, pressures, order, base, accuracy, values, bounds
                 )  # fmt: skip
             ahead, arrived = lane_guide.follow(u, cell, before, now, mask_of(active))
             put(stretches, 0, ahead)
-            asked, guided = arrived, bits(arrived)
             rescale = select(abs(u - 1.0) > 1e-9, (ahead - 1.0) / (u - 1.0), spread(1.0))
             for i in range(base + 1):
                 put(kept_x, i, get(x, i))
                 put(kept_y, i, get(y, i))
                 put(safe, i, get(y, i))
                 put(y, i, 1.0 + (get(y, i) - 1.0) * rescale)
-            for lane in range(count):
-                if (guided & ~started) >> lane & 1:
-                    begin(lane, columns, base, stretches[0, lane], x, y, tube, line)
-                    safe[: base + 1, lane] = y[: base + 1, lane]
-            met, alpha, beta = nested.solve(
-                x, y, safe, base, cell, now, get(columns, LENGTH), asked, accuracy, meshes, work, table,
-                sizes, found, out,
-            )  # fmt: skip
-            met = met & lane_guide.within(y, base, ahead)
-            record(bits(met), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
+            met, cold = mask_of(0), bits(arrived) & ~started
+            for warm in range(1, -1, -1):  # a lane whose warm start fails begins anew
+                asked = arrived & ~met
+                if warm == 0:
+                    cold = bits(asked) & started
+                    asked = mask_of(cold)
+                    if cold == 0:
+                        break
+                for lane in range(count):
+                    if (cold >> lane) & 1:
+                        begin(lane, columns, base, stretches[0, lane], x, y, safe, tube, line)
+                found_here, alpha, beta = nested.solve(
+                    x, y, safe, base, cell, now, get(columns, LENGTH), asked, accuracy, meshes, work, table, sizes,
+                    found, out,
+                )  # fmt: skip
+                found_here = found_here & lane_guide.within(y, base, ahead)
+                record(bits(found_here), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
+                met = met | found_here
             for i in range(base + 1):
                 put(x, i, select(met, get(x, i), get(kept_x, i)))
                 put(y, i, select(met, get(y, i), get(kept_y, i)))
