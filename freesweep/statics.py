@@ -11,7 +11,6 @@ from .scaling import problem_rows
 
 BASE_CELLS = 96  # four times a sweep's: profiles are wanted as exact as scalars
 LOADS = ("force", "torque", "pressure")
-ENDS = np.zeros(2)  # the kernels know where a tube ends that is the same all along
 
 
 def lock(tube: Actuator, *, x=None, accuracy=1e-6):
@@ -62,8 +61,7 @@ def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy
 
 def _solve(tube, loads, stations, accuracy):
     """Solve for the product of the loads, and put the results into a Dataset."""
-    from .solver.branch import walk_many
-    from .solver.profile import FIELDS
+    from .solver.batch import uniform, walk_all
 
     shape = tuple(np.size(loads[name]) for name in LOADS)
     force, torque = (grid.ravel() for grid in np.meshgrid(loads["force"], loads["torque"], indexing="ij"))
@@ -72,18 +70,11 @@ def _solve(tube, loads, stations, accuracy):
     count, steps = len(force), len(pressure)
     design = {name: np.full(count, value) for name, value in tube.design().items()}
     rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy)
-    course, edges, places = (
-        read_course(tube) if tube.varies else (np.zeros((0, 1, 3, 4)), np.array([0, BASE_CELLS]), ENDS)
-    )
+    course = read_course(tube) if tube.varies else uniform(BASE_CELLS)
     unique, index = near_stations(tube, stations, tube.varies)
-    values, bounds = np.empty((count * steps, 5)), np.empty((count * steps, 5))
-    codes, slack = np.empty(count * steps, np.int64), np.empty(count * steps, np.int64)
-    limits, fields = np.empty((count, 2)), np.empty((count * steps, FIELDS, len(unique)))
     first = np.arange(count + 1, dtype=np.int64) * steps
-    walk_many(
-        rows, first, np.tile(pressure[order] / tube.material.c10, count), course, edges, places, float(accuracy), values,
-        bounds, codes, slack, limits, unique, fields,
-    )  # fmt: skip
+    pressures = np.tile(pressure[order] / tube.material.c10, count)
+    walks = walk_all(rows, first, pressures, course, float(accuracy), unique)
 
     back = np.argsort(order)
 
@@ -91,17 +82,17 @@ def _solve(tube, loads, stations, accuracy):
         """From the kernels' order to that of the loads as given."""
         return array.reshape(count, steps, *array.shape[1:])[:, back].reshape(*shape, *array.shape[1:])
 
-    fields = grid(fields)[..., index]
+    fields = grid(walks.profiles)[..., index]
     force, torque, pressure = np.meshgrid(*(loads[name] for name in LOADS), indexing="ij")
     at_rest = (force == 0.0) & (torque == 0.0) & (pressure == 0.0)
     fields[at_rest] = undeformed(tube, stations)
-    limits = limits.reshape(*shape[:2], 2) * tube.material.c10
+    limits = walks.limits.reshape(*shape[:2], 2) * tube.material.c10
     found = {
-        "status": grid(codes),
-        "stable": np.isin(grid(codes), status.VALUED),  # the walk keeps to stable states
-        "slack_fiber": grid(slack),
-        "values": grid(values),
-        "bounds": grid(bounds),
+        "status": grid(walks.status),
+        "stable": np.isin(grid(walks.status), status.VALUED),  # the walk keeps to stable states
+        "slack_fiber": grid(walks.slack),
+        "values": grid(walks.values),
+        "bounds": grid(walks.bounds),
         "fields": (fields, tube.varies),
         "extra": {
             "limit_pressure": (LOADS[:2], limits[..., 0]),

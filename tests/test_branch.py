@@ -7,8 +7,7 @@ import pytest
 from oracle import NoState, collocation, first_integral, uniform_stretch
 
 from freesweep import closed_form
-from freesweep.solver import branch
-from freesweep.solver.profile import FIELDS
+from freesweep.solver import batch
 from freesweep.solver.status import BEYOND_LIMIT, COMPRESSED, INVALID, OK
 
 WHOLE = np.array([2.0, 2.0, 2.0, 2.0, 1.0])  # of the results of half a tube
@@ -25,18 +24,13 @@ def tube(alpha, beta, length=40.0, area=WALL, ratio=0.5, energy="full", f=0.0, m
 class Walks:
     """Results of the whole tube for lists of problems and of their pressures."""
 
-    def __init__(self, problems, pressures, accuracy=1e-6, stations=NOTHING):
-        count = sum(map(len, pressures))
+    def __init__(self, problems, pressures, accuracy=1e-6, stations=NOTHING, lanes=True):
         self.first = np.cumsum([0, *map(len, pressures)])
-        self.values, self.bounds = np.empty((count, 5)), np.empty((count, 5))
-        self.status, self.slack = np.empty(count, np.int64), np.empty(count, np.int64)
-        self.limits = np.empty((len(problems), 2))
-        self.profiles = np.empty((count, FIELDS, len(stations)))
-        branch.walk_many(
-            np.array(problems, float), self.first, np.concatenate(pressures).astype(float), np.zeros((0, 1, 3, 4)),
-            np.array([0, 24]), np.zeros(2), accuracy, self.values, self.bounds, self.status, self.slack, self.limits,
-            np.asarray(stations, float), self.profiles,
+        walks = batch.walk_all(
+            np.array(problems, float), self.first, np.concatenate(pressures).astype(float), batch.uniform(24), accuracy,
+            np.asarray(stations, float), lanes=lanes,
         )  # fmt: skip
+        self.values, self.bounds, self.status, self.slack, self.limits, self.profiles = walks
         self.values *= WHOLE
         self.bounds *= WHOLE
 

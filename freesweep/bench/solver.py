@@ -98,17 +98,9 @@ def _solve(chosen, accuracy):
 
 def _scalar(chosen, accuracy, cells):
     """The sample by the kernel of one float at a time."""
-    from ..solver.branch import walk_many
+    from ..solver.batch import uniform, walk_all
 
-    problems, first, pressures = chosen.listed()
-    count = len(pressures)
-    values, bounds, limits = np.empty((count, 5)), np.empty((count, 5)), np.empty((len(problems), 2))
-    status, slack = np.empty(count, np.int64), np.empty(count, np.int64)
-    walk_many(
-        problems, first, pressures, np.empty((0, 1, 3, 4)), np.array([0, cells]), np.zeros(2), accuracy, values, bounds,
-        status, slack, limits, np.empty(0), np.empty((count, 0, 0)),
-    )  # fmt: skip
-    return values
+    return walk_all(*chosen.listed(), uniform(cells), accuracy, lanes=False).values
 
 
 def _scipy(timer, few):

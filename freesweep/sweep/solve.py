@@ -7,7 +7,6 @@ from .records import FREE_STATE, HELD_STATE, LIMIT, state, upward
 
 BASE_CELLS = 24
 UNIFORM = np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2)
-OUTPUTS = 5
 
 
 def solve_shard(job, accuracy):
@@ -32,19 +31,14 @@ def solve_shard(job, accuracy):
 
 
 def _solve_free(_, problems, __, first, pressures, tube, accuracy):
-    from ..solver.branch import walk_many
+    from ..solver.batch import walk_all
 
-    count = len(pressures)
-    values, bounds, limits = np.empty((count, OUTPUTS)), np.empty((count, OUTPUTS)), np.empty((len(problems), 2))
-    status, slack = np.empty(count, np.int64), np.empty(count, np.int64)
-    walk_many(
-        problems, first, pressures, *tube, accuracy, values, bounds, status, slack, limits,
-        np.empty(0), np.empty((count, 0, 0)),
-    )  # fmt: skip
-    states = np.empty(count, FREE_STATE)
-    states["values"], states["bounds"], states["status"], states["slack"] = values, upward(bounds), status, slack
+    walks = walk_all(problems, first, pressures, tube, accuracy)
+    states = np.empty(len(pressures), FREE_STATE)
+    states["values"], states["bounds"] = walks.values, upward(walks.bounds)
+    states["status"], states["slack"] = walks.status, walks.slack
     found = np.empty(len(problems), LIMIT)
-    found["limit"], found["bound"] = limits[:, 0], limits[:, 1]
+    found["limit"], found["bound"] = walks.limits[:, 0], walks.limits[:, 1]
     return states, found
 
 

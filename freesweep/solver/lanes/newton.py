@@ -97,7 +97,7 @@ def substitute(y, step, fraction, n, accepted, ratio, value, steepness, last):
 
 @kernel
 def solve(density, x, y, n, free, cell, load, active, safe, small, tolerance, work):
-    """From ``y`` (changed in place in ``active`` lanes) to a relative error of ``tolerance``, by a last step below ``small``.
+    """From ``y`` (changed in place in ``active`` lanes) to a relative error of ``tolerance``, the last step below ``small``.
     A lane whose ``y`` is not admissible starts from ``safe``; if that is not either, from a shape ever closer to y = 1.
 
     Returns ``(converged, error)``: masks, and what the last step may have left. ``work`` is scratch (4, > n, WIDTH).

@@ -10,8 +10,9 @@ Arrays of lanes are plain arrays of shape (n, WIDTH): :func:`get`, :func:`put`.
 import math
 import operator
 
-from llvmlite import binding, ir
-from numba.core import types
+from llvmlite import ir
+from numba.core import config, types
+from numba.core.codegen import get_host_cpu_features
 from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
@@ -19,8 +20,8 @@ from numba.extending import intrinsic, lower_builtin, lower_cast, models, regist
 
 def _width() -> int:
     """Designs per vector: two registers of this machine, whose instructions fill each other's waiting times."""
-    features = binding.get_host_cpu_features()
-    return 16 if features.get("avx512f") else 8 if features.get("avx2") else 4
+    features = config.CPU_FEATURES if config.CPU_FEATURES is not None else get_host_cpu_features()
+    return 16 if "+avx512f" in features else 8 if "+avx2" in features else 4
 
 
 WIDTH = _width()

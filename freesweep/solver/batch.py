@@ -1,0 +1,53 @@
+"""Many designs at once: vectors of designs go the quick way, the scalar walk goes on where that ends."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import config
+
+from .branch import D, walk_many
+from .profile import FIELDS
+from .status import PENDING
+
+OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
+NOTHING = np.empty(0)
+
+
+class Walks(NamedTuple):
+    """Equilibria of many designs: rows of states, but ``limits`` (problems, 2); see :func:`branch.walk`."""
+
+    values: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    slack: np.ndarray
+    limits: np.ndarray
+    profiles: np.ndarray
+
+
+def uniform(cells):
+    """``(course, edges, places)`` of tubes that are the same all along, on a base mesh of ``cells``."""
+    return np.empty((0, 1, 3, 4)), np.array([0, cells]), np.zeros(2)
+
+
+def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes=True) -> Walks:
+    """Walk each problem along its pressures; arguments as of :func:`branch.walk_many`, ``tube`` its (course, edges, places).
+
+    Vectors of designs serve where tubes do not vary and no profile is asked for. Their numbers do not depend on which
+    designs share a vector; those of the scalar kernels alone (``lanes=False``) differ by less than the bounds.
+    """
+    uniform_tubes, count, base = len(tube[0]) == 0, len(pressures), int(tube[1][-1])
+    found = Walks(
+        np.full((count, OUTPUTS), np.nan), np.full((count, OUTPUTS), np.nan), np.full(count, PENDING, np.int64),
+        np.zeros(count, np.int64), np.full((len(problems), 2), np.nan), np.empty((count, FIELDS, len(stations))),
+    )  # fmt: skip
+    states = np.full((len(problems), 2, base + 2), np.nan)
+    if lanes and uniform_tubes and len(stations) == 0 and not config.DISABLE_JIT:
+        from .lanes.walk import walk_lanes
+
+        # designs that share a vector should need much the same work: as many pressures, as steep angles
+        order = np.lexsort((np.abs(problems[:, D]), np.diff(first)))
+        walk_lanes(problems, first, pressures, order, base, accuracy, *found[:4], states)
+        if not np.any(found.status == PENDING):
+            return found
+    walk_many(problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles, states)
+    return found

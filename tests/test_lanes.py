@@ -1,0 +1,186 @@
+"""Vectors of designs against the scalar kernels, whose physics they share, and against each other."""
+
+import os
+import subprocess
+import sys
+
+import numba
+import numpy as np
+import pytest
+
+from freesweep.solver import batch, lagrangian
+from freesweep.solver.lanes import vector
+from freesweep.solver.lanes.vector import WIDTH, bits, get, mask_of, put, select, some, spread
+from freesweep.solver.status import INACCURATE, OK
+
+STEPS = 10
+
+
+def designs(count, seed, hard=True):
+    """Random problems, each with its own rising pressures, the locked shape last: ``(problems, first, pressures)``."""
+    draw = np.random.default_rng(seed)
+    problems, pressures = np.empty((count, 9)), []
+    for k in range(count):
+        a, b = np.tan(np.radians([draw.uniform(2, 85), draw.uniform(-85, 85)]))
+        while abs(a - b) < 0.05:
+            b = np.tan(np.radians(draw.uniform(-85, 85)))
+        loaded, extended, wall = hard * (draw.uniform() < 0.5), hard * (draw.uniform() < 0.3), draw.uniform(0.05, 1.0)
+        problems[k] = (
+            0.5 * (a + b), 0.5 * (a - b), wall * (2 + wall), 1 + extended * draw.uniform(0, 0.02), draw.uniform(0, 1),
+            float(draw.integers(2)), loaded * draw.uniform(-0.3, 1), loaded * draw.uniform(-1, 1),
+            10 ** draw.uniform(0.5, 2),
+        )  # fmt: skip
+        steps = int(draw.integers(1, STEPS))
+        pressures.append(
+            np.r_[0.0, np.sort(10 ** draw.uniform(-2.5, 1, steps)), np.inf][: steps + int(draw.integers(3))]
+        )
+    first = np.cumsum([0, *map(len, pressures)])
+    return problems, first, np.concatenate(pressures)
+
+
+def walked(problems, first, pressures, **options):
+    return batch.walk_all(problems, first, pressures, batch.uniform(24), 1e-6, **options)
+
+
+@numba.njit
+def _arithmetic(a, b, out):
+    x, y = get(a, 0), get(b, 0)
+    put(out, 0, x + y * 2.0 - 1 / x)
+    put(out, 1, -x / y)
+    put(out, 2, max(x, y))
+    put(out, 3, min(x, 0.5))
+    put(out, 4, select((x < y) & ~(x <= 0.0) | (y == 1.0), x, y))
+    put(out, 5, 3.0)
+    return bits(x > y), some(x > 1e9), some(mask_of(1)), bits(spread(2.0) >= 2.0)
+
+
+def test_a_lane_is_a_float_in_every_operation():
+    draw = np.random.default_rng(0)
+    a, b, out = draw.normal(size=(1, WIDTH)), draw.normal(size=(1, WIDTH)), np.zeros((6, WIDTH))
+    b[0, 1] = 1.0
+    greater, none, one, all_of_them = _arithmetic(a, b, out)
+    x, y = a[0], b[0]
+    expected = [
+        x + y * 2 - 1 / x, -x / y, np.maximum(x, y), np.minimum(x, 0.5),
+        np.where((x < y) & ~(x <= 0) | (y == 1), x, y), np.full(WIDTH, 3.0),
+    ]  # fmt: skip
+    assert np.allclose(out, expected, rtol=1e-15, atol=0)
+    assert [bool(greater >> k & 1) for k in range(WIDTH)] == (x > y).tolist()
+    assert (none, one, all_of_them) == (False, True, 2**WIDTH - 1)
+
+
+@numba.njit
+def _extremes(a, out):
+    x = get(a, 0)
+    put(out, 0, max(x, 1.0))
+    put(out, 1, min(x, 1.0))
+    return bits(x > 0.0), bits(~(x > 0.0))
+
+
+def test_a_nan_in_a_lane_is_no_room():
+    """Every comparison with it is false, as for a float; its neighbours are not touched."""
+    a, out = np.full((1, WIDTH), 2.0), np.zeros((2, WIDTH))
+    a[0, 1] = np.nan
+    positive, not_positive = _extremes(a, out)
+    assert positive == 2**WIDTH - 1 - 2
+    assert not_positive == 2
+    assert np.all(out[:, [0, 2]] == [[2.0, 2.0], [1.0, 1.0]])
+
+
+@numba.njit(error_model="numpy", fastmath={"contract"})
+def _densities(points, out):
+    cell, load = (get(points, 2), get(points, 3), get(points, 4)), (
+        get(points, 5), get(points, 6), get(points, 7), get(points, 8), get(points, 9), get(points, 10), get(points, 11),
+    )  # fmt: skip
+    found = lagrangian.density(get(points, 0), get(points, 1), cell, load)
+    for k in range(6):
+        put(out, k, found[k])
+
+
+@numba.njit(error_model="numpy", fastmath={"contract"})
+def _density(q, out):
+    found = lagrangian.density(q[0], q[1], (q[2], q[3], q[4]), (q[5], q[6], q[7], q[8], q[9], q[10], q[11]))
+    for k in range(6):
+        out[k] = found[k]
+
+
+def test_the_density_is_the_same_in_a_lane_and_on_a_float():
+    draw = np.random.default_rng(1)
+    points = np.array([draw.uniform(0.8, 1.2, WIDTH), draw.uniform(-0.3, 0.3, WIDTH), *draw.uniform(-0.7, 0.7, (2, WIDTH)),
+                       *draw.uniform(0.1, 1, (8, WIDTH))])  # fmt: skip
+    out, one = np.zeros((6, WIDTH)), np.zeros(6)
+    _densities(points, out)
+    for k in range(WIDTH):
+        _density(points[:, k].copy(), one)
+        assert np.allclose(out[:, k], one, rtol=1e-13, atol=1e-13)
+
+
+@pytest.fixture(scope="module")
+def sample():
+    return designs(150, 3)
+
+
+@pytest.fixture(scope="module")
+def together(sample):
+    return walked(*sample)
+
+
+def test_lanes_agree_with_the_scalar_kernels_within_the_bounds(sample, together):
+    alone = walked(*sample, lanes=False)
+    assert np.array_equal(together.status, alone.status)
+    solved = np.isin(alone.status, (OK, INACCURATE))
+    assert solved.mean() > 0.8
+    assert np.array_equal(together.slack[solved], alone.slack[solved])
+    apart = np.abs(together.values - alone.values)[solved]
+    assert np.all(apart <= (together.bounds + alone.bounds)[solved])
+    assert np.all(np.isnan(together.values[~solved]))
+    assert np.array_equal(np.isnan(together.limits), np.isnan(alone.limits))
+    assert np.nanmax(np.abs(together.limits / alone.limits - 1)[:, 0]) < 1e-6
+
+
+def test_which_designs_share_a_vector_does_not_change_a_bit(sample, together):
+    problems, first, pressures = sample
+    mixed = np.random.default_rng(5).permutation(len(problems))[: len(problems) // 2 + 1]
+    rows = np.concatenate([np.arange(first[k], first[k + 1]) for k in mixed])
+    again = walked(problems[mixed], np.cumsum([0, *np.diff(first)[mixed]]), pressures[rows])
+    for name in ("values", "bounds", "status", "slack"):
+        assert np.array_equal(getattr(again, name), getattr(together, name)[rows], equal_nan=True), name
+    assert np.array_equal(again.limits, together.limits[mixed], equal_nan=True)
+
+
+def test_a_design_alone_in_its_vector_is_solved_like_any_other(sample, together):
+    problems, first, pressures = sample
+    for k in (0, 17):
+        alone = walked(problems[k : k + 1], np.array([0, first[k + 1] - first[k]]), pressures[first[k] : first[k + 1]])
+        assert np.array_equal(alone.values, together.values[first[k] : first[k + 1]], equal_nan=True)
+
+
+def test_other_pressures_before_it_change_a_state_within_its_bounds():
+    problems, _, _ = designs(40, 9, hard=False)
+    many, few = np.linspace(0.05, 3, 30), np.linspace(0.05, 3, 30)[2::9]
+    long = walked(problems, np.arange(41) * 30, np.tile(many, 40))
+    short = walked(problems, np.arange(41) * len(few), np.tile(few, 40))
+    apart, allowed = 0.0, 0.0
+    for sign, walks, steps in ((1, long, slice(2, None, 9)), (-1, short, slice(None))):
+        apart = apart + sign * walks.values.reshape(40, -1, 5)[:, steps]
+        allowed = allowed + walks.bounds.reshape(40, -1, 5)[:, steps]
+    both = np.isfinite(apart)
+    assert both.mean() > 0.6
+    assert np.all(np.abs(apart)[both] <= allowed[both])
+
+
+def test_narrow_vectors_give_the_same_numbers_to_rounding(tmp_path):
+    """A machine without AVX-512: the same states, with bounds that differ by less than a bound."""
+    program = (
+        "import numpy as np, test_lanes; from freesweep.solver.lanes.vector import WIDTH; "
+        "w = test_lanes.walked(*test_lanes.designs(20, 11)); "
+        f"np.savez(r'{tmp_path / 'narrow.npz'}', width=WIDTH, values=w.values, status=w.status)"
+    )
+    narrow = dict(os.environ, NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES="", XDG_CACHE_HOME=str(tmp_path))
+    subprocess.run([sys.executable, "-c", program], env=narrow, check=True, cwd=os.path.dirname(__file__))
+    found, wide = np.load(tmp_path / "narrow.npz"), walked(*designs(20, 11))
+    assert found["width"] == 4
+    assert vector.WIDTH >= 4
+    assert np.array_equal(found["status"], wide.status)
+    solved = np.isin(wide.status, (OK, INACCURATE))
+    assert np.all(np.abs(found["values"] - wide.values)[solved] <= wide.bounds[solved])
