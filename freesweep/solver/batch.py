@@ -32,21 +32,21 @@ def uniform(cells):
 def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes=True) -> Walks:
     """Walk each problem along its pressures; arguments as of :func:`branch.walk_many`, ``tube`` its (course, edges, places).
 
-    Vectors of designs serve where tubes do not vary and no profile is asked for. Their numbers do not depend on which
+    Vectors of designs serve where tubes do not vary. Their numbers do not depend on which
     designs share a vector; those of the scalar kernels alone (``lanes=False``) differ by less than the bounds.
     """
     uniform_tubes, count, base = len(tube[0]) == 0, len(pressures), int(tube[1][-1])
     found = Walks(
         np.full((count, OUTPUTS), np.nan), np.full((count, OUTPUTS), np.nan), np.full(count, PENDING, np.int64),
-        np.zeros(count, np.int64), np.full((len(problems), 2), np.nan), np.empty((count, FIELDS, len(stations))),
+        np.zeros(count, np.int64), np.full((len(problems), 2), np.nan), np.full((count, FIELDS, len(stations)), np.nan),
     )  # fmt: skip
     states = np.full((len(problems), 2, base + 2), np.nan)
-    if lanes and uniform_tubes and len(stations) == 0 and not config.DISABLE_JIT:
+    if lanes and uniform_tubes and not config.DISABLE_JIT:
         from .lanes.walk import walk_lanes
 
         # designs that share a vector should need much the same work: as many pressures, as steep angles
         order = np.lexsort((np.abs(problems[:, D]), np.diff(first)))
-        walk_lanes(problems, first, pressures, order, base, accuracy, *found[:4], states)
+        walk_lanes(problems, first, pressures, order, base, accuracy, *found[:4], stations, found.profiles, states)
         if not np.any(found.status == PENDING):
             return found
     walk_many(problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles, states)

@@ -10,7 +10,7 @@ from ..nested import LIKELY, SAFETY, SMALLEST_TOLERANCE
 from ..newton import SMALL_STEP
 from . import mesh, newton
 from .slack import pushing
-from .vector import HUGE, get, mask_of, put, select, some, spread
+from .vector import HUGE, WIDTH, bits, get, mask_of, put, select, some, spread
 
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
 LANE_DOUBLINGS = 6  # of the base mesh
@@ -88,13 +88,26 @@ def foresee(half_x, half_y, x, y, n, fine_x, fine_y, change, both):
 
 
 @kernel
-def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out):
+def keep(ready, count, coarse_x, coarse_y, x, y, kept):
+    """The finest mesh of ``count`` cells, and the one before, of the lanes that are ready."""
+    for lane in range(WIDTH):
+        if (ready >> lane) & 1:
+            fine = kept[lane]
+            for i in range(count + 1):
+                fine[0, i], fine[1, i] = x[i, lane], y[i, lane]
+            for i in range(count // 2 + 1):
+                fine[2, i], fine[4, i] = coarse_x[i, lane], coarse_y[i, lane]
+
+
+@kernel
+def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out, kept, doublings):
     """Solve the ``active`` lanes; ``x`` and ``y`` (n + 1, WIDTH) are the graded base mesh and a first guess, replaced by the
     adapted mesh and its solution; ``safe`` is an admissible shape.
 
     ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
-    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. Returns masks: ``(met, alpha fibers would
-    have to push, beta fibers would)``.
+    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH or 0, 5, ...), if asked for,
+    takes their finest meshes as :func:`profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
+    fibers would have to push, beta fibers would)``.
     """
     tolerance = max(LANE_STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     density, integrands = lagrangian.density, lagrangian.integrands
@@ -154,5 +167,9 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
             if some(ready):
                 alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
                 alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
+                if len(kept) > 0:
+                    keep(bits(ready), count, half_x, half_y, here_x, here_y, kept)
+                    for lane in range(WIDTH):
+                        doublings[lane] = level - 1 if (bits(ready) >> lane) & 1 else doublings[lane]
             met, todo = met | ready, todo & ~ready
     return met, alpha, beta

@@ -1,0 +1,121 @@
+"""Designs in and out of lanes: scalar work, done one lane at a time."""
+
+import numpy as np
+
+from ...jit import kernel
+from .. import guide, lagrangian
+from ..branch import AREA, FORCE, GAMMA, LENGTH, RATIO, SHEAR, TORQUE, D, H
+from ..profile import at_stations
+from ..status import COMPRESSED, INVALID, OK
+from .nested import OUTPUTS
+from .vector import WIDTH, get
+
+COLUMNS = 12  # H, D, area, gamma, c, shear, f, m, half length; pressure, pressure before, weight of the energy
+PRESSURE, BEFORE, WEIGHT = 9, 10, 11
+LINE = 64  # bytes: arrays of lanes begin on a cache line
+
+
+@kernel
+def aligned(rows, size):
+    """Zeros of shape (rows, size, WIDTH) that begin on a cache line."""
+    count = rows * size * WIDTH
+    room = np.zeros(count + LINE // 8)
+    skipped = (-(room.ctypes.data // 8)) % (LINE // 8)
+    return room[skipped : skipped + count].reshape((rows, size, WIDTH))
+
+
+@kernel
+def loads(columns):
+    """What the density takes: ``(cell, load before, load now)``."""
+    cell = (get(columns, H), get(columns, D), get(columns, AREA))
+    gamma, c, k = get(columns, GAMMA), get(columns, RATIO), get(columns, SHEAR)
+    f, m, e = get(columns, FORCE), get(columns, TORQUE), get(columns, WEIGHT)
+    now = (gamma, c, k, get(columns, PRESSURE), f, m, e)
+    return cell, (gamma, c, k, get(columns, BEFORE), f, m, e), now
+
+
+@kernel
+def enter(lane, problem, columns, base, x, y):
+    """Put a design into a lane, undeformed."""
+    for i in range(LENGTH):
+        columns[i, lane] = problem[i]
+    columns[LENGTH, lane] = 0.5 * problem[LENGTH]
+    columns[PRESSURE, lane], columns[BEFORE, lane], columns[WEIGHT, lane] = 1.0, 0.0, 1.0
+    for i in range(base + 1):
+        x[i, lane], y[i, lane] = 1.0 * i, 1.0
+
+
+@kernel
+def lock(lane, columns):
+    """Leave nothing in a lane but pressure: what a locked shape bears."""
+    columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane] = 0.0, 0.0, 0.0
+
+
+@kernel
+def seat(lane, columns, tube):
+    """One lane as the scalar kernels take it: its load; ``tube`` is changed to it."""
+    course, _, _, _, _, places = tube
+    for k in range(3):
+        course[0, 0, k, 0] = columns[k, lane]
+    places[1] = columns[LENGTH, lane]
+    return (
+        columns[GAMMA, lane], columns[RATIO, lane], columns[SHEAR, lane], columns[PRESSURE, lane],
+        columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
+    )  # fmt: skip
+
+
+@kernel
+def begin(lane, columns, base, stretch, x, y, safe, tube, line):
+    """Mesh and first shape of one lane, from its uniform ``stretch``."""
+    load = seat(lane, columns, tube)
+    line[2, 0] = stretch
+    guide.start(tube, line[2, :1], load, line[0], line[1])
+    for i in range(base + 1):
+        x[i, lane], y[i, lane], safe[i, lane] = line[0, i], line[1, i], line[1, i]
+
+
+@kernel
+def is_clamped(problem):
+    """Whether the fibers leave the clamped ends any meridional stretch."""
+    rest = (problem[GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return 1.0 + lagrangian.kinematics(1.0, (problem[H], problem[D], problem[AREA]), rest)[3] > 0.0
+
+
+@kernel
+def settle(p, problem, clamped, row, values, bounds, status):
+    """What needs no solving: an unpressed tube, one that is pushed, one that is not valid. Whether that is so."""
+    f, m = problem[FORCE], problem[TORQUE]
+    if not (p >= 0.0 and clamped):
+        status[row] = INVALID
+    elif p == 0.0 and f == 0.0 and m == 0.0:
+        half = 0.5 * problem[LENGTH]
+        status[row] = OK
+        values[row, 0], values[row, 1], values[row, 2], values[row, 3], values[row, 4] = half, half, 0.0, 0.0, 1.0
+        for k in range(OUTPUTS):
+            bounds[row, k] = 0.0
+    elif not p + f > 0.0 and not p == np.inf:
+        status[row] = COMPRESSED
+    else:
+        return False
+    return True
+
+
+@kernel
+def record(met, alpha, beta, rows, out, values, bounds, status, slack):
+    """Write what was found in the lanes that are met."""
+    for lane in range(WIDTH):
+        row = rows[lane]
+        if (met >> lane) & 1:
+            status[row] = OK
+            slack[row] = ((alpha >> lane) & 1) | (((beta >> lane) & 1) << 1)
+            for k in range(OUTPUTS):
+                values[row, k], bounds[row, k] = out[0, k, lane], out[1, k, lane]
+
+
+@kernel
+def draw_profiles(met, rows, columns, base, doublings, kept, stations, tube, nodes, profiles):
+    """Write the profiles of the lanes that are met, from the meshes that were ``kept`` of them."""
+    for lane in range(WIDTH):
+        if (met >> lane) & 1:
+            load = seat(lane, columns, tube)
+            at_stations(stations, base, doublings[lane], tube, load, kept[lane], nodes, profiles[rows[lane]])
