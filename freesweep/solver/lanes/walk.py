@@ -58,10 +58,10 @@ def walk_lanes(
         none was solved), and the uniform stretch
     """
     size = (base << nested.LANE_DOUBLINGS) + 2
-    meshes, work, shapes = aligned(7, size), aligned(4, size), aligned(5, base + 2)
+    space = aligned(22, size)
+    meshes, work, table, out, found = space[:7], space[7:11], space[11:19], space[19:21], space[20:22]
+    shapes, small = aligned(5, base + 2), aligned(3, COLUMNS)
     x, y, kept_x, kept_y, safe = shapes[0], shapes[1], shapes[2], shapes[3], shapes[4]
-    table, out = aligned(nested.LANE_DOUBLINGS + 2, nested.OUTPUTS), aligned(2, nested.OUTPUTS)
-    found, small = aligned(2, nested.OUTPUTS), aligned(3, COLUMNS)
     columns, sizes, stretches = small[0], small[1], small[2]
     drawn = len(stations) > 0
     kept, nodes, doublings = np.zeros((WIDTH if drawn else 0, 5, size)), np.zeros((5, size)), np.zeros(WIDTH, np.int64)
