@@ -177,6 +177,7 @@ def test_narrow_vectors_give_the_same_numbers_to_rounding(tmp_path):
         f"np.savez(r'{tmp_path / 'narrow.npz'}', width=WIDTH, values=w.values, status=w.status)"
     )
     narrow = dict(os.environ, NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES="", XDG_CACHE_HOME=str(tmp_path))
+    narrow["PYTHONPATH"] = os.pathsep.join(sys.path)
     subprocess.run([sys.executable, "-c", program], env=narrow, check=True, cwd=os.path.dirname(__file__))
     found, wide = np.load(tmp_path / "narrow.npz"), walked(*designs(20, 11))
     assert found["width"] == 4

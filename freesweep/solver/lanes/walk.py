@@ -58,8 +58,8 @@ def walk_lanes(
         none was solved), and the uniform stretch
     """
     size = (base << nested.LANE_DOUBLINGS) + 2
-    space = aligned(22, size)
-    meshes, work, table, out, found = space[:7], space[7:11], space[11:19], space[19:21], space[20:22]
+    space = aligned(23, size)
+    meshes, work, table, out, found = space[:7], space[7:11], space[11:19], space[19:21], space[21:]
     shapes, small = aligned(5, base + 2), aligned(3, COLUMNS)
     x, y, kept_x, kept_y, safe = shapes[0], shapes[1], shapes[2], shapes[3], shapes[4]
     columns, sizes, stretches = small[0], small[1], small[2]
