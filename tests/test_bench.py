@@ -12,6 +12,7 @@ from freesweep.bench import peak, scipy_bvp, solver
 from freesweep.bench.flops import density_flops
 from freesweep.bench.sample import Reference, reference, sample, typical
 from freesweep.solver import lagrangian
+from freesweep.solver.lanes.vector import WIDTH
 
 
 def test_every_method_solves_the_same_problems():
@@ -87,4 +88,5 @@ def test_the_command_prints_one_table_and_keeps_the_figures(tmp_path, capsys, mo
     assert rows["this solver"]["error"] < 1e-6
     assert rows["this solver"]["failed"] == 0
     assert found["threads"][0]["threads"] == 1
-    assert 0.0 < found["newton_pass"]["share_of_peak"] < 1.0
+    assert [cost["designs"] for cost in found["newton_passes"]] == [1, WIDTH]
+    assert all(0.0 < cost["share_of_peak"] < 1.0 for cost in found["newton_passes"])

@@ -17,7 +17,9 @@ from ..solver import lagrangian, newton
 CHAINS = (
     12  # independent multiply-adds under way: more than latency times units of any machine yet, fewer than registers
 )
-ASSEMBLY, ELIMINATION = 22, 14  # flops of a cell beside its density: newton.assemble; factor, substitute and the step
+CELLS, PASSES = 96, 500  # of a mesh, timed at once
+TUBE, LOAD = (0.1, 0.6, 0.7), (1.0, 0.5, 1.0, 1.0, 0.0, 0.0, 1.0)  # any: a pass takes the same time
+EXTRA = 36  # flops of a cell beside its density: newton.assemble, factor, substitute
 
 
 def vector_width() -> int:
@@ -100,10 +102,13 @@ def passes(count, x, y, cells, load, work):
 
 
 def cell_time(repeats=5) -> float:
-    """Seconds for one cell in one Newton pass of the scalar kernel, on a mesh of 96 cells."""
-    n = 96
-    x = np.linspace(0.0, 10.0, n + 1)
-    y, work = 1.0 + 0.2 * (1.0 - np.exp(-x)), np.zeros((13, n + 2))
-    cells, load = np.array([[0.1, 0.6, 0.7]]), (1.0, 0.5, 1.0, 1.0, 0.0, 0.0, 1.0)
-    passes(1, x, y, cells, load, work)
-    return float(np.median([_time(passes, 500, x, y, cells, load, work) for _ in range(repeats)])) / (500 * n)
+    """Seconds for one cell in one Newton pass of the scalar kernel."""
+    x = np.linspace(0.0, 10.0, CELLS + 1)
+    y, work = 1.0 + 0.2 * (1.0 - np.exp(-x)), np.zeros((13, CELLS + 2))
+    return median_time(passes, repeats, x, y, np.array([TUBE]), LOAD, work) / (PASSES * CELLS)
+
+
+def median_time(run, repeats, *arguments) -> float:
+    """Median seconds of PASSES Newton passes."""
+    run(1, *arguments)  # compiles
+    return float(np.median([_time(run, PASSES, *arguments) for _ in range(repeats)]))

@@ -51,7 +51,7 @@ def measure(quick=False, say=lambda text: None) -> dict:
         "threads": _threads(chosen, repeats), "grid": _grid(designs, pressures, repeats),
         "accuracy": [timer.row("", f"{a:g}", lambda a=a: _solve(chosen, a)) for a in ACCURACIES[1::2]],
         "cells": [timer.row("", str(n), lambda n=n: _scalar(chosen, 1e-2, n)) for n in (12, 24, 48, 96)],
-        "newton_pass": _newton_pass(repeats),
+        "newton_passes": _newton_passes(repeats),
     }  # fmt: skip
 
 
@@ -143,17 +143,26 @@ def _grid(designs, pressures, repeats):
     return found
 
 
-def _newton_pass(repeats):
-    """Cost of a cell in a Newton pass beside the machine's peak."""
+def _newton_passes(repeats):
+    """Cost of a cell in a Newton pass, one design at a time and vectors of them, beside the machine's peak."""
     from ..solver import lagrangian
+    from ..solver.lanes.vector import WIDTH
     from .flops import density_flops
-    from .peak import ASSEMBLY, ELIMINATION, cell_time, peak
+    from .lane_pass import EXTRA as OF_VECTORS
+    from .lane_pass import lane_cell_time
+    from .peak import EXTRA, cell_time, peak
 
-    flops, seconds, most = density_flops(lagrangian) + ASSEMBLY + ELIMINATION, cell_time(repeats), peak(repeats=repeats)
-    return {
-        "flops_per_cell": flops, "seconds_per_cell": seconds, "peak_flops_per_second": most,
-        "share_of_peak": flops / seconds / most,
-    }  # fmt: skip
+    density, most = density_flops(lagrangian), peak(repeats=repeats)
+    found = []
+    for designs, flops, seconds in (
+        (1, density + EXTRA, cell_time(repeats)),
+        (WIDTH, density + OF_VECTORS, lane_cell_time(repeats)),
+    ):
+        found.append(
+            {"designs": designs, "flops_per_cell": flops, "seconds_per_cell": seconds, "peak_flops_per_second": most}
+            | {"share_of_peak": flops / seconds / most}
+        )
+    return found
 
 
 def _machine():
