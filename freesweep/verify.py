@@ -56,6 +56,8 @@ def _of_specification(data):
         sweep = parse(text)
     except SpecificationError as error:
         return [f"its specification cannot be read: {error}"]
+    if sweep.interpolation_tolerance is not None:
+        return _of_grown_axes(data, sweep)
     wanted = sweep.fixed | sweep.axes | ((sweep.designs or {}).get("columns", {}))
     found = [
         f"{name} is not what its specification asks for"
@@ -66,6 +68,18 @@ def _of_specification(data):
         found.append(
             f"its axes are {dict(data.sizes)}; its specification asks for {dict(zip(sweep.dims, sweep.shape))}"
         )
+    return found
+
+
+def _of_grown_axes(data, sweep):
+    """Faults of a grid whose axes have grown: all nodes asked for must be there, and no other fixed values."""
+    found = [
+        f"{name} is not what its specification asks for"
+        for name, values in (sweep.fixed | sweep.axes).items()
+        if name not in data.coords or not np.isin(values, data[name].values).all()
+    ]
+    if tuple(data.sizes) != sweep.dims:
+        found.append(f"its axes are {', '.join(data.sizes)}; its specification asks for {', '.join(sweep.dims)}")
     return found
 
 

@@ -8,13 +8,15 @@ from commands import refused, run
 from grids import FIXED, spec
 
 from freesweep import Actuator, MooneyRivlin, inflate, run_sweep, status
-from freesweep.atlas.store import describe
+from freesweep.atlas.store import Atlas, describe
 from freesweep.bench.query import table
 from freesweep.cli import DONE
 from freesweep.query import calibration
 from freesweep.query.faults import QueryError
 from freesweep.query.measure import calibrate
-from freesweep.sweep.spec import parse
+from freesweep.sweep.grade import graded
+from freesweep.sweep.spec import SpecificationError, parse
+from freesweep.verify import faults as verify
 
 AXES = {
     "alpha": np.linspace(10.0, 60.0, 9).tolist(),
@@ -65,6 +67,45 @@ def test_stated_errors_hold_at_designs_that_were_not_measured(made):
             missed += bool(gap > found[f"{name}_error"][k] + solved[f"{name}_error"])
             assert gap <= 1e-3 * max(abs(solved[name]), 0.1)
     assert missed <= 1
+
+
+COARSE = {
+    "alpha": [10.0, 35.0, 60.0], "beta": [-70.0, -45.0, -20.0], "length": [0.1, 0.2, 0.3], "pressure": [0.0, 3e4, 1e5],
+}  # fmt: skip
+
+
+def test_axes_grow_until_answers_are_as_exact_as_asked(tmp_path):
+    solver = "\n[solver]\ninterpolation_tolerance = 1e-5\nbudget = 6000"
+    sweep = parse(spec(COARSE) + solver)
+    grown = graded(sweep)
+    assert grown.points <= 6000
+    again = graded(sweep)
+    for name, values in COARSE.items():
+        assert set(values) <= set(grown.axes[name])
+        assert np.array_equal(grown.axes[name], again.axes[name])
+    assert grown.points > 10 * sweep.points
+    points = {name: np.random.default_rng(5).uniform(v[0], v[-1], 200) for name, v in COARSE.items()}
+    shares = []
+    for text in ("", solver):
+        with run_sweep(parse(spec(COARSE) + text), tmp_path / f"{len(text)}.nc", threads=2, progress=False) as atlas:
+            data = atlas.data.load().assign_attrs(interpolation_tolerance=1e-5)
+            found = Atlas(data, atlas.path).query(**points, variables=["deformed_length", "volume"])
+            shares.append((found["status"] == status.OK).mean().item())
+            assert verify(atlas.path) == []
+    assert shares[1] > max(0.6, 2.0 * shares[0])
+
+
+@pytest.mark.parametrize(
+    ("solver", "says"),
+    [
+        ("interpolation_tolerance = 2.0", "interpolation_tolerance: found 2, allowed is"),
+        ("budget = 10", "give interpolation_tolerance, too"),
+        ("interpolation_tolerance = 1e-3\nbudget = 0", "budget: found 0"),
+    ],
+)
+def test_tolerances_and_budgets_are_checked(solver, says):
+    with pytest.raises(SpecificationError, match=says):
+        parse(spec(COARSE) + "\n[solver]\n" + solver)
 
 
 def test_factors_are_the_least_that_hold():

@@ -32,6 +32,16 @@ class Axis:
     right: np.ndarray
     remainder: np.ndarray
 
+    def forward(self, values):
+        """The axis' coordinate at ``values``."""
+        return (
+            np.sqrt(values) if self.kind == SQRT else np.log(values) if self.kind == LOG else np.asarray(values, float)
+        )
+
+    def back(self, nodes):
+        """Values at places of the axis' coordinate."""
+        return nodes**2 if self.kind == SQRT else np.exp(nodes) if self.kind == LOG else nodes
+
     def rate(self, values):
         """Derivative of the axis' coordinate by its value, at ``values`` (n,)."""
         with np.errstate(divide="ignore", invalid="ignore"):

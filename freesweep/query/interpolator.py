@@ -10,6 +10,7 @@ from .family import FAMILY_OF, MIRRORED
 from .faults import QueryError
 from .query import check_names
 
+CHUNK = 1 << 17  # points answered together: their arrays stay small
 STEP = 1e-6  # relative, of central differences of the closed forms (their errors are some 1e-10)
 
 
@@ -54,7 +55,11 @@ class Interpolator:
         found = np.empty((len(self.names), size))
         slopes = np.zeros((len(self.names), len(self.axes), size)) if gradient else None
         for key, own in self._families.items():
-            self._answer(self.reader.table(key), flat, own, found, slopes)
+            table = self.reader.table(key)
+            for begin in range(0, size, CHUNK):
+                some = slice(begin, begin + CHUNK)
+                part = {name: flat[name][some] for name in table.known}
+                self._answer(table, part, own, found[:, some], slopes[..., some] if gradient else None)
         found = found.reshape(len(self.names), *shape)
         result = (found, slopes.reshape(len(self.names), len(self.axes), *shape)) if gradient else (found,)
         result = tuple(array[0] for array in result) if self.single else result

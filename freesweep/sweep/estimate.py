@@ -96,6 +96,8 @@ def dry_run(sweep, out, threads=None) -> str:
         for kind, count in equilibria.items()
         if kind != FREE
     ]
+    if sweep.interpolation_tolerance is not None:
+        lines.append(f"axes grow for interpolation_tolerance, to {sweep.budget:,} grid points at most")
     shards, atlas = disk(sweep, equilibria)
     folder = Path(out).parent
     free = f"{shutil.disk_usage(folder).free / 1e6:,.0f} MB free" if folder.is_dir() else f"there is no folder {folder}"

@@ -13,6 +13,7 @@ from ..atlas.write import AtlasWriter, packed, parts
 from ..status import STATUSES
 from . import estimate
 from .collect import groups
+from .grade import graded
 from .grid import coordinates
 from .identity import fingerprint, identify
 from .plan import plan as make_plan
@@ -59,6 +60,7 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
         if atlas := _complete(out, identity, overwrite, progress):  # another process was faster
             shards.clear()
             return atlas
+        sweep = graded(sweep, print if progress else lambda _: None)
         tables = make_plan(sweep)
         split_up = {kind: split(table, sweep) for kind, table in tables.items()}
         done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, overwrite)
@@ -111,6 +113,8 @@ def split(table, sweep):
 
 
 def _provenance(sweep, tables, identity, started):
+    tolerance = sweep.interpolation_tolerance
+    of_query = {} if tolerance is None else {"interpolation_tolerance": tolerance}
     of_profiles = {f"profile_{name}": np.ravel(pairs) for name, pairs in sweep.profiles.items()}
     return {
         "title": sweep.title,
@@ -122,6 +126,7 @@ def _provenance(sweep, tables, identity, started):
         "energy": sweep.energy,
         "accuracy": sweep.accuracy,
         **of_profiles,
+        **of_query,
         "distinct_problems": sum(table.count for table in tables.values()),
         "distinct_equilibria": sum(table.equilibria for table in tables.values()),
         "python": platform.python_version(),

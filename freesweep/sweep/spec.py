@@ -17,6 +17,8 @@
     [solver]
     accuracy = 1e-6
     blocked = true              # blocked force and torque too, with fiber extension and loads
+    interpolation_tolerance = 1e-4   # add nodes to the axes until answers between them are that exact (relative, lengths)
+    budget = 5_000_000               # or until the grid has that many points
 
 A design takes what it leaves out from [actuator] and [load]. A held length (absolute, or as a ratio to the undeformed one)
 asks for the blocked force, a held rotation for the blocked torque; ``blocked = true`` for both, at rest where not given.
@@ -42,6 +44,7 @@ __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
 MAX_POINTS = 2_000_000_000  # 16 GB for each variable of the atlas
 ENERGIES = ("full", "principal")
+TOLERANCES = (1e-7, 0.1)  # of answers between nodes, relative
 VARYING = ("alpha", "beta", "wall")  # may be profiles along the tube
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
 
@@ -65,6 +68,8 @@ class Sweep:
     text: str = field(repr=False)
     blocked: tuple[str, ...] = ()  # which of blocked_force, blocked_torque are solved
     profiles: dict[str, tuple] = field(default_factory=dict)
+    interpolation_tolerance: float | None = None
+    budget: int = 5_000_000  # points to which axes may grow for the tolerance
 
     @property
     def sha256(self) -> str:
@@ -103,6 +108,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
     title = faults.line("title", document.get("title", ""))
     energy = _energy(faults, tables["actuator"])
     accuracy = _accuracy(faults, tables["solver"])
+    tolerance, budget = _tolerance(faults, tables["solver"])
     given = {}  # parameter: where it is given, faulty or not
     fixed, profiles = _fixed(faults, tables, given)
     axes = _axes(faults, tables["axes"], given)
@@ -128,7 +134,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
             "use coarser axes or several sweeps",
         )
     faults.check()
-    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked, profiles)
+    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget)
 
 
 def _shape(axes, designs):
@@ -169,7 +175,7 @@ def _blocked(faults, solver, given):
 
 
 def _accuracy(faults, solver):
-    faults.unknown_keys(solver, ("accuracy", "blocked"), "solver")
+    faults.unknown_keys(solver, ("accuracy", "blocked", "interpolation_tolerance", "budget"), "solver")
     low, high = ACCURACIES
     try:
         accuracy = quantity(solver.get("accuracy", 1e-6), "1")
@@ -179,6 +185,27 @@ def _accuracy(faults, solver):
     if not low <= accuracy <= high:
         faults.add("solver.accuracy", f"found {accuracy:g}, allowed is {low:g} to {high:g}; 1e-6 suits most sweeps")
     return accuracy
+
+
+def _tolerance(faults, solver):
+    """Tolerance of answers between the nodes, None without, and the points to which axes may grow for it."""
+    tolerance, budget = solver.get("interpolation_tolerance"), solver.get("budget", Sweep.budget)
+    if tolerance is None and "budget" in solver:
+        faults.add("solver.budget", "is for axes that grow; give interpolation_tolerance, too")
+    if isinstance(budget, bool) or not isinstance(budget, int) or not 1 <= budget <= MAX_POINTS:
+        faults.add("solver.budget", f"found {shown(budget)}, allowed is a whole number from 1 to {MAX_POINTS:,}")
+        budget = Sweep.budget
+    if tolerance is None:
+        return None, budget
+    low, high = TOLERANCES
+    try:
+        number = quantity(tolerance, "1")
+    except ValueError as error:
+        faults.add("solver.interpolation_tolerance", str(error))
+        return None, budget
+    if not low <= number <= high:
+        faults.add("solver.interpolation_tolerance", f"found {number:g}, allowed is {low:g} to {high:g}")
+    return number, budget
 
 
 def _fixed(faults, tables, given):
