@@ -15,9 +15,11 @@ from .records import LIMIT, state
 
 BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and a few shards
 DESIGN_MEMORY = 80  # [bytes] of each design while a plan is made
+LEAST_MEASURED, MOST_MEASURED = 5_000, 15_000_000  # points of an atlas that measures itself
+MEASURING, POINT_MEMORY = 200_000_000, 80  # [bytes] of its kernels, and of each point in its tables
 SHRINKS = 0.9  # of the numbers when they are compressed, at least
 FILE = 1_000_000  # [bytes] of an atlas without its numbers, at most
-MOST_PLANNED = 100_000  # designs that a dry run compares: a fraction of a second
+MOST_PLANNED = 300_000  # designs that a dry run compares: half a second
 SAMPLE_SECONDS, SAMPLES, TOGETHER = 0.2, 64, 32  # of each kind of state; problems solved at once, as vectors need them
 TYPICAL = {FREE: 100e-6, "blocked_force": 4e-3, "blocked_torque": 4e-3}  # [s] of one equilibrium on one core
 
@@ -36,9 +38,15 @@ def grids(sweep) -> dict:
     }
 
 
+def is_measured(sweep) -> bool:
+    """Whether the atlas compares its answers between the nodes with exact ones when it is made."""
+    return LEAST_MEASURED <= sweep.points <= MOST_MEASURED
+
+
 def memory(sweep) -> int:
     """Bytes of memory, at most."""
-    return BASE_MEMORY + DESIGN_MEMORY * max(grids(sweep).values())
+    measuring = MEASURING + POINT_MEMORY * sweep.points if is_measured(sweep) else 0
+    return BASE_MEMORY + max(DESIGN_MEMORY * max(grids(sweep).values()), measuring)
 
 
 def check_memory(sweep):

@@ -22,11 +22,7 @@ from .solve import solve_shard
 from .spec import Sweep, read_file
 
 SHARD_EQUILIBRIA = 8192  # a second of work or less: what an interruption can cost, for each thread
-HELD_COST, VARYING_COST = (
-    32,
-    8,
-)  # of a held state, and of a tube that varies, in those of a free state of one that does not
-LEAST_MEASURED, MOST_MEASURED = 5_000, 15_000_000  # points of an atlas that measures itself: 1 GB of tables at most
+HELD_COST, VARYING_COST = 32, 8  # of a held state, of a tube that varies: in those of a free state of one that does not
 AHEAD = 4  # jobs for each thread that are begun or waited for
 
 
@@ -182,7 +178,7 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
                 for chunk in chunks:
                     writer.put(*chunk)
                 bar.update(1)
-        if LEAST_MEASURED <= sweep.points <= MOST_MEASURED:
+        if estimate.is_measured(sweep):
             from ..query.measure import measure
 
             with writer.dataset() as data:
