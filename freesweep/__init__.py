@@ -12,9 +12,11 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "Actuator": "actuator",
-    "ActuatorError": "actuator",
-    "MooneyRivlin": "actuator",
-    "NeoHookean": "actuator",
+    "ActuatorError": "faults",
+    "MooneyRivlin": "elastomer",
+    "NeoHookean": "elastomer",
+    "material": "material_library",
+    "materials": "material_library",
     "lock": "statics",
     "inflate": "statics",
     "blocked_force": "holding",

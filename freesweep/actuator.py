@@ -1,40 +1,19 @@
-"""What a person describes: the actuator and its material, checked, in SI units and degrees."""
+"""What a person describes: the actuator, checked, in SI units and degrees."""
 
 import math
 import warnings
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from numbers import Real
 
 import numpy as np
 
+from .elastomer import MooneyRivlin
+from .faults import ActuatorError, number_fault
 from .profiles import ProfileError, as_profile, is_profile, together
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
 SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
 ENERGIES = ("full", "principal")
-
-
-class ActuatorError(ValueError):
-    """The description of an actuator or a load has faults; ``faults`` lists them all."""
-
-    def __init__(self, faults):
-        self.faults = list(faults)
-        super().__init__("\n".join(["faults in what was given:", *(f"  - {fault}" for fault in self.faults)]))
-
-
-def number_fault(name, value, unit, positive=False, least=None):
-    """A sentence on what is wrong with a number, or None."""
-    if isinstance(value, str):
-        return f"{name}: found the text {value!r}; the Python API takes a number in [{unit}]"
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return f"{name}: found {type(value).__name__} {value!r:.60}; give one number in [{unit}]"
-    if not math.isfinite(value):
-        return f"{name}: found {value}; give a finite number in [{unit}]"
-    if positive and not value > 0:
-        return f"{name}: found {value:g} {unit}; it has to be above 0"
-    if least is not None and value < least:
-        return f"{name}: found {value:g}; it has to be {least:g} or more"
-    return None
 
 
 def _along_fault(name, value, unit, positive=False):
@@ -54,29 +33,6 @@ def _along_fault(name, value, unit, positive=False):
     return None
 
 
-@dataclass(frozen=True)
-class MooneyRivlin:
-    """Mooney-Rivlin rubber: w = c10 (I1 - 3) + c01 (I2 - 3), Eq. 2.5.
-
-    ``c10`` > 0 and ``c01`` >= 0 in [Pa]. Raises :class:`ActuatorError`.
-    """
-
-    c10: float
-    c01: float = 0.0
-
-    def __post_init__(self):
-        faults = [number_fault("c10", self.c10, "Pa", positive=True), number_fault("c01", self.c01, "Pa", least=0.0)]
-        if faults := [fault for fault in faults if fault]:
-            raise ActuatorError(faults)
-
-
-@dataclass(frozen=True)
-class NeoHookean(MooneyRivlin):
-    """Neo-Hookean rubber: w = c10 (I1 - 3), ``c10`` > 0 in [Pa]."""
-
-    c01: float = field(default=0.0, init=False, repr=False)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Actuator:
     """A fiber-reinforced tube before deformation.
@@ -87,7 +43,7 @@ class Actuator:
         along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump) or a callable of x/l (array in, array out)
     length, radius : undeformed length, inner radius [m]
     wall : wall thickness [m], number or profile
-    material : :class:`MooneyRivlin` or :class:`NeoHookean`
+    material : :class:`MooneyRivlin`, :class:`NeoHookean`, or a rubber of the library, :func:`freesweep.material`
     fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
     fiber_radius : radius at which the fibers lie [m], from the inner to the outer one; None: the inner one, as in Eq. 2.20
     energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed

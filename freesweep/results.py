@@ -7,6 +7,7 @@ import numpy as np
 from . import status
 from .atlas.schema import attributes
 from .scaling import OUTPUTS, output_scales, wall_volume_inside
+from .strain import warn_beyond_range
 
 
 def dataset(tube, axes, stations, found, without=()):
@@ -37,6 +38,8 @@ def dataset(tube, axes, stations, found, without=()):
         result[name].attrs = attributes(name)
     if np.any(result["status"] == status.NOT_CONVERGED):
         warnings.warn(status.STATUSES[status.NOT_CONVERGED].sentence, stacklevel=4)
+    if not np.any(np.isinf(axes["pressure"])):  # the locked shape is that of any material
+        warn_beyond_range(tube, result, stacklevel=5)
     return result
 
 

@@ -34,16 +34,21 @@ def add_actuator(commands, name, text, run, rubber=True):
         command.add_argument(f"--{angle}", required=True, metavar="A", help="fiber angle from the axis")
     for size in ("length", "radius", "wall"):
         command.add_argument(f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'")
-    without = "" if rubber else "; the locked shape needs none"
-    command.add_argument("--c10", required=rubber, metavar="C", help=f"Mooney-Rivlin constant{without}")
-    command.add_argument("--c01", default="0 MPa", metavar="C", help="Mooney-Rivlin constant")
+    add_rubber(command, "" if rubber else "; the locked shape needs none")
     command.add_argument("--fiber-extension", default=1.0, metavar="G", help="stretch of the fibers, 1 or more")
     command.add_argument("--fiber-radius", metavar="L", help="where the fibers lie; default: the inner radius")
     command.add_argument(
         "--energy", choices=("full", "principal"), default="full", help="principal: Eq. 2.5 as printed"
     )
-    command.set_defaults(run=run)
+    command.set_defaults(run=run, rubber=rubber)
     return command
+
+
+def add_rubber(command, remark=""):
+    """Options for a rubber: a name of the library, or constants."""
+    command.add_argument("--material", metavar="NAME", help=f"a rubber of the library, such as dragon-skin-30{remark}")
+    command.add_argument("--c10", metavar="C", help=f"Mooney-Rivlin constant{remark}")
+    command.add_argument("--c01", metavar="C", help="Mooney-Rivlin constant (default 0)")
 
 
 def _keep(command):
@@ -52,28 +57,63 @@ def _keep(command):
 
 def tube_of(options):
     """The actuator that the options describe; every quantity that cannot be read is named in one ValueError."""
-    from .actuator import Actuator, MooneyRivlin
+    from .actuator import Actuator
+
+    faults = []
+    names = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")
+    values = read_options(options, names, faults)
+    any_rubber = () if options.rubber else ("100 kPa",)
+    material = read_rubber(options, faults, *any_rubber)
+    if faults:
+        raise ValueError("\n".join(["cannot read this actuator:", *(f"  - {fault}" for fault in faults)]))
+    return Actuator(**values, material=material, energy=options.energy)
+
+
+def read_options(options, names, faults) -> dict:
+    """Numbers of the options that are given, by name, in SI units and degrees; faults are noted."""
     from .atlas.schema import PARAMETERS
     from .units import quantity
 
-    names = ("alpha", "beta", "length", "radius", "wall", "c10", "c01", "fiber_extension", "fiber_radius")
-    values, faults = {}, []
+    values = {}
     for name in (name for name in names if getattr(options, name) is not None):
         try:
             values[name] = quantity(getattr(options, name), PARAMETERS[name].units)
         except ValueError as error:
             faults.append(f"--{name.replace('_', '-')}: {error}")
-    if faults:
-        raise ValueError("\n".join(["cannot read this actuator:", *(f"  - {fault}" for fault in faults)]))
-    material = MooneyRivlin(values.pop("c10", 1e5), values.pop("c01"))
-    return Actuator(**values, material=material, energy=options.energy)
+    return values
+
+
+def read_rubber(options, faults, *default):
+    """The rubber of the options of ``add_rubber``, or of a ``default`` c10; None after noting faults."""
+    from .elastomer import MooneyRivlin
+    from .faults import ActuatorError
+    from .material_library import material
+    from .units import quantity
+
+    before = len(faults)
+    given = [name for name in ("c10", "c01") if getattr(options, name) is not None]
+    values = read_options(options, given, faults)
+    if options.material is not None and given:
+        faults.append(f"--material: --{given[0]} is given too; give a name or constants")
+    elif options.material is None and "c10" not in given and not default:
+        faults.append("--c10: is missing; give the constants of the rubber, or its name, --material")
+    if len(faults) > before:
+        return None
+    try:
+        if options.material is not None:
+            return material(options.material)
+        c10 = values["c10"] if "c10" in values else quantity(*default, "Pa")
+        return MooneyRivlin(c10, values.get("c01", 0.0))
+    except ActuatorError as error:
+        faults += error.faults
+        return None
 
 
 def _run_lock(options):
     from .statics import lock
 
     dataset = lock(tube_of(options))
-    if options.c10 is None:
+    if options.c10 is None and options.material is None:
         dataset = dataset.drop_vars(["strain_energy", "strain_energy_error"])
     _show(dataset, options)
 

@@ -1,5 +1,7 @@
 """The command `freesweep calibrate`: parses and calls."""
 
+from ..single import add_rubber, read_options, read_rubber
+
 NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
 
 
@@ -18,8 +20,7 @@ def add_calibrate(commands):
         command.add_argument(
             f"--{name.replace('_', '-')}", metavar="VALUE", help="of all actuators without such a column"
         )
-    command.add_argument("--c10", metavar="C", help="first guess, or the value where it is not fitted")
-    command.add_argument("--c01", metavar="C", help="first guess, or the value where it is not fitted")
+    add_rubber(command, "; here a first guess, or the value of what is not fitted")
     command.add_argument("--fit", nargs="+", metavar="NAME", help="what to fit (default: c10 c01 fiber_extension)")
     command.add_argument(
         "--measured",
@@ -39,24 +40,17 @@ def add_calibrate(commands):
 
 
 def _run(options):
-    from ..actuator import ActuatorError, MooneyRivlin
+    from ..actuator import ActuatorError
     from ..atlas.files import write_whole
-    from ..atlas.schema import PARAMETERS
-    from ..units import quantity
     from .csv_file import FIRST_GUESS, read_measurements
     from .fit import calibrate
     from .report import table, to_dataset
 
-    values, faults = {}, []
-    for name in (name for name in (*NUMBERS, "c10", "c01") if getattr(options, name) is not None):
-        try:
-            values[name] = quantity(getattr(options, name), PARAMETERS[name].units)
-        except ValueError as error:
-            faults.append(f"--{name.replace('_', '-')}: {error}")
-    guess = {name: values.pop(name, getattr(FIRST_GUESS, name)) for name in ("c10", "c01")}
+    faults = []
+    values = read_options(options, NUMBERS, faults)
+    material = read_rubber(options, faults, f"{FIRST_GUESS.c10} Pa") if _any_rubber(options) else FIRST_GUESS
     if not faults:
         try:
-            material = MooneyRivlin(**guess)
             measurements = read_measurements(
                 options.files, measured=options.measured, material=material, energy=options.energy, **values
             )
@@ -69,3 +63,7 @@ def _run(options):
     if options.out:
         write_whole(options.out, to_dataset(found).to_netcdf(engine="netcdf4"))
         print(options.out)
+
+
+def _any_rubber(options):
+    return any(getattr(options, name) is not None for name in ("material", "c10", "c01"))

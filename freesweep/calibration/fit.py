@@ -5,7 +5,7 @@ parameters is (J^T J)^-1. Where no uncertainties are given, that of each measure
 about the fit, and the fit is made again with it. Intervals are Student's, for the degrees of freedom that are left.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -140,7 +140,7 @@ def _checked(measurements, fit):
         faults.append(
             f"measurements: materials differ in kind, {' and '.join(sorted(t.__name__ for t in materials))}; give one"
         )
-    known = [item.name for item in fields(measurements[0].tube.material) if item.init] + [EXTENSION]
+    known = [*measurements[0].tube.material.constants, EXTENSION]
     names = known if fit is None else [fit] if isinstance(fit, str) else list(fit)
     faults += [f"fit: found {name!r:.40}; choose among {', '.join(known)}" for name in names if name not in known]
     if not names:

@@ -11,7 +11,7 @@ from .predicted import continued, predicted
 EXTENSION = "fiber_extension"
 PERCENT = 0.01  # extensions are searched in percent, material constants in units of the first guess: all near 1
 LARGEST_EXTENSION = 20.0  # [%]
-SMALLEST_CONSTANT = 1e-4  # of the first constant, in units of its guess: it has to stay above 0
+LEAST = {"c10": 1e-4}  # of constants, in units of the first guess; 0 for others
 SCAN = 3.0 ** np.arange(-3.0, 4.0)  # times the first guess of all constants
 SCAN_EXTENSION = (0.0, 0.5, 1.0)  # [%]
 STEP = 1e-3  # of differences: their truncation, 1e-3 or 1e-6 if central, is far above the solver's error over it
@@ -27,7 +27,7 @@ class Problem:
         self.measurements = measurements
         material = measurements[0].tube.material
         self.constants = tuple(name for name in names if name != EXTENSION)
-        first_constant = fields(material)[0].name
+        first_constant = material.constants[0]
         self.unit = getattr(material, first_constant)
         tubes = [_bare(m.tube) for m in measurements]
         distinct = [tube for k, tube in enumerate(tubes) if tube not in tubes[:k]]
@@ -40,9 +40,7 @@ class Problem:
         first = [m.tube.fiber_extension for m in measurements]
         guess += [(first[self.which.index(k)] - 1.0) / PERCENT for k in range(count)]
         self.guess = np.array(guess)
-        self.low = np.zeros(len(guess))
-        if first_constant in self.constants:
-            self.low[0] = SMALLEST_CONSTANT
+        self.low = np.array([LEAST.get(name, 0.0) for name in (*self.constants, *[EXTENSION] * count)])
         self.high = np.array([np.inf] * len(self.constants) + [LARGEST_EXTENSION] * count)
         self.scales = np.array([self.unit] * len(self.constants) + [PERCENT] * count)
         self.offsets = np.array([0.0] * len(self.constants) + [1.0] * count)
@@ -65,7 +63,11 @@ class Problem:
             for measurement, k in zip(self.measurements, self.which):
                 tube = measurement.tube
                 changes = {EXTENSION: extensions[k]} if extensions else {}
-                made.append(replace(tube, material=replace(tube.material, **constants), **changes))
+                made.append(
+                    replace(
+                        tube, material=replace(tube.material, largest_stretch=None, source="", **constants), **changes
+                    )
+                )
         return made
 
     def model(self, theta):
@@ -82,7 +84,7 @@ class Problem:
         """Derivative of the model (values, p): central differences, or, beside the ``model`` at theta, forward ones."""
         columns = []
         for k in range(len(theta)):
-            step = STEP * max(theta[k], 0.1)
+            step = STEP * max(abs(theta[k]), 0.1)
             ends = [theta.copy(), theta.copy()]
             ends[0][k] = max(theta[k] - step, self.low[k]) if model is None else theta[k]
             ends[1][k] = theta[k] + step
@@ -95,8 +97,7 @@ class Problem:
         """Least squares from ``theta`` on the ``rows`` (values,) that count, pulled ever so weakly toward ``home``."""
         from scipy.optimize import least_squares
 
-        pull = PULL / np.maximum(home, 1.0)
-
+        pull = PULL / np.maximum(np.abs(home), 1.0)
         last = {}
 
         def residuals(at):

@@ -13,6 +13,7 @@ OWN = tuple(name for name in PARAMETERS if name != "pressure")  # what may diffe
 ELSEWHERE = {
     "pressure": "all designs share the pressures; give them in [axes] or [load]",
     "energy": "it belongs in [actuator] and cannot differ between designs",
+    "material": "it belongs in [actuator]; designs of different rubbers give c10 and c01",
 }
 HOME = {name: "load" if name in (*LOADS, *HELD) else "actuator" for name in PARAMETERS}
 

@@ -17,6 +17,7 @@ from .grade import graded
 from .grid import coordinates
 from .identity import fingerprint, identify
 from .plan import plan as make_plan
+from .rubber import rubber_attributes, warn_beyond_range
 from .shards import Records, Shards, SweepError
 from .solve import solve_shard
 from .spec import Sweep, read_file
@@ -70,6 +71,7 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
     finally:
         shards.release()
     atlas = open_atlas(out)
+    warn_beyond_range(atlas.data)
     if progress:
         now = time.perf_counter()
         print(summary(atlas, tables, solved - begun, now - begun))
@@ -123,6 +125,7 @@ def _provenance(sweep, tables, identity, started):
         "accuracy": sweep.accuracy,
         **of_profiles,
         **of_query,
+        **rubber_attributes(sweep),
         "distinct_problems": sum(table.count for table in tables.values()),
         "distinct_equilibria": sum(table.equilibria for table in tables.values()),
         "python": platform.python_version(),

@@ -4,7 +4,7 @@
     [actuator]                  # fixed values of the design, with units; plain numbers are SI and degrees
     wall = "1.59 mm"            # alpha, beta, wall may vary along the tube: [[0, "30 deg"], [0.5, "40 deg"], [1, "30 deg"]],
                                 # pairs of x/l and value; a repeated x/l is a jump
-    c10 = "0.17 MPa"
+    c10 = "0.17 MPa"            # and c01; or material = "dragon-skin-30", a rubber of the library
     energy = "full"             # or "principal"
     [load]                      # fixed force, torque, pressure, held_length or held_length_ratio, held_rotation
     [axes]                      # what varies: all combinations are solved
@@ -39,6 +39,7 @@ from ..units import quantity, shown
 from . import axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError
+from .rubber import read_material
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
@@ -70,6 +71,7 @@ class Sweep:
     profiles: dict[str, tuple] = field(default_factory=dict)
     interpolation_tolerance: float | None = None
     budget: int = 5_000_000  # points to which axes may grow for the tolerance
+    material: str = ""  # name of its rubber, if it came from the library
 
     @property
     def sha256(self) -> str:
@@ -134,7 +136,8 @@ def parse(text: str, name: str = "specification") -> Sweep:
             "use coarser axes or several sweeps",
         )
     faults.check()
-    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget)
+    rubber = tables["actuator"].get("material", "")
+    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget, rubber)
 
 
 def _shape(axes, designs):
@@ -214,7 +217,7 @@ def _fixed(faults, tables, given):
         table = tables[section]
         own = [name for name in PARAMETERS if HOME[name] == section]
         elsewhere = {name: f"it belongs in [{HOME[name]}]" for name in PARAMETERS}
-        faults.unknown_keys(table, [*own, "energy"] if section == "actuator" else own, section, elsewhere)
+        faults.unknown_keys(table, [*own, "energy", "material"] if section == "actuator" else own, section, elsewhere)
         for name in own:
             if name in table:
                 given[name] = f"{section}.{name}"
@@ -222,11 +225,17 @@ def _fixed(faults, tables, given):
                     profiles[name] = axis.profile(faults, given[name], name, table[name])
                 else:
                     fixed[name] = axis.value(faults, given[name], name, table[name])
+    fixed |= read_material(faults, tables["actuator"], given)
     return fixed, {name: pairs for name, pairs in profiles.items() if pairs}
 
 
 def _axes(faults, table, given):
-    faults.unknown_keys(table, tuple(PARAMETERS), "axes", {"energy": "it belongs in [actuator] and cannot vary"})
+    faults.unknown_keys(
+        table,
+        tuple(PARAMETERS),
+        "axes",
+        {name: "it belongs in [actuator] and cannot vary" for name in ("energy", "material")},
+    )
     axes = {}
     for name in PARAMETERS:
         if name in table:

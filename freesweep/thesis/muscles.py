@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..actuator import Actuator, NeoHookean
+from ..actuator import Actuator
+from ..elastomer import NeoHookean
 from ..holding import blocked_force
 from ..plot import style
 from ..plot.curve import label_ends

@@ -1,0 +1,68 @@
+"""Published constants of rubbers by name, each with its source and the stretch up to which they hold.
+
+Silicones differ between batches, curing and test speeds: published constants of one product differ by a factor of 1.5 and
+more (Ecoflex 00-30: 2 c10 from 16 to 25 kPa). Take these for a first design, and :func:`freesweep.calibrate` for your own.
+"""
+
+import difflib
+from collections.abc import Mapping
+
+from .elastomer import MooneyRivlin, NeoHookean
+from .faults import ActuatorError
+
+_TABLE_1 = (
+    "source, Table 1 (natural rubber latex, Kent Elastomer), adjusted there to the measured lengths of the McKibben muscle"
+    " of {angle} degrees; no wall of it is stretched beyond its locked shape"
+)
+_TENSILE = (
+    "least squares, to a stretch of {stretch}, of the tensile test (ASTM D412, 450 mm/min) published by L. Marechal,"
+    " P. Balland, L. Lindenroth, F. Petrou, C. Kontovounisios, F. Bello: Toward a Common Framework and Database of Materials"
+    " for Soft Robotics, Soft Robotics 8 (2021), doi 10.1089/soro.2019.0115; largest misfit {misfit} of the stress there"
+)
+
+
+class Library(Mapping):
+    """Rubbers by name: ``materials["ecoflex-00-30"]``; each has its ``source`` and its ``largest_stretch``."""
+
+    def __init__(self, rubbers):
+        self._rubbers = rubbers
+
+    def __getitem__(self, name):
+        return self._rubbers[name]
+
+    def __iter__(self):
+        return iter(self._rubbers)
+
+    def __len__(self):
+        return len(self._rubbers)
+
+
+materials = Library(
+    {
+        "natural-latex": MooneyRivlin(0.11e6, 0.06e6, largest_stretch=1.64, source=_TABLE_1.format(angle=30)),
+        "natural-latex-35": MooneyRivlin(0.18e6, 0.12e6, largest_stretch=1.43, source=_TABLE_1.format(angle=35)),
+        "natural-latex-40": MooneyRivlin(0.18e6, 0.10e6, largest_stretch=1.28, source=_TABLE_1.format(angle=40)),
+        "ecoflex-00-30": NeoHookean(8.32e3, largest_stretch=2.5, source=_TENSILE.format(stretch=2.5, misfit="4.2 %")),
+        "dragon-skin-30": NeoHookean(95.8e3, largest_stretch=1.5, source=_TENSILE.format(stretch=1.5, misfit="5.5 %")),
+        "elastosil-m4601": NeoHookean(
+            0.11e6,
+            largest_stretch=1.3,
+            source="Soft Robotics Toolkit (softroboticstoolkit.com), PneuNets bending actuators, modeling: Yeoh, C1 = 0.11"
+            " MPa, C2 = 0.02 MPa; of these the first alone, up to where the second adds a tenth to a strip's stress",
+        ),
+    }
+)
+
+
+def material(name):
+    """A rubber of the library (``freesweep.materials`` lists them); its ``source`` says where the constants come from.
+
+    Raises :class:`ActuatorError` for a name it does not hold.
+    """
+    if isinstance(name, str):
+        found = materials.get(name.strip().lower().replace(" ", "-").replace("_", "-"))
+        if found is not None:
+            return found
+    near = difflib.get_close_matches(str(name).lower()[:40], list(materials), n=1, cutoff=0.4)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    raise ActuatorError([f"material: found {name!r:.60}; {hint}The library holds {', '.join(materials)}"])
