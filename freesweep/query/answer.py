@@ -38,7 +38,7 @@ class Inquiry:
         self.exact = self.node >= 0
         self.order = np.arange(self.size)
         if self.size > SORTED:
-            tensor.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-2])), self.order)
+            tensor.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-1])), self.order)
 
     @property
     def valued(self):

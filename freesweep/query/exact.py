@@ -80,21 +80,15 @@ def _scales(kind, own):
 
 def _free(rows, pressure, most, accuracy):
     """Free states of rows (k, 9), each at its own pressure, and followed to ``most`` (k,) if that is given."""
-    from ..solver.branch import walk_many
+    from ..solver.batch import uniform, walk_all
 
     count = len(rows)
     steps = 1 if most is None else 2
     pressures = pressure if most is None else np.column_stack([pressure, np.maximum(most, pressure)]).ravel()
-    values, bounds = np.empty((steps * count, 5)), np.empty((steps * count, 5))
-    codes, slack = np.empty(steps * count, np.int64), np.empty(steps * count, np.int64)
-    limits = np.empty((count, 2))
     first = steps * np.arange(count + 1, dtype=np.int64)
-    walk_many(
-        np.ascontiguousarray(rows), first, np.ascontiguousarray(pressures), np.empty((0, 1, 3, 4)), np.array([0, CELLS]),
-        np.zeros(2), accuracy, values, bounds, codes, slack, limits, np.empty(0), np.empty((steps * count, 0, 0)),
-    )  # fmt: skip
+    walks = walk_all(np.ascontiguousarray(rows), first, np.ascontiguousarray(pressures), uniform(CELLS), accuracy)
     own = slice(0, None, steps)
-    return values[own], bounds[own], codes[own], slack[own], limits
+    return walks.values[own], walks.bounds[own], walks.status[own], walks.slack[own], walks.limits
 
 
 def _held(kind, rows, own, accuracy):

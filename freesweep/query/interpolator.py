@@ -10,7 +10,7 @@ from .family import FAMILY_OF, MIRRORED
 from .faults import QueryError
 from .query import check_names
 
-CHUNK = 1 << 17  # points answered together: their arrays stay small
+CHUNK = 1 << 18  # points answered together: their arrays stay small
 STEP = 1e-6  # relative, of central differences of the closed forms (their errors are some 1e-10)
 
 

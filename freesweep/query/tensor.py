@@ -205,8 +205,8 @@ def remainders(roughness, strides, pieces, shares, order, out):
 
 @entry_point
 def by_cell(pieces, strides, many, order):
-    """Points (n,) in the order of the cells that they lie in (outer axes), for the sake of the processor's cache."""
-    outer = max(len(strides) - 2, 1)
+    """Points (n,) in the order of the cells that they lie in, the last axis apart, for the sake of the processor's cache."""
+    outer = len(strides) - 1
     first = np.zeros(many + 1, np.int64)
     cells = np.empty(len(pieces), np.int64)
     least = strides[outer - 1]
