@@ -19,7 +19,7 @@ SEED = 20260101
 MOST, LEAST, EACH = 20_000, 200, 40  # designs: at most, at least, and one for so many nodes
 HELD_SHARE = 8  # held states cost more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
-MARGIN = 1.05  # factors beyond what was seen; most designs need far less
+FEW = 200.0  # factors go beyond what was seen, the more the fewer designs were seen
 BEYOND = 5e-4  # share of the designs of a class that may need more
 SMALLEST, LEAST_SHARE = 0.3, 0.01  # of all factors, and of all shares of stored bounds
 LITTLE = 0.1  # of the bound: an estimate that interpolation adds little
@@ -120,7 +120,7 @@ def calibrate(error, estimate, bound, size) -> calibration.Factors:
             plain = left[np.isfinite(left) & (estimate < LITTLE * bound)]
             if len(plain) < ENOUGH:
                 return calibration.Factors(_by_class(np.maximum(error - bound, 0.0) / estimate, classes), 1.0)
-            share = min(max(MARGIN * _high(plain), LEAST_SHARE), 1.0)
+            share = min(max(_high(plain), LEAST_SHARE), 1.0)
     return calibration.Factors(factors, share)
 
 
@@ -131,14 +131,14 @@ def _by_class(needed, classes):
         for reach in range(len(factors)):
             mine = needed[(np.abs(classes - k) <= reach) & np.isfinite(needed)]
             if len(mine) >= ENOUGH:
-                factors[k] = max(SMALLEST, MARGIN * _high(mine))
+                factors[k] = max(SMALLEST, _high(mine))
                 break
     return factors
 
 
 def _high(numbers):
-    """The largest but five in ten thousand."""
-    return np.quantile(numbers, 1.0 - BEYOND)
+    """The largest but five in ten thousand, and more where few designs cannot have met the worst."""
+    return (1.0 + FEW / len(numbers)) * np.quantile(numbers, 1.0 - BEYOND)
 
 
 def _regions(inquiry):
