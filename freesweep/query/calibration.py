@@ -53,7 +53,7 @@ def stated(factors: Factors, estimate, bound, size):
 
 def classes(estimate, size) -> np.ndarray:
     """Class of each estimate (n,) by its size relative to the value's."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         return np.digitize(np.log10(np.maximum(estimate / size, 1e-300)), DECADES)
 
 

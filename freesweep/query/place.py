@@ -92,10 +92,12 @@ def place(asked, kinds, ranges, fixed, options, axes, strides, codes, slack, poi
                 row[:] = asked[k]
                 status = OUTSIDE
         point = points[k]
-        point[:] = fixed[int(row[design]) if design >= 0 else 0]
+        label = row[design] if design >= 0 else 0.0
+        known = 0.0 <= label < len(fixed)
+        point[:] = fixed[int(label) if known else 0]
         for i in range(d):
             pieces[k, i], shares[k, i] = 0, 0.0
-        bad = False
+        bad = not known
         for j in range(many):
             x = row[j]
             column, axis = kinds[j, 0], kinds[j, 1]

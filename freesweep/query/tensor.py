@@ -30,7 +30,7 @@ def locate(x, kind, nodes, count):
             return 0, 0.0, BELOW
         x = math.log(x)
     if kind == LABEL:
-        return int(x), 0.0, INSIDE
+        return (int(x), 0.0, INSIDE) if 0.0 <= x < count else (0, 0.0, NO_NUMBER)
     low, high = 0, count - 1
     while high - low > 1:
         middle = (low + high) // 2
