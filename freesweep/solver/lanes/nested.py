@@ -17,7 +17,7 @@ LANE_DOUBLINGS = 6  # of the base mesh
 LANE_STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave; what it left is counted in the bounds
 ROUGH_STEP = 2e-3  # last step on a mesh that serves to grade the next one
 MAX_REGRADES = 4  # of the base mesh
-LARGEST_MOVE = 0.5  # of a node in the last of them, in cells
+LARGEST_MOVE = 1.0  # of a node in the last of them, in cells
 
 
 @kernel
@@ -88,6 +88,13 @@ def foresee(half_x, half_y, x, y, n, fine_x, fine_y, change, both):
 
 
 @kernel
+def restart(lost, safe, n, y):
+    """Put the shape that cannot be too steep into the lanes that are lost."""
+    for i in range(n + 1):
+        put(y, i, select(lost, get(safe, i), get(y, i)))
+
+
+@kernel
 def keep(ready, count, coarse_x, coarse_y, x, y, kept):
     """The finest mesh of ``count`` cells, and the one before, of the lanes that are ready."""
     for lane in range(WIDTH):
@@ -115,7 +122,7 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
     for _ in range(MAX_REGRADES):  # on a mesh that may be far from what the solution needs
         if not some(moving):
             break
-        converged, _ = newton.solve(density, x, y, n, True, cell, load, moving, safe, ROUGH_STEP, HUGE, work)
+        converged, _ = newton.solve(density, x, y, n, True, cell, load, moving, safe, True, ROUGH_STEP, HUGE, work)
         todo = todo & (converged | ~moving)
         moving = moving & converged
         new_x, new_y = meshes[0], meshes[1]
@@ -126,7 +133,7 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
             put(y, i, select(moving, get(new_y, i), get(y, i)))
             put(safe, i, select(moving, get(y, i), get(safe, i)))
         moving = moving & (moved > LARGEST_MOVE)
-    converged, error = newton.solve(density, x, y, n, True, cell, load, todo, safe, SMALL_STEP, tolerance, work)
+    converged, error = newton.solve(density, x, y, n, True, cell, load, todo, safe, True, SMALL_STEP, tolerance, work)
     todo = todo & converged
     integrate(x, y, n, cell, load, table[1])
     half_x, half_y, here_x, here_y, fine_x, fine_y = meshes[0], meshes[1], meshes[2], meshes[3], meshes[4], meshes[5]
@@ -136,10 +143,17 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
     for i in range(n + 1):
         put(here_x, i, get(x, i))
         put(here_y, i, get(y, i))
-    mesh.merge(integrands, x, y, n, cell, load, safe)
     converged, _ = newton.solve(
-        density, half_x, half_y, n // 2, True, cell, load, todo, safe, SMALL_STEP, tolerance, work
+        density, half_x, half_y, n // 2, True, cell, load, todo, safe, False, SMALL_STEP, tolerance, work
     )
+    lost = todo & ~converged
+    if some(lost):
+        mesh.merge(integrands, x, y, n, cell, load, safe)
+        restart(lost, safe, n // 2, half_y)
+        again, _ = newton.solve(
+            density, half_x, half_y, n // 2, True, cell, load, lost, safe, True, SMALL_STEP, tolerance, work
+        )
+        converged = converged | again
     todo = todo & converged
     integrate(half_x, half_y, n // 2, cell, load, table[0])
     met, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
@@ -148,14 +162,21 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
         level += 1
         mesh.split(x, n, 1 << (level - 1), fine_x)
         foresee(half_x, half_y, here_x, here_y, count, fine_x, fine_y, work[0], work[1])
-        safe = meshes[6]
-        mesh.halve(integrands, here_x, here_y, count, cell, load, fine_x, safe)
         count *= 2
         half_x, half_y, here_x, here_y, fine_x, fine_y = here_x, here_y, fine_x, fine_y, half_x, half_y
         coarser = error
         converged, error = newton.solve(
-            density, here_x, here_y, count, True, cell, load, todo, safe, SMALL_STEP, tolerance, work
+            density, here_x, here_y, count, True, cell, load, todo, safe, False, SMALL_STEP, tolerance, work
         )
+        lost = todo & ~converged
+        if some(lost):
+            safe = meshes[6]
+            mesh.halve(integrands, half_x, half_y, count // 2, cell, load, here_x, safe)
+            restart(lost, safe, count, here_y)
+            again, last = newton.solve(
+                density, here_x, here_y, count, True, cell, load, lost, safe, True, SMALL_STEP, tolerance, work
+            )
+            converged, error = converged | again, select(again, last, error)
         todo = todo & converged
         integrate(here_x, here_y, count, cell, load, table[level])
         if level >= 3:

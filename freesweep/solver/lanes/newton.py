@@ -96,9 +96,10 @@ def substitute(y, step, fraction, n, accepted, ratio, value, steepness, last):
 
 
 @kernel
-def solve(density, x, y, n, free, cell, load, active, safe, small, tolerance, work):
+def solve(density, x, y, n, free, cell, load, active, safe, patient, small, tolerance, work):
     """From ``y`` (changed in place in ``active`` lanes) to a relative error of ``tolerance``, the last step below ``small``.
-    A lane whose ``y`` is not admissible starts from ``safe``; if that is not either, from a shape ever closer to y = 1.
+    A lane whose ``y`` is not admissible starts from ``safe``, if that is not either from a shape ever closer to y = 1; it
+    fails at once unless the solver is ``patient``.
 
     Returns ``(converged, error)``: masks, and what the last step may have left. ``work`` is scratch (4, > n, WIDTH).
     """
@@ -113,7 +114,9 @@ def solve(density, x, y, n, free, cell, load, active, safe, small, tolerance, wo
         )
         fresh = fraction == 0.0
         outside = todo & fresh & ~fits
-        if some(outside):
+        if not patient:
+            todo = todo & ~outside
+        elif some(outside):
             toward = select(outside, spread(SHRINK), spread(1.0))
             for i in range(n + 1):
                 here = get(y, i)
