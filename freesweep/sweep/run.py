@@ -138,7 +138,7 @@ def _solve_all(tables, split_up, done, shards, accuracy, threads, progress):
     from ..jit import is_compiled
 
     if progress and not is_compiled("solver"):
-        print("compiling the kernels: half a minute, once for each version")
+        print("compiling the kernels: up to a minute, once for each version")
     for table in tables.values():
         solve_shard(table.job(0, 0), accuracy)  # compiles, or loads what is compiled
 
