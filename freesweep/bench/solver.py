@@ -13,6 +13,7 @@ WANTED = 1e-6  # the error at which methods are compared: 95 % of the equilibria
 ACCURACIES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 BASE_CELLS = 24
+ROUNDS = 4  # samples for each thread, when threads are compared
 SIZES = {  # designs, pressures, designs on which SciPy's tolerance is chosen, repeats
     False: (200, 20, 30, 5),
     True: (12, 5, 3, 1),
@@ -120,16 +121,16 @@ def _scipy(timer, few):
 
 
 def _threads(chosen, repeats):
-    """Rates of 1, 2, 4, ... threads up to one for each core, each with a sample of its own."""
+    """Rates of 1, 2, 4, ... threads up to one for each core, each thread at the same samples: the slowest would tell how hard its own is."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     counts = sorted({*(2**k for k in range(20) if 2**k < cores), cores})
     found = []
     for count in counts:
-        samples = [sample(len(chosen.problems), len(chosen.pressures), seed) for seed in range(count)]
+        samples = [chosen] * (count * ROUNDS)
         with ThreadPoolExecutor(count) as pool:
             run = lambda pool=pool, samples=samples: list(pool.map(lambda one: _solve(one, WANTED), samples))  # noqa: E731
             seconds, _ = _median(run, repeats, time.perf_counter)
-        found.append({"threads": count, "rate": count * chosen.size / seconds})
+        found.append({"threads": count, "rate": len(samples) * chosen.size / seconds})
     return found
 
 
