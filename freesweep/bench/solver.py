@@ -121,7 +121,7 @@ def _scipy(timer, few):
 
 
 def _threads(chosen, repeats):
-    """Rates of 1, 2, 4, ... threads up to one for each core, each thread at the same samples: the slowest would tell how hard its own is."""
+    """Rates of 1, 2, 4, ... threads up to one for each core, on equal samples: others are not equally hard."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     counts = sorted({*(2**k for k in range(20) if 2**k < cores), cores})
     found = []
