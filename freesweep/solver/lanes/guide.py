@@ -16,9 +16,9 @@ SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernel
 def rising(u, trial, cell, start, end, asked):
     """Where the load rises all the way from ``u`` to ``trial``: see :func:`uniform.rising`."""
     change = trial - u
-    still = abs(change) < 1e-9 * u
+    still = (abs(change) < 1e-9 * u) | (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
     samples = 2.0 + abs(change) / (SCAN * min(u, trial))
-    risen = still | (asked & ~still)
+    risen = still | asked
     first, second = spread(0.0), spread(0.0)
     ahead = select(change > 0.0, spread(1.0), spread(-1.0))
     i = 0
@@ -68,12 +68,6 @@ def follow(u, cell, start, end, asked):
         done = done | (todo & (t >= 1.0))
         todo = todo & (t < 1.0) & (step > SMALLEST_STEP)
     return u, done
-
-
-@kernel
-def locked(cell, gamma):
-    """The uniform locked stretch (Eq. 2.12)."""
-    return lagrangian.locked_stretch(cell, gamma)
 
 
 @kernel

@@ -6,7 +6,7 @@ A lane whose bounds meet the accuracy keeps its numbers; the others go on to fin
 
 from ...jit import kernel
 from .. import lagrangian
-from ..nested import LIKELY, SAFETY, SMALLEST_TOLERANCE
+from ..nested import LIKELY, SAFETY, SMALLEST_TOLERANCE, STEP_SHARE
 from ..newton import SMALL_STEP
 from . import mesh, newton
 from .slack import pushing
@@ -14,7 +14,6 @@ from .vector import HUGE, WIDTH, bits, get, mask_of, put, select, some, spread
 
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
 LANE_DOUBLINGS = 6  # of the base mesh
-LANE_STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave; what it left is counted in the bounds
 ROUGH_STEP = 2e-3  # last step on a mesh that serves to grade the next one
 MAX_REGRADES = 4  # of the base mesh
 LARGEST_MOVE = 1.0  # of a node in the last of them, in cells
@@ -116,7 +115,7 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
     takes their finest meshes as :func:`profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
     fibers would have to push, beta fibers would)``.
     """
-    tolerance = max(LANE_STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
+    tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     density, integrands = lagrangian.density, lagrangian.integrands
     todo, moving = active, active
     for _ in range(MAX_REGRADES):  # on a mesh that may be far from what the solution needs
