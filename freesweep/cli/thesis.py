@@ -3,7 +3,7 @@
 
 def add_thesis(commands):
     """Add the command of this module to the command line."""
-    from ..pictures import add_resolution
+    from .draw import add_resolution
 
     command = commands.add_parser(
         "thesis", help="every figure and table of the source, recomputed, and its claims checked"
@@ -20,8 +20,8 @@ def add_thesis(commands):
 def _run_thesis(options):
     import sys
 
-    from ..pictures import fineness
-    from .make import make
+    from ..thesis.make import make
+    from .draw import fineness
 
     fine = fineness(options)
 

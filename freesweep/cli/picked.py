@@ -3,7 +3,7 @@
 
 def read(path):
     """The Dataset of an atlas, or of one actuator as ``--out`` keeps it; a context manager."""
-    from .atlas.store import AtlasError, open_atlas
+    from ..atlas.store import AtlasError, open_atlas
 
     try:
         return open_atlas(path).data
@@ -21,9 +21,9 @@ def read(path):
 
 def selection(items):
     """Values of ``--at`` by name: quantities in stored units, the name of a design as it is."""
-    from .atlas.schema import PARAMETERS, attributes
-    from .plot.choice import DESIGN, HELD
-    from .units import quantity
+    from ..atlas.schema import PARAMETERS, attributes
+    from ..plot.choice import DESIGN, HELD
+    from ..units import quantity
 
     select = {}
     for item in items:

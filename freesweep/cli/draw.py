@@ -64,21 +64,21 @@ def _map(kinds):
 
 
 def _run_map(options):
-    from .plot.style import save
+    from ..plot.style import save
 
     out = _target(options, _named(options.atlas, options.variable))
     x, y = options.axes
     with read(options.atlas) as data:
         if options.over:
-            from .plot.section import multiples
+            from ..plot.section import multiples
 
             picture = multiples(data, options.variable, x, y, options.over, **selection(options.at))
         elif {x, y} == {"alpha", "beta"}:
-            from .plot.map import design_map
+            from ..plot.map import design_map
 
             picture = design_map(data, options.variable, **selection(options.at))
         else:
-            from .plot.section import section_map
+            from ..plot.section import section_map
 
             picture = section_map(data, options.variable, x, y, **selection(options.at))
         save(picture, out, **fineness(options))
@@ -101,8 +101,8 @@ def _validity(kinds):
 def _run_validity(options):
     import contextlib
 
-    from .plot.style import save
-    from .plot.validity import validity_maps
+    from ..plot.style import save
+    from ..plot.validity import validity_maps
 
     out = _target(options, _named(options.atlas[0], "validity"))
     with contextlib.ExitStack() as stack:
@@ -123,8 +123,8 @@ def _curve(kinds):
 
 
 def _run_curve(options):
-    from .plot.curve import curve
-    from .plot.style import save
+    from ..plot.curve import curve
+    from ..plot.style import save
 
     out = _target(options, _named(options.data, options.variable))
     with read(options.data) as data:
@@ -142,7 +142,7 @@ def _shape(kinds):
 
 
 def _run_shape(options):
-    from .plot.style import SUFFIXES
+    from ..plot.style import SUFFIXES
     from .single import inflated, tube_of
 
     out = _target(options, "shape.png", (*SUFFIXES, ".gif"))
@@ -150,25 +150,25 @@ def _run_shape(options):
     if options.pressure is None:
         if moves:
             raise ValueError('--out: a .gif shows motion along pressure; give --pressure 0 "0.2 MPa" --steps 31')
-        from .statics import lock
+        from ..statics import lock
 
         tube = tube_of(options)
         states, titles = [lock(tube)], ["locked"]
     else:
         if options.c10 is None:
             raise ValueError("--c10: under pressure the rubber counts; give its constants, or leave --pressure out")
-        from .plot.display import describe
+        from ..plot.display import describe
 
         tube, data = tube_of(options), inflated(options)
         states = [data] if not data["pressure"].dims else [data.isel(pressure=k) for k in range(data.sizes["pressure"])]
         titles = [describe("pressure", float(state["pressure"])).split("\u00a0", 1)[1] for state in states]
     if moves:
-        from .plot.motion import save_motion
+        from ..plot.motion import save_motion
 
         print(save_motion(tube, data, out, **fineness(options)))
         return
-    from .plot.style import save
-    from .plot.tubes import shape_plot
+    from ..plot.style import save
+    from ..plot.tubes import shape_plot
 
     save(shape_plot(tube, *states, titles=titles), out, **fineness(options))
     print(out)
@@ -178,7 +178,7 @@ def check_map(sweep, path):
     """Refuse a map that could not be drawn before anything is solved."""
     from pathlib import Path
 
-    from .plot.style import SUFFIXES
+    from ..plot.style import SUFFIXES
 
     faults = []
     if Path(path).suffix.lower() not in SUFFIXES:
@@ -191,8 +191,8 @@ def check_map(sweep, path):
 
 def draw_map(data, out):
     """Draws the map of rotation over both fiber angles into a file."""
-    from .plot.map import design_map
-    from .plot.style import save
+    from ..plot.map import design_map
+    from ..plot.style import save
 
     save(design_map(data, "rotation"), out)
     print(out)
@@ -202,7 +202,7 @@ def _target(options, default, suffixes=None):
     """The file to make, once its suffix (default: those of pictures) and the resolution are checked."""
     from pathlib import Path
 
-    from .plot.style import SUFFIXES
+    from ..plot.style import SUFFIXES
 
     out, suffixes = options.out or default, suffixes or SUFFIXES
     if Path(out).suffix.lower() not in suffixes:

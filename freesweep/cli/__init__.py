@@ -8,12 +8,12 @@ import contextlib
 import signal
 import sys
 
-from .asking import add_query
-from .calibration.command import add_calibrate
-from .judging import add_judging
-from .pictures import add_plot, check_map, draw_map
+from .calibrate import add_calibrate
+from .draw import add_plot, check_map, draw_map
+from .judge import add_judging
+from .query import add_query
 from .single import add_single
-from .thesis.command import add_thesis
+from .thesis import add_thesis
 
 DONE, BAD_INPUT, ENVIRONMENT, INTERRUPTED = 0, 2, 3, 130
 
@@ -36,7 +36,7 @@ def main(arguments=None) -> int:
         print(f"freesweep: {error or 'not enough memory'}", file=sys.stderr)
         return ENVIRONMENT
     except (ValueError, OSError) as error:
-        from .atlas.files import EnvironmentFault
+        from ..atlas.files import EnvironmentFault
 
         print(f"freesweep: {error}", file=sys.stderr)
         return ENVIRONMENT if isinstance(error, EnvironmentFault) else BAD_INPUT
@@ -75,7 +75,7 @@ def parser() -> argparse.ArgumentParser:
 
 class _Version(argparse.Action):
     def __call__(self, parser, *_):
-        from . import __version__
+        from .. import __version__
 
         print(f"freesweep {__version__}")
         parser.exit()
@@ -96,18 +96,18 @@ def _sweep(commands):
 def _run_sweep(options):
     from pathlib import Path
 
-    from .sweep.spec import read_file
+    from ..sweep.spec import read_file
 
     sweep = read_file(options.spec)
     out = Path(options.out or Path(options.spec).with_suffix(".nc").name)
     if options.threads is not None and options.threads < 1:
         raise ValueError(f"--threads: found {options.threads}; give 1 or more")
     if options.dry_run:
-        from .sweep.estimate import dry_run
+        from ..sweep.estimate import dry_run
 
         print(dry_run(sweep, out, options.threads))
         return
-    from .sweep.run import run_sweep
+    from ..sweep.run import run_sweep
 
     if options.map:
         check_map(sweep, options.map)
@@ -138,7 +138,7 @@ def _info(commands):
 
 
 def _run_info(options):
-    from .atlas.store import describe, open_atlas
+    from ..atlas.store import describe, open_atlas
 
     with open_atlas(options.atlas) as atlas:
         print(atlas.data.attrs.get("specification", "") if options.specification else describe(atlas))

@@ -57,7 +57,7 @@ def _keep(command):
 
 def tube_of(options):
     """The actuator that the options describe; every quantity that cannot be read is named in one ValueError."""
-    from .actuator import Actuator
+    from ..actuator import Actuator
 
     faults = []
     names = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")
@@ -71,8 +71,8 @@ def tube_of(options):
 
 def read_options(options, names, faults) -> dict:
     """Numbers of the options that are given, by name, in SI units and degrees; faults are noted."""
-    from .atlas.schema import PARAMETERS
-    from .units import quantity
+    from ..atlas.schema import PARAMETERS
+    from ..units import quantity
 
     values = {}
     for name in (name for name in names if getattr(options, name) is not None):
@@ -85,10 +85,10 @@ def read_options(options, names, faults) -> dict:
 
 def read_rubber(options, faults, *default):
     """The rubber of the options of ``add_rubber``, or of a ``default`` c10; None after noting faults."""
-    from .elastomer import MooneyRivlin
-    from .faults import ActuatorError
-    from .material_library import material
-    from .units import quantity
+    from ..elastomer import MooneyRivlin
+    from ..faults import ActuatorError
+    from ..material_library import material
+    from ..units import quantity
 
     before = len(faults)
     given = [name for name in ("c10", "c01") if getattr(options, name) is not None]
@@ -110,7 +110,7 @@ def read_rubber(options, faults, *default):
 
 
 def _run_lock(options):
-    from .statics import lock
+    from ..statics import lock
 
     dataset = lock(tube_of(options))
     if options.c10 is None and options.material is None:
@@ -120,7 +120,7 @@ def _run_lock(options):
 
 def quantities(faults, **texts):
     """Texts as numbers by option name: ``name=(texts, unit)``; what cannot be read goes to ``faults``."""
-    from .units import quantity
+    from ..units import quantity
 
     numbers = {}
     for name, (given, unit) in texts.items():
@@ -142,7 +142,7 @@ def inflated(options):
     """The Dataset of :func:`freesweep.inflate` that the options of ``add_actuator`` and ``add_loads`` ask for."""
     import numpy as np
 
-    from .statics import inflate
+    from ..statics import inflate
 
     tube = tube_of(options)
     loads = quantities(
@@ -160,7 +160,7 @@ def inflated(options):
 def _run_block(options):
     import numpy as np
 
-    from .holding import blocked_force, blocked_torque
+    from ..holding import blocked_force, blocked_torque
 
     tube = tube_of(options)
     length = options.hold == "length"
@@ -185,8 +185,8 @@ def _run_block(options):
 
 
 def _show(dataset, options):
-    from .atlas.files import write_whole
-    from .report import table
+    from ..atlas.files import write_whole
+    from ..report import table
 
     print(table(dataset))
     if options.out:

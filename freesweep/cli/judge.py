@@ -36,8 +36,8 @@ def add_judging(commands):
 
 
 def _run_verify(options):
-    from .atlas.store import AtlasError, open_atlas
-    from .verify import faults
+    from ..atlas.store import AtlasError, open_atlas
+    from ..verify import faults
 
     if options.resolve is not None and options.resolve < 1:
         raise ValueError(f"--resolve: found {options.resolve}; give 1 or more")
@@ -52,8 +52,8 @@ def _run_verify(options):
 
 
 def _resolve(atlas, options):
-    from .atlas.store import AtlasError
-    from .resolve import resolve, table
+    from ..atlas.store import AtlasError
+    from ..resolve import resolve, table
 
     comparisons, notes = resolve(atlas.data, options.resolve, options.seed)
     print("solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n")
@@ -66,13 +66,13 @@ def _run_bench(options):
     import json
     import sys
 
-    from .atlas.files import write_whole
+    from ..atlas.files import write_whole
 
     if options.subject == "query":
-        from .bench.query import measure, table
+        from ..bench.query import measure, table
     else:
-        from .bench.solver import measure
-        from .bench.table import table
+        from ..bench.solver import measure
+        from ..bench.table import table
     found = measure(options.quick, lambda text: print(f"{text} ...", file=sys.stderr))
     print(table(found))
     if options.json:
@@ -81,7 +81,7 @@ def _run_bench(options):
 
 
 def _run_census(options):
-    from .census.run import census
+    from ..census.run import census
 
     found = census(
         options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet

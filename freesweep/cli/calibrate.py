@@ -1,6 +1,6 @@
 """The command `freesweep calibrate`: parses and calls."""
 
-from ..single import add_rubber, read_options, read_rubber
+from .single import add_rubber, read_options, read_rubber
 
 NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
 
@@ -42,9 +42,9 @@ def add_calibrate(commands):
 def _run(options):
     from ..actuator import ActuatorError
     from ..atlas.files import write_whole
-    from .csv_file import FIRST_GUESS, read_measurements
-    from .fit import calibrate
-    from .report import table, to_dataset
+    from ..calibration.csv_file import FIRST_GUESS, read_measurements
+    from ..calibration.fit import calibrate
+    from ..calibration.report import table, to_dataset
 
     faults = []
     values = read_options(options, NUMBERS, faults)

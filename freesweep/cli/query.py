@@ -7,7 +7,7 @@ FORMATS = ("table", "csv", "json")
 
 def add_query(commands):
     """Add the command of this module to the command line."""
-    from .atlas.schema import PARAMETERS
+    from ..atlas.schema import PARAMETERS
 
     command = commands.add_parser("query", help="what an atlas says of any design within its grid")
     command.add_argument("atlas")
@@ -28,7 +28,7 @@ def add_query(commands):
 
 
 def _example(name):
-    from .atlas.schema import PARAMETERS
+    from ..atlas.schema import PARAMETERS
 
     return {"degree": "25deg", "m": "'4.76 mm'", "Pa": "'0.1 MPa'", "N": "'5 N'", "N m": "'0.1 N m'"}.get(
         PARAMETERS[name].units, "1.005"
@@ -36,8 +36,8 @@ def _example(name):
 
 
 def _run(options):
-    from .atlas.files import write_whole
-    from .atlas.store import open_atlas
+    from ..atlas.files import write_whole
+    from ..atlas.store import open_atlas
 
     with open_atlas(options.atlas) as atlas:
         axes = _axes(options)
@@ -52,8 +52,8 @@ def _run(options):
 
 def _axes(options):
     """Axes from the options, and from the CSV if there is one; raises ValueError with every fault."""
-    from .atlas.schema import PARAMETERS
-    from .units import quantity
+    from ..atlas.schema import PARAMETERS
+    from ..units import quantity
 
     faults, axes = [], {}
     for name in PARAMETERS:
@@ -78,7 +78,7 @@ def _read_points(path, faults):
     """Columns of a CSV: name -> list of numbers in the units of the API. A header cell is ``name`` or ``name [unit]``."""
     import csv
 
-    from .units import quantity
+    from ..units import quantity
 
     rows = []
     try:
@@ -121,8 +121,8 @@ def _read_points(path, faults):
 
 def _column(cell, path, faults):
     """``(name, (kept unit, unit of the column))`` of a header cell."""
-    from .atlas.schema import PARAMETERS
-    from .query.faults import unknown
+    from ..atlas.schema import PARAMETERS
+    from ..query.faults import unknown
 
     name, _, unit = cell.partition("[")
     name, unit = name.strip().replace("-", "_"), unit.strip().removesuffix("]").strip()
@@ -138,7 +138,7 @@ def _records(found):
     """One dictionary for each point: what was asked, then what was answered; statuses in words."""
     import numpy as np
 
-    from .status import STATUSES
+    from ..status import STATUSES
 
     asked = [name for name in found.coords if found[name].ndim <= 1]
     points = [{}] if not found.dims else [{} for _ in range(int(np.prod(list(found.sizes.values()))))]
@@ -173,8 +173,8 @@ def _json(found):
 
 def _table(found):
     """Everyday units; one line for each variable of a single point, else one for each point."""
-    from .report import SHOWN, aligned, number
-    from .status import STATUSES
+    from ..report import SHOWN, aligned, number
+    from ..status import STATUSES
 
     records = _records(found)
     values = [name for name in found.data_vars if f"{name}_error" in found]
