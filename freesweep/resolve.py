@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .atlas.schema import VARIABLES
+from .atlas.schema import VARIABLES, YEOH
 from .first_integral import folded, held
 from .first_integral.tube import NO_GUIDE, OUTPUTS, SOLVED, cylinders, solve
 from .first_integral.uniform import Tubes, follow
@@ -69,6 +69,7 @@ class _Points:
         self.index |= {name: rng.integers(size, size=len(drawn)) for name, size in held.items()}
         self.count = len(drawn)
         self.column = {name: self.stored(name) for name in (*DESIGN, "pressure")}
+        self.column |= {name: self.stored(name) if name in data else np.zeros(self.count) for name in YEOH}
         self.radius = self.stored("fiber_radius") if "fiber_radius" in data else self.column["radius"]
         self.first = self._first_pressures(status)
 
@@ -111,7 +112,7 @@ class _Points:
         shear = ones * (self.data.attrs["energy"] == "full")
         return Tubes(
             0.5 * (ta + tb), 0.5 * (ta - tb), area, c["fiber_extension"], c["c01"] / c["c10"], shear, **loads,
-            weight=ones * (not locked), half=0.5 * c["length"] / r,
+            weight=ones * (not locked), half=0.5 * c["length"] / r, second=c["c20"] / c["c10"], third=c["c30"] / c["c10"],
         )._replace(**changes)  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """From designs in SI units to dimensionless problems and back: the one place where scales are known.
 
 Lengths by the fiber surface's radius r0, pressure by C10, force by pi r0^2 C10, torque by pi r0^3 C10. A problem is a row of
-``solver.branch.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda.
+``solver.branch.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda, C20/C10, C30/C10.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius
 
 
 def problem_rows(design, energy) -> np.ndarray:
-    """Dimensionless problems (n, 9) of a ``design``: name -> array (n,), in SI units and degrees, loads among them."""
+    """Dimensionless problems (n, 11) of a ``design``: name -> array (n,), in SI units and degrees, loads among them."""
     ta, tb = np.tan(np.radians(design["alpha"])), np.tan(np.radians(design["beta"]))
     r, c10 = design["fiber_radius"], design["c10"]
     inner = design["radius"]
@@ -26,6 +26,8 @@ def problem_rows(design, energy) -> np.ndarray:
         design["force"] / (np.pi * r**2 * c10),
         design["torque"] / (np.pi * r**3 * c10),
         design["length"] / r,
+        design.get("c20", 0.0) / c10,
+        design.get("c30", 0.0) / c10,
     )
     return np.column_stack(columns)
 

@@ -24,7 +24,7 @@ import sympy as sp
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq, minimize_scalar
 
-PARAMETERS = sp.symbols("H D a g c k p f m e", real=True)
+PARAMETERS = sp.symbols("H D a g c k p f m e c2 c3", real=True)
 Y, V = sp.symbols("y v", real=True)
 
 
@@ -53,7 +53,7 @@ class NoState(Exception):
 @cache
 def expressions():
     """Symbolic G, psi, w, density L and uniform density U (theory.md, sections 2 and 3)."""
-    H, D, a, g, c, k, p, f, m, e = PARAMETERS
+    H, D, a, g, c, k, p, f, m, e, c2, c3 = PARAMETERS
     psi = H * (g**2 / Y**2 - 1)
     G = g**2 * (1 + H**2 + D**2) - D**2 * Y**2 - g**4 * H**2 / Y**2
     # k = 1: invariants of the in-plane tensor C, k = 0: lambda_1 and lambda_2 are the principal stretches
@@ -61,7 +61,7 @@ def expressions():
     thickness = 1 / (G * Y**2)  # det C = G y^2
     first = C.trace() + thickness
     second = G * Y**2 + C.trace() * thickness
-    w = (first - 3) + c * (second - 3)
+    w = (first - 3) + c * (second - 3) + c2 * (first - 3) ** 2 + c3 * (first - 3) ** 3
     T = p * Y**2 + f
     s = sp.sqrt(G - V**2)
     return {
@@ -103,9 +103,14 @@ def half_sum_and_difference(alpha, beta):
 
 
 def parameters(alpha, beta, area, ratio, p, f, m, gamma, energy, weight=1.0):
-    """All parameters of the density, extended precision."""
+    """All parameters of the density, extended precision; ``ratio``: C01/C10, or (C01, C20, C30)/C10."""
     H, D = half_sum_and_difference(alpha, beta)
-    return tuple(np.longdouble(q) for q in (H, D, area, gamma, ratio, ENERGIES[energy], p, f, m, weight))
+    c, *yeoh = _ratios(ratio)
+    return tuple(np.longdouble(q) for q in (H, D, area, gamma, c, ENERGIES[energy], p, f, m, weight, *yeoh))
+
+
+def _ratios(ratio):
+    return ratio if isinstance(ratio, tuple) else (ratio, 0.0, 0.0)
 
 
 def _between(start, end, t):
@@ -537,7 +542,8 @@ def collocation(
         def rates(x, z, loads=loads):
             alpha, beta, area = cells(x)
             H, D = half_sum_and_difference(alpha, beta)
-            values = (H, D, area, gamma, c_ratio, ENERGIES[energy], *loads)
+            c, *yeoh = _ratios(c_ratio)
+            values = (H, D, area, gamma, c, ENERGIES[energy], *loads, *yeoh)
             y, q = z[0], z[1]
             G, psi, w, T = state(y, values)
             root = np.sqrt(T * T + q * q)

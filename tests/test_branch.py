@@ -18,7 +18,7 @@ NOTHING = np.empty(0)
 def tube(alpha, beta, length=40.0, area=WALL, ratio=0.5, energy="full", f=0.0, m=0.0, gamma=1.0):
     """A row of problems from angles in degrees; ``length`` in radii."""
     ta, tb = tan(radians(alpha)), tan(radians(beta))
-    return [0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, float(energy == "full"), f, m, length]
+    return [0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, float(energy == "full"), f, m, length, 0.0, 0.0]
 
 
 class Walks:

@@ -20,13 +20,26 @@ from freesweep.sweep.spec import parse
 WALL = 1.59 / 4.76
 
 
-def tubes(alpha, beta, length, pressure, wall=WALL, ratio=0.5, gamma=1.0, force=0.0, torque=0.0, energy="full"):
+def tubes(
+    alpha,
+    beta,
+    length,
+    pressure,
+    wall=WALL,
+    ratio=0.5,
+    gamma=1.0,
+    force=0.0,
+    torque=0.0,
+    energy="full",
+    yeoh=(0.0, 0.0),
+):
     """Dimensionless tubes; infinite pressure is the locked shape."""
     ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
     locked = np.isinf(pressure)
     columns = (
         0.5 * (ta + tb), 0.5 * (ta - tb), wall * (2.0 + wall), gamma, ratio, float(energy == "full"),
         np.where(locked, 1.0, pressure), force, torque, np.where(locked, 0.0, 1.0), 0.5 * np.asarray(length),
+        *yeoh,
     )  # fmt: skip
     return Tubes(*(np.array(column, float) for column in np.broadcast_arrays(*map(np.atleast_1d, columns))))
 
@@ -55,8 +68,8 @@ def test_many_roots_at_once():
     assert np.isnan(roots[3])  # no change of sign: no root
 
 
-@pytest.mark.parametrize("energy", ["full", "principal"])
-def test_random_equilibria_agree_with_the_oracle(energy):
+@pytest.mark.parametrize(("energy", "yeoh"), [("full", (0.0, 0.0)), ("principal", (0.0, 0.0)), ("full", (0.1, 0.02))])
+def test_random_equilibria_agree_with_the_oracle(energy, yeoh):
     rng = np.random.default_rng(11)
     n = 24
     alpha, beta = rng.uniform(3, 80, n), -rng.uniform(3, 80, n) * rng.choice([1, -1], n)
@@ -64,10 +77,10 @@ def test_random_equilibria_agree_with_the_oracle(energy):
     p[:4], gamma = np.inf, np.where(np.arange(n) % 3 == 0, 1.008, 1.0)
     force = np.where((np.arange(n) % 4 == 1) & (p < np.inf), rng.uniform(-0.03, 0.5, n), 0.0)
     loads = force, np.where(p < 1, 0.05, 0.0)
-    found = solve(tubes(alpha, beta, length, p, wall, 0.4, gamma, *loads, energy), np.where(p < np.inf, p, 1.0))
+    found = solve(tubes(alpha, beta, length, p, wall, 0.4, gamma, *loads, energy, yeoh), np.where(p < np.inf, p, 1.0))
     judged = 0
     for i in range(n):
-        given = (alpha[i], beta[i], length[i], wall[i] * (2 + wall[i]), 0.4, p[i], loads[0][i], loads[1][i])
+        given = (alpha[i], beta[i], length[i], wall[i] * (2 + wall[i]), (0.4, *yeoh), p[i], loads[0][i], loads[1][i])
         try:
             wanted = oracle(*given, gamma[i], energy)
         except NoState:

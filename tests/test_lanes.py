@@ -19,7 +19,7 @@ STEPS = 10
 def designs(count, seed, hard=True):
     """Random problems, each with its own rising pressures, the locked shape last: ``(problems, first, pressures)``."""
     draw = np.random.default_rng(seed)
-    problems, pressures = np.empty((count, 9)), []
+    problems, pressures = np.empty((count, 11)), []
     for k in range(count):
         a, b = np.tan(np.radians([draw.uniform(2, 85), draw.uniform(-85, 85)]))
         while abs(a - b) < 0.05:
@@ -28,7 +28,7 @@ def designs(count, seed, hard=True):
         problems[k] = (
             0.5 * (a + b), 0.5 * (a - b), wall * (2 + wall), 1 + extended * draw.uniform(0, 0.02), draw.uniform(0, 1),
             float(draw.integers(2)), loaded * draw.uniform(-0.3, 1), loaded * draw.uniform(-1, 1),
-            10 ** draw.uniform(0.5, 2),
+            10 ** draw.uniform(0.5, 2), 0.0, 0.0,
         )  # fmt: skip
         steps = int(draw.integers(1, STEPS))
         pressures.append(
@@ -87,10 +87,20 @@ def test_a_nan_in_a_lane_is_no_room():
     assert np.all(out[:, [0, 2]] == [[2.0, 2.0], [1.0, 1.0]])
 
 
+@numba.njit
+def _mooney_rivlin(points):
+    return (get(points, 11),)
+
+
+@numba.njit
+def _yeoh(points):
+    return get(points, 11), get(points, 12), get(points, 13)
+
+
 @numba.njit(error_model="numpy", fastmath={"contract"})
-def _densities(points, out):
+def _densities(points, rubber, out):
     cell, load = (get(points, 2), get(points, 3), get(points, 4)), (
-        get(points, 5), get(points, 6), get(points, 7), get(points, 8), get(points, 9), get(points, 10), get(points, 11),
+        get(points, 5), rubber(points), get(points, 6), get(points, 7), get(points, 8), get(points, 9), get(points, 10),
     )  # fmt: skip
     found = lagrangian.density(get(points, 0), get(points, 1), cell, load)
     for k in range(6):
@@ -99,17 +109,21 @@ def _densities(points, out):
 
 @numba.njit(error_model="numpy", fastmath={"contract"})
 def _density(q, out):
-    found = lagrangian.density(q[0], q[1], (q[2], q[3], q[4]), (q[5], q[6], q[7], q[8], q[9], q[10], q[11]))
+    found = lagrangian.density(
+        q[0], q[1], (q[2], q[3], q[4]), (q[5], (q[11], q[12], q[13]), q[6], q[7], q[8], q[9], q[10])
+    )
     for k in range(6):
         out[k] = found[k]
 
 
-def test_the_density_is_the_same_in_a_lane_and_on_a_float():
+@pytest.mark.parametrize("rubber", [_mooney_rivlin, _yeoh])
+def test_the_density_is_the_same_in_a_lane_and_on_a_float(rubber):
     draw = np.random.default_rng(1)
     points = np.array([draw.uniform(0.8, 1.2, WIDTH), draw.uniform(-0.3, 0.3, WIDTH), *draw.uniform(-0.7, 0.7, (2, WIDTH)),
-                       *draw.uniform(0.1, 1, (8, WIDTH))])  # fmt: skip
+                       *draw.uniform(0.1, 1, (8, WIDTH)), *draw.uniform(-0.1, 0.2, (2, WIDTH))])  # fmt: skip
+    points[12:] *= rubber is _yeoh
     out, one = np.zeros((6, WIDTH)), np.zeros(6)
-    _densities(points, out)
+    _densities(points, rubber, out)
     for k in range(WIDTH):
         _density(points[:, k].copy(), one)
         assert np.allclose(out[:, k], one, rtol=1e-13, atol=1e-13)
@@ -136,6 +150,23 @@ def test_lanes_agree_with_the_scalar_kernels_within_the_bounds(sample, together)
     assert np.all(np.isnan(together.values[~solved]))
     assert np.array_equal(np.isnan(together.limits), np.isnan(alone.limits))
     assert np.nanmax(np.abs(together.limits / alone.limits - 1)[:, 0]) < 1e-6
+
+
+def test_yeoh_rubbers_in_lanes_agree_with_the_scalar_kernels_whoever_else_is_there():
+    problems, first, pressures = designs(60, 21)
+    yeoh = np.arange(60) % 2 == 1
+    problems[yeoh, 9:] = np.random.default_rng(2).uniform([-0.02, 0.0], [0.2, 0.02], (30, 2))
+    problems[yeoh, 4] = 0.0  # no C01
+    mixed, alone = walked(problems, first, pressures), walked(problems, first, pressures, lanes=False)
+    assert np.array_equal(mixed.status, alone.status)
+    solved = np.isin(alone.status, (OK, INACCURATE))
+    assert solved.mean() > 0.8
+    assert np.array_equal(mixed.slack[solved], alone.slack[solved])
+    assert np.all(np.abs(mixed.values - alone.values)[solved] <= (mixed.bounds + alone.bounds)[solved])
+    for kind in (yeoh, ~yeoh):
+        rows = np.repeat(kind, np.diff(first))
+        again = walked(problems[kind], np.cumsum([0, *np.diff(first)[kind]]), pressures[rows])
+        assert np.array_equal(again.values, mixed.values[rows], equal_nan=True)
 
 
 def test_which_designs_share_a_vector_does_not_change_a_bit(sample, together):

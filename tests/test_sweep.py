@@ -68,7 +68,7 @@ def test_every_point_of_the_grid_has_the_row_of_its_own_problem():
     own = made.reduced(designs)
     good = own.status == status.OK
     assert np.array_equal(good, made.problem != NONE)
-    assert np.array_equal(problems[made.problem[good]], significant(own.rows[good, :9]))
+    assert np.array_equal(problems[made.problem[good]], significant(own.rows[good, :11]))
     scaled = pressures[made.rows(designs)][good] * made.grid.columns(designs)["c10"][good, None]
     assert scaled == pytest.approx(np.broadcast_to(GRID["pressure"], scaled.shape), rel=1e-12)
     assert np.isinf(pressures[made.locked_rows(designs)][good]).all()

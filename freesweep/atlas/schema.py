@@ -24,8 +24,10 @@ PARAMETERS = {
     "wall": Parameter("m", "undeformed wall thickness"),
     "fiber_radius": Parameter("m", "radius at which the fibers lie"),
     "fiber_extension": Parameter("1", "stretch of the fibers at any pressure"),
-    "c10": Parameter("Pa", "first Mooney-Rivlin constant"),
+    "c10": Parameter("Pa", "first constant of the rubber, Mooney-Rivlin or Yeoh"),
     "c01": Parameter("Pa", "second Mooney-Rivlin constant"),
+    "c20": Parameter("Pa", "second Yeoh constant"),
+    "c30": Parameter("Pa", "third Yeoh constant"),
     "force": Parameter("N", "axial force applied by the surroundings, positive in tension"),
     "torque": Parameter("N m", "torque applied by the surroundings, positive toward growing rotation"),
     "held_length": Parameter("m", "deformed length that the blocked force holds"),
@@ -36,7 +38,8 @@ PARAMETERS = {
 HELD_LENGTHS = ("held_length", "held_length_ratio")
 HELD = (*HELD_LENGTHS, "held_rotation")
 LOADS = ("force", "torque", "pressure")
-MATERIAL = ("wall", "c10", "c01")
+YEOH = ("c20", "c30")  # 0 where a dataset has none
+MATERIAL = ("wall", "c10", "c01", *YEOH)
 
 
 class Variable(NamedTuple):

@@ -7,7 +7,7 @@ from ..solver import lagrangian
 from ..solver.lanes.newton import eliminate, substitute
 from ..solver.lanes.seat import aligned
 from ..solver.lanes.vector import WIDTH, get, mask_of, spread
-from .peak import CELLS, LOAD, PASSES, TUBE, median_time
+from .peak import CELLS, LOAD, PASSES, RUBBER, TUBE, median_time
 
 EXTRA = 47  # flops of a cell beside its density: lanes.newton.eliminate, substitute
 
@@ -18,7 +18,7 @@ def lane_passes(count, x, y, columns, work):
     n = len(x) - 1
     cell = (get(columns, 0), get(columns, 1), get(columns, 2))
     load = (
-        get(columns, 3), get(columns, 4), get(columns, 5), get(columns, 6), get(columns, 7), get(columns, 8),
+        get(columns, 3), (get(columns, 4),), get(columns, 5), get(columns, 6), get(columns, 7), get(columns, 8),
         get(columns, 9),
     )  # fmt: skip
     rest, none = spread(0.0), mask_of(0)
@@ -35,5 +35,5 @@ def lane_cell_time(repeats=5) -> float:
     work[:] = 0.0
     x = np.linspace(0.0, 10.0, CELLS + 1)
     shapes[0], shapes[1] = x[:, None], 1.0 + 0.2 * (1.0 - np.exp(-x))[:, None]
-    columns[:] = np.array([*TUBE, *LOAD])[:, None]
+    columns[:] = np.array([*TUBE, LOAD[0], RUBBER[0], *LOAD[2:]])[:, None]
     return median_time(lane_passes, repeats, shapes[0], shapes[1], columns, work) / (PASSES * CELLS * WIDTH)

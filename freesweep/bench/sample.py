@@ -12,7 +12,7 @@ ENOUGH = 95.0  # percent of the equilibria that an error speaks of
 
 
 class Sample(NamedTuple):
-    """Random designs (n,) as ``problems`` (n, 9), all at the same ``pressures`` (m,) P/C10."""
+    """Random designs (n,) as ``problems`` (n, 11), all at the same ``pressures`` (m,) P/C10."""
 
     problems: np.ndarray
     pressures: np.ndarray
@@ -33,9 +33,12 @@ class Sample(NamedTuple):
 
     def tubes(self):
         """All equilibria as the quadrature takes them."""
-        h, d, area, gamma, ratio, shear, force, torque, length = np.repeat(self.problems, len(self.pressures), axis=0).T
+        repeated = np.repeat(self.problems, len(self.pressures), axis=0).T
+        h, d, area, gamma, ratio, shear, force, torque, length, second, third = repeated
         pressure = np.tile(self.pressures, len(self.problems))
-        return Tubes(h, d, area, gamma, ratio, shear, pressure, force, torque, np.ones_like(h), 0.5 * length)
+        return Tubes(
+            h, d, area, gamma, ratio, shear, pressure, force, torque, np.ones_like(h), 0.5 * length, second, third
+        )
 
 
 def sample(designs=200, pressures=20, seed=0) -> Sample:
@@ -47,7 +50,7 @@ def sample(designs=200, pressures=20, seed=0) -> Sample:
     wall, one = rng.uniform(0.1, 0.5, designs), np.ones(designs)
     problems = np.column_stack(
         [0.5 * (ta + tb), 0.5 * (ta - tb), wall * (2.0 + wall), one, 0.5 * one, one, 0.0 * one, 0.0 * one,
-         rng.uniform(8.0, 60.0, designs)]
+         rng.uniform(8.0, 60.0, designs), 0.0 * one, 0.0 * one]
     )  # fmt: skip
     return Sample(problems, np.linspace(*PRESSURES, pressures))
 

@@ -18,10 +18,11 @@ class Drawn(NamedTuple):
     pressures: np.ndarray
 
     def problems(self):
-        """As the kernels take them (n, 9)."""
+        """As the kernels take them (n, 11)."""
         alpha, beta, length, wall, gamma, ratio, force, torque, full = self.designs.T
         ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
-        columns = (0.5 * (ta + tb), 0.5 * (ta - tb), wall * (2.0 + wall), gamma, ratio, full, force, torque, length)
+        area, zero = wall * (2.0 + wall), 0.0 * alpha
+        columns = (0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, force, torque, length, zero, zero)
         return np.column_stack(columns)
 
 
@@ -67,8 +68,9 @@ def quadrature(designs, mid_radius):
     ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
     loaded = np.isfinite(pressure)
     loads = np.where(loaded, pressure, 1.0), np.where(loaded, force, 0.0), np.where(loaded, torque, 0.0)
-    area, half = wall * (2.0 + wall), 0.5 * length
-    tubes = Tubes(0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, *loads, loaded.astype(float), half)
+    area, half, zero = wall * (2.0 + wall), 0.5 * length, 0.0 * alpha
+    weight = loaded.astype(float)
+    tubes = Tubes(0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, *loads, weight, half, zero, zero)
     found = solve(tubes, loads[0])
     if (lost := np.flatnonzero(found.reason != SOLVED)).size:
         again = solve_near(tubes.at(lost), mid_radius[lost])

@@ -4,7 +4,8 @@ With q = y^2, T = p q + f and k = 1 for ``energy="full"``, 0 for "principal" (th
 
     G   = A - D^2 q - B/q,   A = gamma^2 (1 + H^2 + D^2),   B = gamma^4 H^2             (Eqs. 2.3, 2.4)
     psi = H (gamma^2/q - 1)
-    w   = G + q (1 + k psi^2) + 1/(G q) - 3 + c (G q + 1/q + (1 + k psi^2)/G - 3)        (Eq. 2.5)
+    i   = G + q (1 + k psi^2) + 1/(G q) - 3                                              I1 - 3
+    w   = i + c (G q + 1/q + (1 + k psi^2)/G - 3) + c2 i^2 + c3 i^3                      (Eq. 2.5, Yeoh's terms)
     U   = T sqrt(G) - a w + m psi
 
 Everything is dimensionless and an array over tubes: lengths by r0, pressure by C10, force by pi r0^2 C10, torque by
@@ -23,7 +24,9 @@ SMALLEST_STEP = 1e-7  # of the way: below it the path turns back
 
 
 class Tubes(NamedTuple):
-    """Arrays (n,); ``half`` is half the length, ``weight`` that of the strain energy: 0 for the locked shape."""
+    """Arrays (n,); ``half`` is half the length, ``weight`` that of the strain energy: 0 for the locked shape; ``ratio``,
+    ``second``, ``third`` are C01, C20, C30 over C10.
+    """
 
     H: np.ndarray
     D: np.ndarray
@@ -36,6 +39,8 @@ class Tubes(NamedTuple):
     torque: np.ndarray
     weight: np.ndarray
     half: np.ndarray
+    second: np.ndarray
+    third: np.ndarray
 
     def at(self, which):
         """Some of the tubes."""
@@ -62,7 +67,8 @@ def density(tube, u, q) -> Divided:
     psi = r * (gg * tube.H) + (-tube.H)
     sheared = psi * psi * tube.shear + 1.0
     K = G * q
-    w = G + q * sheared + K.inverse() + (K + r + sheared * G.inverse()) * tube.ratio
+    i = G + q * sheared + K.inverse() + (-3.0)
+    w = i + i * i * tube.second + i * i * i * tube.third + (K + r + sheared * G.inverse()) * tube.ratio
     T = q * tube.pressure + tube.force
     return T * G.root() - w * (tube.weight * tube.area) + psi * tube.torque
 
@@ -77,7 +83,8 @@ def state(tube, q):
     psi = tube.H * (stretched - b) / q
     sheared = tube.shear * psi**2
     both = a + b + a * b  # G q - 1
-    w = a * a / G + b * both / (G * q) + q * sheared + tube.ratio * (a * a / G + b * both / q + sheared / G)
+    i = a * a / G + b * both / (G * q) + q * sheared
+    w = i + tube.second * i**2 + tube.third * i**3 + tube.ratio * (a * a / G + b * both / q + sheared / G)
     return G, psi, w, tube.pressure * q + tube.force
 
 

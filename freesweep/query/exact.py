@@ -31,7 +31,7 @@ def solve(kind, points, energy, accuracy, largest_pressure=None):
     status[apart == 0.0] = DEGENERATE
     good = np.flatnonzero(status == NOT_CONVERGED)
     own = {name: column[good] for name, column in design.items()}
-    rows = problem_rows(own, energy) if len(good) else np.zeros((0, 9))
+    rows = problem_rows(own, energy) if len(good) else np.zeros((0, 11))
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
     names = ("force",) if kind == reference.LENGTH_HELD else ("torque",) if held else OUTPUTS
     found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
@@ -79,7 +79,7 @@ def _scales(kind, own):
 
 
 def _free(rows, pressure, most, accuracy):
-    """Free states of rows (k, 9), each at its own pressure, and followed to ``most`` (k,) if that is given."""
+    """Free states of rows (k, 11), each at its own pressure, and followed to ``most`` (k,) if that is given."""
     from ..solver.batch import uniform, walk_all
 
     count = len(rows)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import config
 
-from .branch import D, walk_many
+from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, D, walk_many
 from .profile import FIELDS
 from .status import PENDING
 
@@ -46,7 +46,22 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
 
         # designs that share a vector should need much the same work: as many pressures, as steep angles
         order = np.lexsort((np.abs(problems[:, D]), np.diff(first)))
-        walk_lanes(problems, first, pressures, order, base, accuracy, *found[:4], stations, found.profiles, states)
+        yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)[order]
+        for constants, some in ((MOONEY_RIVLIN, order[~yeoh]), (YEOH, order[yeoh])):
+            if len(some):
+                walk_lanes(
+                    problems,
+                    first,
+                    pressures,
+                    some,
+                    constants,
+                    base,
+                    accuracy,
+                    *found[:4],
+                    stations,
+                    found.profiles,
+                    states,
+                )
         if not np.any(found.status == PENDING):
             return found
     walk_many(problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles, states)

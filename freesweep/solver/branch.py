@@ -11,7 +11,7 @@ Here physics and numerics are bound together.
 
 import numpy as np
 
-from ..jit import entry_point, inlined
+from ..jit import entry_point, inlined, kernel
 from . import guide, lagrangian, nested
 from .profile import FIELDS, at_stations
 from .reach import reach
@@ -19,9 +19,16 @@ from .slack import slack_fibers
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 
 # columns of a problem: what one design is, dimensionless
-PROBLEM_SIZE = 9
-H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH = range(PROBLEM_SIZE)
+PROBLEM_SIZE = 11
+H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH, SECOND, THIRD = range(PROBLEM_SIZE)
+MOONEY_RIVLIN, YEOH = (RATIO,), (RATIO, SECOND, THIRD)  # columns of a rubber's constants, over C10
 FINER = 4  # times the cells of the base mesh, for a walk that did not converge
+
+
+@kernel
+def rubber_of(problem):
+    """What :mod:`lagrangian` takes as a rubber: C01/C10, C2/C1, C3/C1."""
+    return problem[RATIO], problem[SECOND], problem[THIRD]
 
 
 @inlined
@@ -51,7 +58,8 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     half = 0.5 * problem[LENGTH]
     out = np.zeros((4, nested.OUTPUTS))
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
-    before = (1.0, problem[RATIO], problem[SHEAR], 0.0, 0.0, 0.0, 1.0)
+    rubber, shear = rubber_of(problem), problem[SHEAR]
+    before = (1.0, rubber, shear, 0.0, 0.0, 0.0, 1.0)
     started, guided, ended = False, True, OK
     clamped = 1.0
     for end in range(2):
@@ -64,7 +72,7 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     last = state.shape[1] - 1
     if places == 1 and not np.isnan(state[0, last]):
         started, u[0] = True, state[1, last]
-        before = (gamma, problem[RATIO], problem[SHEAR], state[0, last], f, m, 1.0)
+        before = (gamma, rubber, shear, state[0, last], f, m, 1.0)
         for k in range(base + 1):
             x[k], y[k] = state[0, k], state[1, k]
             last_x[k], last_y[k] = x[k], y[k]
@@ -95,9 +103,9 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
         if ended != OK and not locked:
             status[i] = ended
             continue
-        load = (gamma, problem[RATIO], problem[SHEAR], p, f, m, 1.0)
+        load = (gamma, rubber, shear, p, f, m, 1.0)
         if locked:
-            load = (gamma, problem[RATIO], problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
+            load = (gamma, rubber, shear, 1.0, 0.0, 0.0, 0.0)
             guide.locked(tube, gamma, ahead)
             reached, started = 1.0, False
         elif guided:

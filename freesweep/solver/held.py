@@ -38,10 +38,10 @@ SMALLEST_SHARE = 1e-13  # of the held integral
 
 @kernel
 def loaded(load, direction, mu):
-    """The load changed by ``mu`` along ``direction``, component by component."""
+    """The load changed by ``mu`` along ``direction``, component by component; the rubber stays."""
     return (
         load[0] + mu * direction[0],
-        load[1] + mu * direction[1],
+        load[1],
         load[2] + mu * direction[2],
         load[3] + mu * direction[3],
         load[4] + mu * direction[4],

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested, newton
-from .branch import GAMMA, RATIO, SHEAR
+from .branch import GAMMA, SHEAR, rubber_of
 from .climb import pushed
 from .march import LOWERINGS, begin, buckled_at, cylinder_multiplier, from_rest, march
 from .profile import FIELDS, at_stations
@@ -36,7 +36,8 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     total = places[len(places) - 1]
     gamma = problem[GAMMA]
     force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
-    load = (gamma, problem[RATIO], problem[SHEAR], p, force, torque, 1.0)
+    rubber, shear = rubber_of(problem), problem[SHEAR]
+    load = (gamma, rubber, shear, p, force, torque, 1.0)
     unit = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     # a place whose cylinder can carry the load, at a higher pressure if it must be
     start, cell, raised = load, guide.cell_along(tube, 0.5), False
@@ -44,7 +45,7 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
         share = ((attempt // RAISES) * 0.5 / (guide.PLACES - 1) + 0.5) % 1.0
         cell = guide.cell_along(tube, share)
         higher = p * 1.5 ** (attempt % RAISES)
-        start = (gamma, problem[RATIO], problem[SHEAR], higher, force, torque, 1.0)
+        start = (gamma, rubber, shear, higher, force, torque, 1.0)
         mu = cylinder_multiplier(cell, start, unit)
         at_start = held.loaded(start, unit, mu)
         raised = lagrangian.density(1.0, 0.0, cell, at_start)[0] > 0.0

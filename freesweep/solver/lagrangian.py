@@ -15,15 +15,17 @@ Functional (Eqs. 2.2, 2.5 - 2.8, 2.11; tension positive, unlike Eq. 2.11 where F
 
     L(y, v) = (p y^2 + f) s - e a w(y) + m psi(y)
     w       = (I1 - 3) + c (I2 - 3),  c = C01/C10              (Eq. 2.5)
+              + c2 (I1 - 3)^2 + c3 (I1 - 3)^3                  Yeoh, c2 = C2/C1, c3 = C3/C1, C10 = C1
     I1      = G + y^2 (1 + k psi^2) + 1/(G y^2)
     I2      = G y^2 + 1/y^2 + (1 + k psi^2)/G
 
 ``k`` (``shear``) is 1 for the invariants of the whole in-plane tensor, whose twist shears the wall, and 0 for
 Eq. 2.5 as printed, which takes lambda_1 and lambda_2 for principal stretches.
 
-``cell`` holds what may vary along the tube, (H, D, a); ``load`` what does not, (gamma, c, k, p, f, m, e). The
-weight ``e`` of the strain energy is 1; 0 gives the locked shape (section 2.2). All functions are
-plain arithmetic: they run on a float or on any number-like lane type.
+``cell`` holds what may vary along the tube, (H, D, a); ``load`` what does not, (gamma, rubber, k, p, f, m, e) with
+``rubber`` = (c, c2, c3), or (c,): then no code is made for Yeoh's part. The weight ``e`` of the strain energy is 1; 0
+gives the locked shape (section 2.2). All functions are plain arithmetic: they run on a float or on any number-like lane
+type.
 """
 
 from math import sqrt
@@ -65,10 +67,29 @@ def excess(a, b):
 
 
 @kernel
+def yeoh_slope(rubber, i):
+    """dw/dI1 of I1 - 3 = ``i``, without Mooney-Rivlin's second part."""
+    return 1.0 if len(rubber) == 1 else 1.0 + i * (2.0 * rubber[1] + 3.0 * rubber[2] * i)
+
+
+@kernel
+def yeoh(rubber, i, i_y, i_yy):
+    """What I1 alone adds to ``(w, w_y, w_yy)``: ``i`` = I1 - 3, and more where Yeoh's higher constants are not 0."""
+    if len(rubber) == 1:
+        return i, i_y, i_yy
+    c2, c3 = rubber[1], rubber[2]
+    if max(abs(c2), abs(c3)) > 0.0:  # the others need not pay for it
+        slope = yeoh_slope(rubber, i)
+        return i * (1.0 + i * (c2 + c3 * i)), slope * i_y, slope * i_yy + (2.0 * c2 + 6.0 * c3 * i) * i_y * i_y
+    return i, i_y, i_yy
+
+
+@kernel
 def strain_energy(y, cell, load):
     """``(w, w_y, w_yy)``: strain energy density over C10, its first and second derivative along y (Eq. 2.5)."""
     psi, psi_y, psi_yy, G_1, G_y, G_yy = kinematics(y, cell, load)
-    c, k = load[1], load[2]
+    rubber, k = load[1], load[2]
+    c = rubber[0]
     G = 1.0 + G_1
     r = 1.0 / y
     z = r * r  # 1/y^2
@@ -86,7 +107,8 @@ def strain_energy(y, cell, load):
     second = excess(-G_1 * e, -b * z) + q * e
     second_y = G_y * y2 + 2.0 * G * y - 2.0 * z * r + q_y * e + (1.0 + q) * e_y
     second_yy = G_yy * y2 + 4.0 * G_y * y + 2.0 * G + 6.0 * z * z + q_yy * e + 2.0 * q_y * e_y + (1.0 + q) * e_yy
-    return first + c * second, first_y + c * second_y, first_yy + c * second_yy
+    w, w_y, w_yy = yeoh(rubber, first, first_y, first_yy)
+    return w + c * second, w_y + c * second_y, w_yy + c * second_yy
 
 
 @kernel
@@ -155,13 +177,15 @@ def fiber_multipliers(y, v, cell, load):
     The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of pi r0^2 C10.
     """
     H, D, a = cell[0], cell[1], load[6] * cell[2]
-    c, k, f, m = load[1], load[2], load[4], load[5]
+    rubber, k, f, m = load[1], load[2], load[4], load[5]
+    c = rubber[0]
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
     G = 1.0 + G_1
     q = 1.0 + k * psi * psi
     y2 = y * y
-    w_G = 1.0 - 1.0 / (G * G * y2) + c * (y2 - q / (G * G))
-    w_psi = 2.0 * k * psi * (y2 + c / G)
+    slope = yeoh_slope(rubber, excess(G_1, (y - 1.0) * (y + 1.0)) + y2 * k * psi * psi)
+    w_G = slope * (1.0 - 1.0 / (G * G * y2)) + c * (y2 - q / (G * G))
+    w_psi = 2.0 * k * psi * (slope * y2 + c / G)
     total = (load[3] * y2 + f) / (2.0 * sqrt(max(G - v * v, NO_ROOM))) - a * w_G
     difference = ((m - a * w_psi) / (2.0 * y2) - total * H * load[0] * load[0] / y2) / D
     return 0.5 * (total + difference), 0.5 * (total - difference)

@@ -14,7 +14,7 @@ from ..scaling import problem_rows
 from ..status import DEGENERATE, INVALID, OK
 
 H, D, FORCE, TORQUE = 0, 1, 6, 7  # columns of a problem
-TARGET, SIZE, BLOCK, COLUMNS = 9, 10, 11, 12  # after them: what is held; radius if the wall varies; block of materials
+TARGET, SIZE, BLOCK, COLUMNS = 11, 12, 13, 14  # after them: what is held; radius if the wall varies; block of materials
 KEPT_BITS = 43  # of 52: rounding differs by the way units were given (13 digits)
 
 

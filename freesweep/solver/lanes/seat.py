@@ -4,14 +4,15 @@ import numpy as np
 
 from ...jit import kernel
 from .. import guide, lagrangian
-from ..branch import AREA, FORCE, GAMMA, LENGTH, RATIO, SHEAR, TORQUE, D, H
+from ..branch import AREA, FORCE, GAMMA, LENGTH, PROBLEM_SIZE, RATIO, SECOND, SHEAR, THIRD, TORQUE, D, H, rubber_of
 from ..profile import at_stations
 from ..status import COMPRESSED, INVALID, OK
 from .nested import OUTPUTS
 from .vector import WIDTH, get
 
-COLUMNS = 12  # H, D, area, gamma, c, shear, f, m, half length; pressure, pressure before, weight of the energy
-PRESSURE, BEFORE, WEIGHT = 9, 10, 11
+# H, D, area, gamma, c, shear, f, m, half length, c2, c3; pressure, pressure before, weight of the energy
+COLUMNS = PROBLEM_SIZE + 3
+PRESSURE, BEFORE, WEIGHT = range(PROBLEM_SIZE, COLUMNS)
 LINE = 64  # bytes: arrays of lanes begin on a cache line
 
 
@@ -25,19 +26,28 @@ def aligned(rows, size):
 
 
 @kernel
-def loads(columns):
+def rubber_in(columns, constants):
+    """The rubbers in the lanes: as many of C01/C10, C2/C1, C3/C1 as there are ``constants``, (RATIO,) or three columns."""
+    if len(constants) == 1:
+        return (get(columns, RATIO),)
+    return get(columns, RATIO), get(columns, SECOND), get(columns, THIRD)
+
+
+@kernel
+def loads(columns, constants):
     """What the density takes: ``(cell, load before, load now)``."""
     cell = (get(columns, H), get(columns, D), get(columns, AREA))
-    gamma, c, k = get(columns, GAMMA), get(columns, RATIO), get(columns, SHEAR)
+    gamma, k = get(columns, GAMMA), get(columns, SHEAR)
+    rubber = rubber_in(columns, constants)
     f, m, e = get(columns, FORCE), get(columns, TORQUE), get(columns, WEIGHT)
-    now = (gamma, c, k, get(columns, PRESSURE), f, m, e)
-    return cell, (gamma, c, k, get(columns, BEFORE), f, m, e), now
+    now = (gamma, rubber, k, get(columns, PRESSURE), f, m, e)
+    return cell, (gamma, rubber, k, get(columns, BEFORE), f, m, e), now
 
 
 @kernel
 def enter(lane, problem, columns, base, x, y):
     """Put a design into a lane, undeformed."""
-    for i in range(LENGTH):
+    for i in range(PROBLEM_SIZE):
         columns[i, lane] = problem[i]
     columns[LENGTH, lane] = 0.5 * problem[LENGTH]
     columns[PRESSURE, lane], columns[BEFORE, lane], columns[WEIGHT, lane] = 1.0, 0.0, 1.0
@@ -59,7 +69,7 @@ def seat(lane, columns, tube):
         course[0, 0, k, 0] = columns[k, lane]
     places[1] = columns[LENGTH, lane]
     return (
-        columns[GAMMA, lane], columns[RATIO, lane], columns[SHEAR, lane], columns[PRESSURE, lane],
+        columns[GAMMA, lane], rubber_of(columns[:, lane]), columns[SHEAR, lane], columns[PRESSURE, lane],
         columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
     )  # fmt: skip
 

@@ -2,7 +2,8 @@
 
 ``Lane`` is LLVM's ``<WIDTH x double>``. Its ``+ - * /``, unary minus, comparisons, ``sqrt``, ``abs``, ``min`` and ``max``
 are LLVM's own vector operations, lane by lane, so no design can see its neighbours; a float beside a lane stands for all
-of them. Comparisons give a ``Mask``, joined by ``& | ~``. Only compiled code knows these types.
+of them. Comparisons give a ``Mask``, joined by ``& | ~``; where a
+condition is asked for, a mask is true if any lane is. Only compiled code knows these types.
 
 Arrays of lanes are plain arrays of shape (n, WIDTH): :func:`get`, :func:`put`.
 """
@@ -138,6 +139,20 @@ _mask_operation(operator.or_, 2, lambda builder, a, b: builder.or_(a, b))
 _mask_operation(operator.invert, 1, lambda builder, a: builder.not_(a))
 
 
+@infer_global(bool)
+class _Condition(AbstractTemplate):
+    def generic(self, args, kws):
+        return signature(types.boolean, *args) if isinstance(args[0], _Mask) else None
+
+
+def _any_lane(builder, where):
+    bits = builder.bitcast(where, ir.IntType(WIDTH))
+    return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
+
+
+lower_builtin(bool, _Mask)(lambda context, builder, sig, args: _any_lane(builder, args[0]))
+
+
 def _row(context, builder, kind, array, index):
     """Address of the lanes in row ``index`` of a C-ordered (n, WIDTH) array."""
     struct = context.make_array(kind)(context, builder, array)
@@ -189,12 +204,7 @@ def spread(typingctx, value):
 @intrinsic
 def some(typingctx, where):
     """Whether the mask is true anywhere."""
-
-    def build(context, builder, sig, args):
-        bits = builder.bitcast(args[0], ir.IntType(WIDTH))
-        return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
-
-    return types.boolean(where), build
+    return types.boolean(where), lambda context, builder, sig, args: _any_lane(builder, args[0])
 
 
 @intrinsic

@@ -32,8 +32,8 @@ from .vector import WIDTH, bits, get, mask_of, put, select, spread
 def first_leg(before, fresh):
     """The load before, where the ``fresh`` lanes begin without any."""
     zero, one = spread(0.0), spread(1.0)
-    gamma, c, k, p, f, m, e = before
-    return select(fresh, one, gamma), c, k, p, select(fresh, zero, f), select(fresh, zero, m), e
+    gamma, rubber, k, p, f, m, e = before
+    return select(fresh, one, gamma), rubber, k, p, select(fresh, zero, f), select(fresh, zero, m), e
 
 
 @kernel
@@ -49,10 +49,24 @@ def rescale(u, ahead, base, x, y, kept_x, kept_y, safe):
 
 @entry_point
 def walk_lanes(
-    problems, first, pressures, order, base, accuracy, values, bounds, status, slack, stations, profiles, states
+    problems,
+    first,
+    pressures,
+    order,
+    constants,
+    base,
+    accuracy,
+    values,
+    bounds,
+    status,
+    slack,
+    stations,
+    profiles,
+    states,
 ):
     """Walk the problems in the given ``order``, WIDTH at a time. Arguments as of :func:`branch.walk_many`; rows that a lane
-    could not do keep the status that they have, and ``states`` says from where the scalar walk goes on:
+    could not do keep the status that they have, and ``states`` says from where the scalar walk goes on. ``constants`` are
+    the columns of their rubbers' constants, branch.MOONEY_RIVLIN or branch.YEOH: each has machine code of its own.
 
     states : (problems, 2, base + 2) mesh and shape, each with one number behind: the pressure of that state (NaN where
         none was solved), and the uniform stretch
@@ -99,7 +113,7 @@ def walk_lanes(
                         active |= 1 << lane
             if active == 0:
                 continue
-            cell, before, now = loads(columns)
+            cell, before, now = loads(columns, constants)
             if step < 0:
                 ahead, arrived = lagrangian.locked_stretch(cell, now[0]), mask_of(active)
             else:
