@@ -15,6 +15,7 @@ _HOMES = {
     "ActuatorError": "faults",
     "MooneyRivlin": "elastomer",
     "NeoHookean": "elastomer",
+    "Yeoh": "elastomer",
     "material": "material_library",
     "materials": "material_library",
     "lock": "statics",

@@ -7,7 +7,7 @@ from numbers import Real
 
 import numpy as np
 
-from .elastomer import MooneyRivlin
+from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
 from .faults import ActuatorError, number_fault
 from .profiles import ProfileError, as_profile, is_profile, together
 
@@ -43,7 +43,8 @@ class Actuator:
         along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump) or a callable of x/l (array in, array out)
     length, radius : undeformed length, inner radius [m]
     wall : wall thickness [m], number or profile
-    material : :class:`MooneyRivlin`, :class:`NeoHookean`, or a rubber of the library, :func:`freesweep.material`
+    material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or a rubber of the library,
+        :func:`freesweep.material`
     fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
     fiber_radius : radius at which the fibers lie [m], from the inner to the outer one; None: the inner one, as in Eq. 2.20
     energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed
@@ -57,7 +58,7 @@ class Actuator:
     length: float
     radius: float
     wall: object
-    material: MooneyRivlin
+    material: MooneyRivlin | Yeoh
     fiber_extension: float = 1.0
     fiber_radius: float | None = None
     energy: str = "full"
@@ -83,9 +84,10 @@ class Actuator:
         faults.append(number_fault("fiber_extension", self.fiber_extension, "1", least=1.0))
         if self.fiber_radius is not None:
             faults.append(number_fault("fiber_radius", self.fiber_radius, "m", positive=True))
-        if not isinstance(self.material, MooneyRivlin):
+        if not isinstance(self.material, ELASTOMERS):
             faults.append(
-                f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01) or NeoHookean(c10), in [Pa]"
+                f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01), NeoHookean(c10) or"
+                " Yeoh(c1, c2, c3), in [Pa], or material(name)"
             )
         if self.energy not in ENERGIES:
             faults.append(f"energy: found {self.energy!r}; choose one of {', '.join(map(repr, ENERGIES))}")
@@ -156,6 +158,8 @@ class Actuator:
             "fiber_extension": self.fiber_extension,
             "c10": self.material.c10,
             "c01": self.material.c01,
+            "c20": self.material.c20,
+            "c30": self.material.c30,
         }
 
 

@@ -91,7 +91,8 @@ def blocked_torque(alpha, beta, radius, pressure):
 def critical_pressure(alpha, beta, length, radius, wall, c10, c01=0.0, energy="full"):
     """Pressure [Pa] from which a cylinder whose rotation is held buckles: its first mode is antisymmetric.
 
-    Lengths in [m], constants in [Pa]; infinite where it never does. Linear stability of y = 1 under Eq. 2.20.
+    Lengths in [m], constants in [Pa]; infinite where it never does. Linear stability of y = 1 under Eq. 2.20, where nothing
+    is strained: of a Yeoh rubber only c1 counts, given as ``c10``.
     """
     ta, tb = _tangents(alpha, beta)
     half_sum, half_difference, q = 0.5 * (ta + tb), 0.5 * (ta - tb), ta * tb

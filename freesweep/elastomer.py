@@ -1,7 +1,14 @@
-"""Rubbers: strain energy densities and their constants, checked, in [Pa]."""
+"""Rubbers: strain energy densities and their constants, checked, in [Pa].
 
+All are cases of ``w = c10 (I1 - 3) + c01 (I2 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3``; each has these four numbers.
+"""
+
+import math
+import warnings
 from dataclasses import dataclass, field
 from typing import ClassVar
+
+import numpy as np
 
 from .faults import ActuatorError, number_fault
 
@@ -16,6 +23,8 @@ class MooneyRivlin:
     """
 
     constants: ClassVar[tuple] = ("c10", "c01")
+    c20: ClassVar[float] = 0.0
+    c30: ClassVar[float] = 0.0
 
     c10: float
     c01: float = 0.0
@@ -37,6 +46,87 @@ class NeoHookean(MooneyRivlin):
     constants: ClassVar[tuple] = ("c10",)
 
     c01: float = field(default=0.0, init=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Yeoh:
+    """Yeoh rubber: w = c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3; it stiffens at large stretches where these are positive.
+
+    ``c1`` > 0, half the small-strain shear modulus, ``c2`` and ``c3`` of any sign, in [Pa]; the rest as in
+    :class:`MooneyRivlin`. Where c2 or c3 is negative the energy may cease to be convex (:func:`convex_to`): a warning says
+    where, unless ``largest_stretch`` lies below that, and each solution that goes there gives another. Raises
+    :class:`ActuatorError`.
+    """
+
+    constants: ClassVar[tuple] = ("c1", "c2", "c3")
+    c01: ClassVar[float] = 0.0
+
+    c1: float
+    c2: float = 0.0
+    c3: float = 0.0
+    largest_stretch: float | None = field(default=None, repr=False, compare=False, kw_only=True)
+    source: str = field(default="", repr=False, compare=False, kw_only=True)
+
+    def __post_init__(self):
+        _check(
+            number_fault("c1", self.c1, "Pa", positive=True),
+            number_fault("c2", self.c2, "Pa"),
+            number_fault("c3", self.c3, "Pa"),
+            _range_fault(self.largest_stretch),
+        )
+        limit = float(convex_to(self.c1, self.c2, self.c3))
+        if limit < (math.inf if self.largest_stretch is None else strip_strain(self.largest_stretch)):
+            warnings.warn(
+                f"{self!r} is convex only up to I1 - 3 = {limit:.3g}, a strip drawn to {_strip(limit):.3g} times its length:"
+                " beyond it the stress would fall as the strain grows; take these constants below that only",
+                stacklevel=3,
+            )
+
+    @property
+    def c10(self) -> float:
+        """Coefficient of I1 - 3 [Pa]."""
+        return self.c1
+
+    @property
+    def c20(self) -> float:
+        """Coefficient of (I1 - 3)^2 [Pa]."""
+        return self.c2
+
+    @property
+    def c30(self) -> float:
+        """Coefficient of (I1 - 3)^3 [Pa]."""
+        return self.c3
+
+
+ELASTOMERS = (MooneyRivlin, Yeoh)
+
+
+def rubber_of(c10, c01=0.0, c20=0.0, c30=0.0):
+    """The rubber of four coefficients [Pa]: Yeoh if one of the last two is not 0."""
+    return Yeoh(c10, c20, c30) if c20 or c30 else MooneyRivlin(c10, c01)
+
+
+def convex_to(c1, c2, c3):
+    """I1 - 3 up to which a Yeoh energy is convex [-], infinite where it always is; arrays broadcast.
+
+    Convex as rubbers have to be (strongly elliptic): the shear stress ``2 k w'(k^2)`` grows with the amount of shear k, for
+    which I1 - 3 = k^2. At a given I1 no other deformation is nearer to failing. That is ``c1 + 6 c2 i + 15 c3 i^2 > 0``.
+    """
+    c1, b, c = np.broadcast_arrays(np.asarray(c1, float), 6.0 * np.asarray(c2, float), 15.0 * np.asarray(c3, float))
+    with np.errstate(all="ignore"):
+        inner = -0.5 * (b + np.copysign(np.sqrt(b * b - 4.0 * c * c1), b))  # roots inner/c and c1/inner; NaN: none
+        roots = np.stack([inner / c, c1 / inner])
+        return np.min(np.where(roots > 0.0, roots, np.inf), axis=0)
+
+
+def strip_strain(stretch):
+    """I1 - 3 of a strip drawn to ``stretch`` times its length [-]."""
+    return stretch * stretch + 2.0 / stretch - 3.0
+
+
+def _strip(strain):
+    """Stretch of a strip at which I1 - 3 is ``strain``: the largest root of x^3 - (strain + 3) x + 2."""
+    return float(np.max(np.roots([1.0, 0.0, -(strain + 3.0), 2.0]).real))
 
 
 def _check(*faults):

@@ -7,7 +7,7 @@ to the value asked for.
 
 import numpy as np
 
-from .actuator import Actuator, ActuatorError, MooneyRivlin
+from .actuator import Actuator, ActuatorError
 from .loads import read_load, read_stations
 from .results import dataset, near_stations
 from .scaling import problem_rows
@@ -147,10 +147,9 @@ def corrected_torque(tube: Actuator, pressure):
 
     if not isinstance(tube, Actuator) or tube.varies or tube.alpha != 0.0:
         raise ActuatorError(["tube: the source's correction is for alpha = 0 and a constant beta"])
-    material = MooneyRivlin(tube.material.c10, tube.material.c01)
     muscle = Actuator(
-        alpha=tube.beta, beta=-tube.beta, length=tube.length, radius=tube.radius, wall=tube.wall, material=material,
-        fiber_radius=tube.fiber_radius, energy=tube.energy,
+        alpha=tube.beta, beta=-tube.beta, length=tube.length, radius=tube.radius, wall=tube.wall,
+        material=tube.material, fiber_radius=tube.fiber_radius, energy=tube.energy,
     )  # fmt: skip
     stations = (
         0.5 * tube.length * (1.0 - np.cos(np.linspace(0.0, np.pi, CORRECTION_STATIONS)))

@@ -7,7 +7,7 @@ more (Ecoflex 00-30: 2 c10 from 16 to 25 kPa). Take these for a first design, an
 import difflib
 from collections.abc import Mapping
 
-from .elastomer import MooneyRivlin, NeoHookean
+from .elastomer import MooneyRivlin, Yeoh
 from .faults import ActuatorError
 
 _TABLE_1 = (
@@ -42,13 +42,17 @@ materials = Library(
         "natural-latex": MooneyRivlin(0.11e6, 0.06e6, largest_stretch=1.64, source=_TABLE_1.format(angle=30)),
         "natural-latex-35": MooneyRivlin(0.18e6, 0.12e6, largest_stretch=1.43, source=_TABLE_1.format(angle=35)),
         "natural-latex-40": MooneyRivlin(0.18e6, 0.10e6, largest_stretch=1.28, source=_TABLE_1.format(angle=40)),
-        "ecoflex-00-30": NeoHookean(8.32e3, largest_stretch=2.5, source=_TENSILE.format(stretch=2.5, misfit="4.2 %")),
-        "dragon-skin-30": NeoHookean(95.8e3, largest_stretch=1.5, source=_TENSILE.format(stretch=1.5, misfit="5.5 %")),
-        "elastosil-m4601": NeoHookean(
+        "ecoflex-00-30": Yeoh(7.93e3, 85.4, largest_stretch=4.0, source=_TENSILE.format(stretch=4, misfit="1.9 %")),
+        "dragon-skin-30": Yeoh(
+            92.2e3, 9.03e3, -357.0, largest_stretch=3.0, source=_TENSILE.format(stretch=3, misfit="0.7 %")
+        ),
+        "elastosil-m4601": Yeoh(
             0.11e6,
-            largest_stretch=1.3,
-            source="Soft Robotics Toolkit (softroboticstoolkit.com), PneuNets bending actuators, modeling: Yeoh, C1 = 0.11"
-            " MPa, C2 = 0.02 MPa; of these the first alone, up to where the second adds a tenth to a strip's stress",
+            0.02e6,
+            largest_stretch=2.0,
+            source="Yeoh C1 = 0.11 MPa, C2 = 0.02 MPa, of Elastosil (Shore A 28) in the soft-robot simulator Sorotoki"
+            " (B. Caasenbrood, SorotokiCode, preset material Elastosil28) and in public finite-element models of PneuNets"
+            " actuators; they come with no tests and no range: the stretch of 2 is our own caution",
         ),
     }
 )

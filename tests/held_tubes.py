@@ -50,6 +50,7 @@ def by_collocation(actuator, pressure, held, target, guess, other=0.0, shape=Non
     r, c10 = actuator.fiber_surface, actuator.material.c10
     end, p, gamma = actuator.length / r, pressure / c10, actuator.fiber_extension
     ratio, shear = actuator.material.c01 / c10, ENERGIES[actuator.energy]
+    yeoh = actuator.material.c20 / c10, actuator.material.c30 / c10
     profiles = {name: getattr(actuator, name) for name in ("alpha", "beta", "wall")}
 
     def at(name, share, low, high):
@@ -73,7 +74,7 @@ def by_collocation(actuator, pressure, held, target, guess, other=0.0, shape=Non
             share = low + (high - low) * t
             H, D = half_sum_and_difference(at("alpha", share, low, high), at("beta", share, low, high))
             area = ((actuator.radius + at("wall", share, low, high)) ** 2 - actuator.radius**2) / r**2
-            values = (H, D, area, gamma, ratio, shear, p, f, m, 1.0)
+            values = (H, D, area, gamma, ratio, shear, p, f, m, 1.0, *yeoh)
             G, psi, w, T = state(y, values)
             root = np.sqrt(T * T + q * q)
             v, s = -q * np.sqrt(G) / root, T * np.sqrt(G) / root
@@ -93,7 +94,18 @@ def by_collocation(actuator, pressure, held, target, guess, other=0.0, shape=Non
     if shape is not None:
         H, D = half_sum_and_difference(actuator.alpha, actuator.beta)
         y, v = shape(t * end), shape(t * end, 1)
-        values = (H, D, 1.0, gamma, ratio, shear, p, *((guess, other) if held == "length" else (other, guess)), 1.0)
+        values = (
+            H,
+            D,
+            1.0,
+            gamma,
+            ratio,
+            shear,
+            p,
+            *((guess, other) if held == "length" else (other, guess)),
+            1.0,
+            *yeoh,
+        )
         G, psi, w, T = state(y, values)
         s = np.sqrt(G - v * v)
         rows = (y * y * s, psi, w * ((actuator.radius + actuator.wall) ** 2 - actuator.radius**2) / r**2)

@@ -70,7 +70,7 @@ def test_every_fault_is_listed_at_once():
     assert "it has to be above 0" in faults[2]
     assert "found -1 m" in faults[3]
     assert "found 0.99; it has to be 1 or more" in faults[5]
-    assert "found float; give MooneyRivlin(c10, c01) or NeoHookean(c10), in [Pa]" in faults[7]
+    assert "found float; give MooneyRivlin(c10, c01), NeoHookean(c10) or Yeoh(c1, c2, c3), in [Pa]" in faults[7]
     assert faults[8] == "energy: found 'Full'; choose one of 'full', 'principal'"
 
 
@@ -147,5 +147,5 @@ def test_a_design_holds_every_number_that_a_sweep_would_vary():
     design = Actuator(**PAM).design()
     assert design == {
         "alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1.59e-3, "fiber_radius": 4.76e-3,
-        "fiber_extension": 1, "c10": 0.11e6, "c01": 0.06e6,
+        "fiber_extension": 1, "c10": 0.11e6, "c01": 0.06e6, "c20": 0.0, "c30": 0.0,
     }  # fmt: skip

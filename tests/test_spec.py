@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from freesweep.atlas.schema import HELD, PARAMETERS
+from freesweep.atlas.schema import HELD, PARAMETERS, YEOH
 from freesweep.sweep import toml_guard
 from freesweep.sweep.spec import MAX_POINTS, SpecificationError, parse, read_file
 from freesweep.units import quantity
@@ -159,7 +159,7 @@ def test_every_parameter_stands_in_exactly_one_place():
         sweep = parse(text)
         columns = sweep.designs["columns"] if sweep.designs else {}
         places = [*sweep.fixed, *sweep.axes, *columns]
-        assert sorted(places) == sorted(set(PARAMETERS) - {"fiber_radius", *HELD})
+        assert sorted(places) == sorted(set(PARAMETERS) - {"fiber_radius", *HELD, *YEOH})
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ from .predicted import continued, predicted
 EXTENSION = "fiber_extension"
 PERCENT = 0.01  # extensions are searched in percent, material constants in units of the first guess: all near 1
 LARGEST_EXTENSION = 20.0  # [%]
-LEAST = {"c10": 1e-4}  # of constants, in units of the first guess; 0 for others
+# of constants, in units of the first guess; 0 for others
+LEAST = {"c10": 1e-4, "c1": 1e-4, "c2": -np.inf, "c3": -np.inf}
 SCAN = 3.0 ** np.arange(-3.0, 4.0)  # times the first guess of all constants
 SCAN_EXTENSION = (0.0, 0.5, 1.0)  # [%]
 STEP = 1e-3  # of differences: their truncation, 1e-3 or 1e-6 if central, is far above the solver's error over it

@@ -1,6 +1,6 @@
 """The command `freesweep calibrate`: parses and calls."""
 
-from .single import add_rubber, read_options, read_rubber
+from .single import CONSTANTS, add_rubber, read_options, read_rubber
 
 NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
 
@@ -21,7 +21,12 @@ def add_calibrate(commands):
             f"--{name.replace('_', '-')}", metavar="VALUE", help="of all actuators without such a column"
         )
     add_rubber(command, "; here a first guess, or the value of what is not fitted")
-    command.add_argument("--fit", nargs="+", metavar="NAME", help="what to fit (default: c10 c01 fiber_extension)")
+    command.add_argument(
+        "--fit",
+        nargs="+",
+        metavar="NAME",
+        help="what to fit (default: all: c10 c01, or c1 c2 c3 of a Yeoh rubber, and fiber_extension)",
+    )
     command.add_argument(
         "--measured",
         nargs="+",
@@ -66,4 +71,4 @@ def _run(options):
 
 
 def _any_rubber(options):
-    return any(getattr(options, name) is not None for name in ("material", "c10", "c01"))
+    return any(getattr(options, name) is not None for name in ("material", *CONSTANTS))

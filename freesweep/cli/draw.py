@@ -155,8 +155,10 @@ def _run_shape(options):
         tube = tube_of(options)
         states, titles = [lock(tube)], ["locked"]
     else:
-        if options.c10 is None:
-            raise ValueError("--c10: under pressure the rubber counts; give its constants, or leave --pressure out")
+        if options.c10 is None and options.material is None:
+            raise ValueError(
+                "--c10: under pressure the rubber counts; give its constants or its name, or leave --pressure out"
+            )
         from ..plot.display import describe
 
         tube, data = tube_of(options), inflated(options)

@@ -1,5 +1,7 @@
 """The commands for one actuator: lock, inflate, block. They parse and call; a table goes to the screen."""
 
+CONSTANTS = ("c10", "c01", "c20", "c30")
+
 
 def add_single(commands):
     """Add the commands of this module to the command line."""
@@ -47,8 +49,10 @@ def add_actuator(commands, name, text, run, rubber=True):
 def add_rubber(command, remark=""):
     """Options for a rubber: a name of the library, or constants."""
     command.add_argument("--material", metavar="NAME", help=f"a rubber of the library, such as dragon-skin-30{remark}")
-    command.add_argument("--c10", metavar="C", help=f"Mooney-Rivlin constant{remark}")
-    command.add_argument("--c01", metavar="C", help="Mooney-Rivlin constant (default 0)")
+    command.add_argument("--c10", "--c1", metavar="C", help=f"first constant, Mooney-Rivlin or Yeoh{remark}")
+    command.add_argument("--c01", metavar="C", help="second Mooney-Rivlin constant (default 0)")
+    command.add_argument("--c20", "--c2", metavar="C", help="second Yeoh constant (default 0)")
+    command.add_argument("--c30", "--c3", metavar="C", help="third Yeoh constant (default 0)")
 
 
 def _keep(command):
@@ -85,16 +89,18 @@ def read_options(options, names, faults) -> dict:
 
 def read_rubber(options, faults, *default):
     """The rubber of the options of ``add_rubber``, or of a ``default`` c10; None after noting faults."""
-    from ..elastomer import MooneyRivlin
+    from ..elastomer import rubber_of
     from ..faults import ActuatorError
     from ..material_library import material
     from ..units import quantity
 
     before = len(faults)
-    given = [name for name in ("c10", "c01") if getattr(options, name) is not None]
+    given = [name for name in CONSTANTS if getattr(options, name) is not None]
     values = read_options(options, given, faults)
     if options.material is not None and given:
         faults.append(f"--material: --{given[0]} is given too; give a name or constants")
+    elif "c01" in given and {"c20", "c30"} & set(given):
+        faults.append("--c01: a Yeoh rubber, with --c20 or --c30, has none; remove one of the two")
     elif options.material is None and "c10" not in given and not default:
         faults.append("--c10: is missing; give the constants of the rubber, or its name, --material")
     if len(faults) > before:
@@ -103,7 +109,7 @@ def read_rubber(options, faults, *default):
         if options.material is not None:
             return material(options.material)
         c10 = values["c10"] if "c10" in values else quantity(*default, "Pa")
-        return MooneyRivlin(c10, values.get("c01", 0.0))
+        return rubber_of(c10, *(values.get(name, 0.0) for name in CONSTANTS[1:]))
     except ActuatorError as error:
         faults += error.faults
         return None

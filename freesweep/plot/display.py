@@ -51,6 +51,7 @@ _ABSOLUTE = {
     "mid_radius": Display("radius at half length", "mm", _scaled(1e3), None),
 }
 _SYMBOLS = {"alpha": r"fiber angle $\alpha$", "beta": r"fiber angle $\beta$", "c10": "$C_{10}$", "c01": "$C_{01}$"}
+_SYMBOLS |= {"c20": "$C_{20}$", "c30": "$C_{30}$"}
 USUAL = {
     "fiber_extension": 1.0,
     "force": 0.0,
@@ -60,7 +61,7 @@ USUAL = {
 }  # not worth a word below a title
 PARAMETER_UNITS = {  # shown unit and its factor, where it is not the stored one
     **dict.fromkeys(("length", "radius", "wall", "fiber_radius", "deformed_length", "held_length"), ("mm", 1e3)),
-    **dict.fromkeys(("c10", "c01", "pressure"), ("kPa", 1e-3)),
+    **dict.fromkeys(("c10", "c01", "c20", "c30", "pressure"), ("kPa", 1e-3)),
     "torque": ("mN m", 1e3),
 }
 

@@ -16,7 +16,7 @@ SHARE = 512  # points that one thread solves at a time
 
 
 def solve(kind, points, energy, accuracy, largest_pressure=None):
-    """States of a kind at points (n, 13): name -> (n,) of numbers and ``_error`` bounds, ``status`` and flags.
+    """States of a kind at points (n, 15): name -> (n,) of numbers and ``_error`` bounds, ``status`` and flags.
 
     With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``.
     """

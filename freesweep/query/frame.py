@@ -4,7 +4,7 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 
-DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0}
+DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "c20": 0.0, "c30": 0.0, "force": 0.0, "torque": 0.0}
 
 
 class Frame:

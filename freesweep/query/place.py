@@ -61,9 +61,9 @@ def touches_diagonal(alpha, beta, kinds, a, b, nodes, pieces, shares):
 def place(asked, kinds, ranges, fixed, options, axes, strides, codes, slack, points, states, pieces, shares, marks):
     """Place points (n, k) in a table.
 
-    ``fixed`` (designs, 13): what the atlas fixes of a point. ``options``: kind of state, shear, whether the fibers lie at
+    ``fixed`` (designs, 15): what the atlas fixes of a point. ``options``: kind of state, shear, whether the fibers lie at
     the inner radius, whether HELD is given as a length, whether there are statuses. ``codes`` and ``slack``: pairs of node
-    and cell codes. Out: ``points`` (n, 13), ``states`` (n, UNIFORM), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7):
+    and cell codes. Out: ``points`` (n, 15), ``states`` (n, UNIFORM), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7):
     status, code, code of slack fibers, cell, node (-1: between nodes), 1 if exchanged, 1 if mirrored.
     """
     kind, shear, inner, by_length, has_status = options

@@ -15,9 +15,9 @@ from .uniform_tube import energy, kinematics, locked_squared_stretch, squared_st
 # columns of a point: one design and its load, in SI units and degrees; HELD: length ratio [1] or rotation [degree]
 COLUMNS = (
     "alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "c10", "c01", "force", "torque",
-    "pressure", "held",
+    "pressure", "held", "c20", "c30",
 )  # fmt: skip
-ALPHA, BETA, LENGTH, RADIUS, WALL, FIBERS, EXTENSION, C10, C01, FORCE, TORQUE, PRESSURE, HELD = range(13)
+ALPHA, BETA, LENGTH, RADIUS, WALL, FIBERS, EXTENSION, C10, C01, FORCE, TORQUE, PRESSURE, HELD, C20, C30 = range(15)
 
 NONE, LOADED, LOCKED, LENGTH_HELD, ROTATION_HELD = range(5)  # kinds of states
 PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE = range(8)  # of variables
@@ -29,13 +29,19 @@ LEAST = 1e-7  # q - 1 or H below it: what the ends add cannot be told from round
 
 
 @kernel
+def rubber_at(point):
+    """C01, C20, C30 over C10 at a point (15,)."""
+    return point[C01] / point[C10], point[C20] / point[C10], point[C30] / point[C10]
+
+
+@kernel
 def uniform(kind, point, shear, out):
-    """The uniform state of a kind at a point (13,) into ``out`` (UNIFORM,); NaN where there is none."""
+    """The uniform state of a kind at a point (15,) into ``out`` (UNIFORM,); NaN where there is none."""
     ta, tb = math.tan(math.radians(point[ALPHA])), math.tan(math.radians(point[BETA]))
     h, d, gamma = 0.5 * (ta + tb), 0.5 * (ta - tb), point[EXTENSION]
     r, c10 = point[FIBERS], point[C10]
     area = ((point[RADIUS] + point[WALL]) ** 2 - point[RADIUS] ** 2) / (r * r)
-    ratio, p = point[C01] / c10, point[PRESSURE] / c10
+    rubber, p = rubber_at(point), point[PRESSURE] / c10
     f, m = point[FORCE] / (math.pi * r * r * c10), point[TORQUE] / (math.pi * r * r * r * c10)
     out[:] = math.nan
     out[0], out[1], out[2] = h, ta * tb, area
@@ -43,7 +49,7 @@ def uniform(kind, point, shear, out):
     if kind == NONE or d == 0.0:
         return
     if kind == LOADED:
-        q = squared_stretch((h, d, area, gamma, ratio, shear, f, m), p)
+        q = squared_stretch((h, d, area, gamma, rubber, shear, f, m), p)
     elif kind == LOCKED:
         q = locked_squared_stretch(h, d, gamma)
     elif kind == LENGTH_HELD:  # G(q) = ratio^2: the root that is 1 for inextensible fibers at rest
@@ -56,7 +62,7 @@ def uniform(kind, point, shear, out):
     if not q > 0.0:
         return
     state = kinematics(q, h, d, gamma)
-    w, w1, _ = energy(q, state, ratio, shear)
+    w, w1, _ = energy(q, state, rubber, shear)
     if not state[0] > 0.0:
         return
     s = math.sqrt(state[0])
@@ -116,7 +122,7 @@ def _inverse(stored, offset, base, scale):
 
 @entry_point
 def uniform_states(kind, points, shear, out):
-    """:func:`uniform` of points (n, 13) into ``out`` (n, UNIFORM)."""
+    """:func:`uniform` of points (n, 15) into ``out`` (n, UNIFORM)."""
     for k in range(len(points)):
         uniform(kind, points[k], shear, out[k])
 
@@ -125,7 +131,7 @@ def uniform_states(kind, points, shear, out):
 def restore_all(variable, kind, points, states, effects, rests, noise, values, estimates, bounds):
     """From interpolated end effects (n,), what the next order would add and their bounds, to values and theirs, (n,) each.
 
-    ``points`` (n, 13) with uniform states (n, UNIFORM).
+    ``points`` (n, 15) with uniform states (n, UNIFORM).
     """
     for k in range(len(points)):
         offset, base, scale = reference(variable, kind, points[k], states[k])

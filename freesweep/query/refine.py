@@ -31,7 +31,7 @@ def refine_answers(reader, question, names, found) -> None:
 
 
 def as_points(reader, key, values):
-    """Points (n, 13) of one family, as they were asked: ``values`` axis -> (n,)."""
+    """Points (n, 15) of one family, as they were asked: ``values`` axis -> (n,)."""
     inquiry = Inquiry(reader.table(key), {name: values[name] for name in reader.table(key).known})
     points = inquiry.points
     exchanged, mirrored = inquiry.marks[:, 5] == 1, inquiry.marks[:, 6] == 1
@@ -43,7 +43,7 @@ def as_points(reader, key, values):
 
 
 def exact_answers(reader, key, points, names, accuracy=None) -> dict:
-    """Exact answers of one family at points (n, 13): name -> (n,), as :meth:`Reader.answer` gives them."""
+    """Exact answers of one family at points (n, 15): name -> (n,), as :meth:`Reader.answer` gives them."""
     family, frame = FAMILIES[key], reader.frame
     accuracy = frame.accuracy if accuracy is None else accuracy
     limit = key == "limit"
@@ -80,8 +80,9 @@ def profiles(reader, question, x):
     """
     import xarray as xr
 
-    from ..actuator import Actuator, MooneyRivlin
+    from ..actuator import Actuator
     from ..atlas.schema import PROFILES, attributes
+    from ..elastomer import rubber_of
 
     if "state" not in {FAMILY_OF.get(name) for name in reader.names} or not reader.frame.uniform_along_x:
         raise QueryError(["x: this atlas holds no states under pressure whose profiles could be solved"])
@@ -97,7 +98,7 @@ def profiles(reader, question, x):
     energy = reader.frame.energy
     for k, point in enumerate(points):
         design = dict(zip(reference.COLUMNS, point.tolist()))
-        state = _inflated(design, stations, energy, Actuator, MooneyRivlin)
+        state = _inflated(design, stations, energy, Actuator, rubber_of)
         for name in PROFILES if state is not None else ():
             arrays[name][k] = state[name].values
     dims = (*question.dims, "x")
@@ -111,7 +112,7 @@ def _inflated(design, stations, energy, actuator, material):
 
     loads = {name: design.pop(name) for name in ("pressure", "force", "torque")}
     design.pop("held")
-    rubber = material(design.pop("c10"), design.pop("c01"))
+    rubber = material(*(design.pop(name) for name in ("c10", "c01", "c20", "c30")))
     try:
         tube = actuator(**design, material=rubber, energy=energy)
     except ActuatorError:

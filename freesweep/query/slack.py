@@ -7,7 +7,7 @@ follows from the middle, where s^2 = G, and with it the tension of both families
 import math
 
 from ..jit import entry_point, kernel
-from .reference import C01, C10, EXTENSION, FIBERS, FORCE, PRESSURE, TORQUE
+from .reference import C10, EXTENSION, FIBERS, FORCE, PRESSURE, TORQUE, rubber_at
 from .uniform_tube import energy, kinematics
 
 PLACES = 12  # stretches looked at, from the clamped end to the middle
@@ -17,12 +17,15 @@ UNKNOWN = 255
 
 
 @kernel
-def tensions(q, h, d, gamma, ratio, shear, area, p, f, m, s):
+def tensions(q, h, d, gamma, rubber, shear, area, p, f, m, s):
     """Multipliers of both families at squared stretch q and axial stretch s [pi r0^2 C10]."""
     G, _, _, psi, _, _ = kinematics(q, h, d, gamma)
     sheared = 1.0 + shear * psi * psi
-    w_G = 1.0 - 1.0 / (G * G * q) + ratio * (q - sheared / (G * G))
-    w_psi = 2.0 * shear * psi * (q + ratio / G)
+    c, c2, c3 = rubber
+    i1 = G + q * sheared + 1.0 / (G * q) - 3.0
+    slope = 1.0 + i1 * (2.0 * c2 + 3.0 * c3 * i1)  # of Yeoh's energy, along I1
+    w_G = slope * (1.0 - 1.0 / (G * G * q)) + c * (q - sheared / (G * G))
+    w_psi = 2.0 * shear * psi * (slope * q + c / G)
     both = (p * q + f) / (2.0 * s) - area * w_G
     apart = ((m - area * w_psi) / (2.0 * q) - both * h * gamma * gamma / q) / d
     return 0.5 * (both + apart), 0.5 * (both - apart)
@@ -32,12 +35,12 @@ def tensions(q, h, d, gamma, ratio, shear, area, p, f, m, s):
 def slack_families(points, states, mid_radius, shear, out):
     """Bit 1: the alpha family would have to push somewhere, bit 2: the beta family; UNKNOWN where it is too close to say.
 
-    Points (n, 13), their uniform states (n, 8) and radii in the middle (n,) [m]; into ``out`` (n,).
+    Points (n, 15), their uniform states (n, 8) and radii in the middle (n,) [m]; into ``out`` (n,).
     """
     for k in range(len(points)):
         u, point = states[k], points[k]
         r, c10, gamma = point[FIBERS], point[C10], point[EXTENSION]
-        h, area, ratio = u[0], u[2], point[C01] / c10
+        h, area, rubber = u[0], u[2], rubber_at(point)
         d = math.sqrt(max(h * h - u[1], 0.0))
         if math.tan(math.radians(point[0])) < math.tan(math.radians(point[1])):
             d = -d
@@ -46,7 +49,7 @@ def slack_families(points, states, mid_radius, shear, out):
         y_middle = mid_radius[k] / r
         q = y_middle * y_middle
         state = kinematics(q, h, d, gamma)
-        w, _, _ = energy(q, state, ratio, shear)
+        w, _, _ = energy(q, state, rubber, shear)
         held = (p * q + f) * math.sqrt(state[0]) - area * w + m * state[3]
         scale = p + abs(f)
         least_alpha, least_beta = math.inf, math.inf
@@ -54,9 +57,9 @@ def slack_families(points, states, mid_radius, shear, out):
             y = 1.0 + (y_middle - 1.0) * j / PLACES
             q = y * y
             state = kinematics(q, h, d, gamma)
-            w, _, _ = energy(q, state, ratio, shear)
+            w, _, _ = energy(q, state, rubber, shear)
             s = (p * q + f) * state[0] / (held + area * w - m * state[3])
-            alpha, beta = tensions(q, h, d, gamma, ratio, shear, area, p, f, m, s)
+            alpha, beta = tensions(q, h, d, gamma, rubber, shear, area, p, f, m, s)
             least_alpha, least_beta = min(least_alpha, alpha), min(least_beta, beta)
         out[k] = UNKNOWN
         if abs(least_alpha) > UNSURE * scale and abs(least_beta) > UNSURE * scale:

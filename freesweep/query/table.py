@@ -195,7 +195,7 @@ class Table:
         return effects, noise
 
     def _slab_points(self, index):
-        """Points (slab, 13) of the nodes at one index of the first axis."""
+        """Points (slab, 15) of the nodes at one index of the first axis."""
         shape = tuple(self.shape[1:])
         values = {self.axes[0].name: self.axes[0].values[index]}
         for a, axis in enumerate(self.axes[1:]):

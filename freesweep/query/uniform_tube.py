@@ -6,7 +6,8 @@ lengths by the fiber surface's radius, pressure by C10. With q = y^2, y the circ
     G(q) = gamma^2 (1 + H^2 + D^2) - D^2 q - gamma^4 H^2/q,   psi(q) = H (gamma^2/q - 1)
     L(q) = (p q + f) sqrt(G) - a w(q) + m psi                  (Eqs. 2.2, 2.11), stationary in q
 
-and w the Mooney-Rivlin energy over C10 (Eq. 2.5; with the shear of twisting if ``shear`` is 1).
+and w the energy of a rubber (C01, C20, C30)/C10, over C10 (Eq. 2.5, Yeoh's terms; with the shear of twisting if ``shear``
+is 1).
 """
 
 import math
@@ -30,7 +31,7 @@ def kinematics(q, h, d, gamma):
 
 
 @kernel
-def energy(q, state, ratio, shear):
+def energy(q, state, rubber, shear):
     """``(w, w', w'')`` of the wall over C10; ``state`` as :func:`kinematics` gives it."""
     G, G1, G2, psi, psi1, psi2 = state
     B, B1, B2 = 1.0 + shear * psi * psi, 2.0 * shear * psi * psi1, 2.0 * shear * (psi1 * psi1 + psi * psi2)
@@ -42,15 +43,18 @@ def energy(q, state, ratio, shear):
     i2, i2_1 = G * q + 1.0 / q + B / G - 3.0, G1 * q + G - 1.0 / (q * q) + (B1 - B * G1 / G) / G
     i2_2 = G2 * q + 2.0 * G1 + 2.0 / (q * q * q)
     i2_2 += (B2 - (2.0 * B1 * G1 + B * G2) / G + 2.0 * B * G1 * G1 / (G * G)) / G
-    return i1 + ratio * i2, i1_1 + ratio * i2_1, i1_2 + ratio * i2_2
+    c, c2, c3 = rubber
+    slope, bend = 1.0 + i1 * (2.0 * c2 + 3.0 * c3 * i1), 2.0 * c2 + 6.0 * c3 * i1  # of Yeoh's energy, along I1
+    w = i1 * (1.0 + i1 * (c2 + c3 * i1)) + c * i2
+    return w, slope * i1_1 + c * i2_1, slope * i1_2 + bend * i1_1 * i1_1 + c * i2_2
 
 
 @kernel
 def balance(q, problem, p):
-    """dL/dq and its derivative; NaN where the fibers cannot reach. ``problem``: (H, D, a, gamma, C01/C10, shear, f, m)."""
-    h, d, area, gamma, ratio, shear, f, m = problem
+    """dL/dq and its derivative; NaN where the fibers cannot reach. ``problem``: (H, D, a, gamma, rubber, shear, f, m)."""
+    h, d, area, gamma, rubber, shear, f, m = problem
     state = kinematics(q, h, d, gamma)
-    _, w1, w2 = energy(q, state, ratio, shear)
+    _, w1, w2 = energy(q, state, rubber, shear)
     G, G1, G2, _, psi1, psi2 = state
     if not G > 0.0:
         return math.nan, math.nan
@@ -65,7 +69,8 @@ def balance(q, problem, p):
 def squared_stretch(problem, p):
     """q of the uniform tube at pressure p: the first stationary point met from q = 1; NaN if there is none."""
     h, d, gamma = problem[0], problem[1], problem[3]
-    unique = gamma == 1.0 and problem[5] == 1.0 and problem[6] == 0.0 and problem[7] == 0.0
+    _, c2, c3 = problem[4]
+    unique = gamma == 1.0 and problem[5] == 1.0 and problem[6] == 0.0 and problem[7] == 0.0 and c2 == 0.0 and c3 == 0.0
     start, _ = balance(1.0, problem, p)
     if start == 0.0:
         return 1.0

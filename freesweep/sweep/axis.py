@@ -29,6 +29,8 @@ DOMAIN = {
     "fiber_extension": (1.0, 10.0, "it is a stretch: fibers 0.5 % longer have 1.005"),
     "c10": _SIZE,
     "c01": (0.0, LARGEST, "must not be negative"),
+    "c20": _LOAD,
+    "c30": _LOAD,
     "force": _LOAD,
     "torque": _LOAD,
     "held_length": _SIZE,

@@ -2,18 +2,20 @@
 
 import numpy as np
 
-from ..atlas.schema import HELD, LOADS, PARAMETERS
+from ..atlas.schema import HELD, LOADS, PARAMETERS, YEOH
 from ..units import shown
 from . import axis
 from .faults import Faults
+from .rubber import SYNONYMS
 
 AT_REST = {"held_length_ratio": 1.0, "held_rotation": 0.0}
 DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0} | AT_REST  # fiber_radius: the inner radius
+DEFAULTS |= dict.fromkeys(YEOH, 0.0)
 OWN = tuple(name for name in PARAMETERS if name != "pressure")  # what may differ between designs
-ELSEWHERE = {
+ELSEWHERE = SYNONYMS | {
     "pressure": "all designs share the pressures; give them in [axes] or [load]",
     "energy": "it belongs in [actuator] and cannot differ between designs",
-    "material": "it belongs in [actuator]; designs of different rubbers give c10 and c01",
+    "material": "it belongs in [actuator]; designs of different rubbers give c10 and c01, or c10, c20 and c30",
 }
 HOME = {name: "load" if name in (*LOADS, *HELD) else "actuator" for name in PARAMETERS}
 

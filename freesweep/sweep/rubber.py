@@ -1,14 +1,17 @@
-"""The rubber of a sweep by name, and which of its states leave the range of its constants."""
+"""The rubber of a sweep: its constants, by name or one by one, and which of its states leave their range."""
 
 import warnings
 
 import numpy as np
 
+from ..atlas.schema import YEOH
+from ..elastomer import convex_to
 from ..faults import ActuatorError
 from ..material_library import material
-from ..strain import largest_stretch
+from ..strain import first_invariant, largest_stretch
 
-CONSTANTS = ("c10", "c01")
+CONSTANTS = ("c10", "c01", "c20", "c30")
+SYNONYMS = {f"c{k}": f"Yeoh's C{k} is c{k}0 here, as in other reduced polynomials" for k in (1, 2, 3)}
 
 
 def read_material(faults, actuator, given) -> dict:
@@ -25,8 +28,21 @@ def read_material(faults, actuator, given) -> dict:
         given["c10"] = "actuator.material"
         return {}
     constants = {name: getattr(rubber, name) for name in CONSTANTS}
+    constants = {name: value for name, value in constants.items() if value != 0.0 or name in ("c10", "c01")}
     given |= dict.fromkeys(constants, "actuator.material")
     return constants
+
+
+def check_rubber(faults, values, axes, given):
+    """Refuses rubbers with both a c01 and constants of Yeoh's; ``values`` are numbers, or columns of designs or axes."""
+
+    def there(name):
+        found = np.asarray(values.get(name, 0.0)) != 0.0
+        return np.any(found) if name in axes else found
+
+    if all(name in given for name in ("c01", "c20")) or all(name in given for name in ("c01", "c30")):
+        if np.any(there("c01") & (there("c20") | there("c30"))):
+            faults.add(given["c01"], "a Yeoh rubber, with c20 or c30, has no c01; remove one of the two")
 
 
 def rubber_attributes(sweep) -> dict:
@@ -38,7 +54,7 @@ def rubber_attributes(sweep) -> dict:
 
 
 def warn_beyond_range(dataset):
-    """Warn if states of an atlas stretch their wall beyond what its rubber is known for."""
+    """Warn if states of an atlas strain their wall beyond what its rubber is known for, or is convex to."""
     limit = dataset.attrs.get("largest_stretch")
     if limit is not None and (count := beyond_range(dataset, limit)):
         warnings.warn(
@@ -46,24 +62,47 @@ def warn_beyond_range(dataset):
             f" {dataset.attrs['material']} are known to hold",
             stacklevel=3,
         )
+    if count := beyond_convexity(dataset):
+        warnings.warn(
+            f"{count:,} states strain the wall beyond where its Yeoh energy is convex (c20 or c30 is negative): no rubber"
+            " behaves so there",
+            stacklevel=3,
+        )
 
 
 def beyond_range(dataset, limit) -> int:
     """Number of states of an atlas whose wall is stretched beyond ``limit`` at half length; read slice by slice."""
+    return sum(int(np.sum(_strained(part, largest_stretch) > limit)) for part in _slices(dataset))
+
+
+def beyond_convexity(dataset) -> int:
+    """Number of states of an atlas whose wall is strained beyond where its Yeoh energy is convex."""
+    if not any(name in dataset.coords and np.any(dataset[name].values < 0.0) for name in YEOH):
+        return 0
+    count = 0
+    for part in _slices(dataset):
+        c10, c20, c30 = (part[name] if name in part.coords else 0.0 for name in ("c10", *YEOH))
+        strain, *constants = _broadcast(
+            _strained(part, first_invariant), *(c + 0.0 * part["mid_radius"] for c in (c10, c20, c30))
+        )
+        count += int(np.sum(strain.values > convex_to(*(c.values for c in constants))))
+    return count
+
+
+def _slices(dataset):
+    """The atlas, a place of its first dimension at a time."""
     radius = dataset["mid_radius"]
     along = radius.dims[0] if radius.dims else None
-    parts = (dataset.isel({along: [k]}) for k in range(radius.sizes[along])) if along else (dataset,)
-    return sum(_beyond(part, limit) for part in parts)
+    return (dataset.isel({along: [k]}) for k in range(radius.sizes[along])) if along else (dataset,)
 
 
-def _beyond(part, limit):
+def _strained(part, measure):
+    """A ``measure`` of the strain at half length, NaN where there is no state."""
     fibers = part["fiber_radius" if "fiber_radius" in part else "radius"]
-    stretch, alpha, beta, extension = (
-        array.values
-        for array in _broadcast(part["mid_radius"] / fibers, part["alpha"], part["beta"], part["fiber_extension"])
-    )
+    arrays = _broadcast(part["mid_radius"] / fibers, part["alpha"], part["beta"], part["fiber_extension"])
+    stretch, alpha, beta, extension = (array.values for array in arrays)
     with np.errstate(invalid="ignore"):
-        return int(np.sum(largest_stretch(alpha, beta, stretch, extension, part.attrs["energy"]) > limit))
+        return arrays[0].copy(data=measure(alpha, beta, stretch, extension, part.attrs["energy"]))
 
 
 def _broadcast(*arrays):

@@ -4,7 +4,7 @@
     [actuator]                  # fixed values of the design, with units; plain numbers are SI and degrees
     wall = "1.59 mm"            # alpha, beta, wall may vary along the tube: [[0, "30 deg"], [0.5, "40 deg"], [1, "30 deg"]],
                                 # pairs of x/l and value; a repeated x/l is a jump
-    c10 = "0.17 MPa"            # and c01; or material = "dragon-skin-30", a rubber of the library
+    c10 = "0.17 MPa"            # and c01, or c20 and c30 of a Yeoh rubber; or material = "dragon-skin-30"
     energy = "full"             # or "principal"
     [load]                      # fixed force, torque, pressure, held_length or held_length_ratio, held_rotation
     [axes]                      # what varies: all combinations are solved
@@ -32,14 +32,14 @@ from pathlib import Path
 import numpy as np
 
 from ..actuator import SMALLEST_DIFFERENCE
-from ..atlas.schema import HELD, HELD_LENGTHS, PARAMETERS
+from ..atlas.schema import HELD, HELD_LENGTHS, PARAMETERS, YEOH
 from ..profiles import as_profile, together
 from ..scaling import ACCURACIES
 from ..units import quantity, shown
 from . import axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError
-from .rubber import read_material
+from .rubber import SYNONYMS, check_rubber, read_material
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
@@ -56,8 +56,8 @@ class Sweep:
 
     ``fixed`` holds single values; ``axes`` strictly increasing arrays, shape (n,), in the order of schema.PARAMETERS.
     ``designs`` is None, or {"names": tuple of texts, "columns": {parameter: array, shape (designs,)}}. Every parameter
-    stands in one of the three, or in ``profiles``: name -> pairs (x/l, value). Only ``fiber_radius`` may be in none: then
-    the fibers lie at the inner radius.
+    stands in one of the three, or in ``profiles``: name -> pairs (x/l, value). Only ``fiber_radius`` may be in none, then
+    the fibers lie at the inner radius, and ``c20`` and ``c30``: then the rubber is no Yeoh rubber.
     """
 
     title: str
@@ -124,10 +124,13 @@ def parse(text: str, name: str = "specification") -> Sweep:
                 f"is missing; give it in {homes}" + (", or in every design" if designs and parameter in OWN else ""),
             )
     blocked, at_rest = _blocked(faults, tables["solver"], given)
-    defaults = {key: number for key, number in DEFAULTS.items() if key not in AT_REST or key in at_rest}
+    absent = set(AT_REST) - set(at_rest) | set(YEOH)
+    defaults = {key: number for key, number in DEFAULTS.items() if key not in absent}
     fixed = {key: defaults.get(key) if key not in given else fixed.get(key) for key in PARAMETERS}
     fixed = {key: number for key, number in fixed.items() if number is not None}
-    _check_fibers(faults, fixed | axes | (designs or {}).get("columns", {}))
+    values = fixed | axes | (designs or {}).get("columns", {})
+    _check_fibers(faults, values)
+    check_rubber(faults, values, axes, given)
     points = math.prod(_shape(axes, designs))
     if points > MAX_POINTS:
         faults.add(
@@ -216,7 +219,7 @@ def _fixed(faults, tables, given):
     for section in ("actuator", "load"):
         table = tables[section]
         own = [name for name in PARAMETERS if HOME[name] == section]
-        elsewhere = {name: f"it belongs in [{HOME[name]}]" for name in PARAMETERS}
+        elsewhere = SYNONYMS | {name: f"it belongs in [{HOME[name]}]" for name in PARAMETERS}
         faults.unknown_keys(table, [*own, "energy", "material"] if section == "actuator" else own, section, elsewhere)
         for name in own:
             if name in table:
@@ -234,7 +237,7 @@ def _axes(faults, table, given):
         table,
         tuple(PARAMETERS),
         "axes",
-        {name: "it belongs in [actuator] and cannot vary" for name in ("energy", "material")},
+        SYNONYMS | {name: "it belongs in [actuator] and cannot vary" for name in ("energy", "material")},
     )
     axes = {}
     for name in PARAMETERS:
