@@ -11,9 +11,9 @@ from .locked import profile_rows, shapes
 from .prototypes import ENERGIES, RADIUS, ROTATING, RUBBER, WALL, rotating
 from .rotating import COLOURS
 
-PRESSURES = np.linspace(5e3, 0.26e6, 52)  # [Pa]
+PRESSURES = np.linspace(5e3, 0.35e6, 70)  # [Pa]
 CORRECTED = np.linspace(5e3, 0.14e6, 28)
-TO = {"B": 0.26e6, "C": 0.14e6}  # largest pressure drawn [Pa]
+TO = {"B": 0.35e6, "C": 0.14e6}  # largest pressure drawn [Pa]
 HELD, BUCKLED = 0.1e6, 0.25e6  # pressures of Figure 2-13 [Pa]
 
 
