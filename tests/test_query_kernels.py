@@ -28,18 +28,14 @@ def cubic_table(axes, function):
     return np.stack(columns, axis=-1).ravel()
 
 
-def packed(axes):
-    most = max(len(axis.nodes) for axis in axes)
-    nodes, first = np.zeros((len(axes), most)), np.zeros((len(axes), most), np.int64)
-    weights = np.zeros((3, len(axes), most, 6))
-    for a, axis in enumerate(axes):
-        own = slice(0, len(axis.nodes))
-        nodes[a, own], first[a, own] = axis.nodes, axis.first
-        weights[0, a, own], weights[1, a, own], weights[2, a, own] = axis.left, axis.right, axis.remainder
-    counts = np.array([len(axis.nodes) for axis in axes])
-    return (
-        nodes, counts, np.array([axis.window for axis in axes]), np.array([axis.kind for axis in axes]), first, *weights
-    )  # fmt: skip
+def knots(axes):
+    table = np.zeros((len(axes), max(len(axis.nodes) for axis in axes), tensor.KNOT))
+    for own, axis in zip(table, axes):
+        count = len(axis.nodes)
+        own[:count, tensor.PLACE], own[: count - 1, tensor.WIDTH] = axis.nodes, np.diff(axis.nodes)
+        own[:count, tensor.FIRST] = axis.first
+        own[:count, tensor.LEFT : tensor.LEFT + 6], own[:count, tensor.RIGHT : tensor.RIGHT + 6] = axis.left, axis.right
+    return table, np.array([axis.window for axis in axes]), np.zeros(len(axes), bool)
 
 
 def test_tensor_cubics_reproduce_cubics_on_any_grid():
@@ -58,7 +54,7 @@ def test_tensor_cubics_reproduce_cubics_on_any_grid():
     right = np.column_stack([axis.nodes[pieces[:, k] + 1] for k, axis in enumerate(axes)])
     shares = (at - left) / (right - left)
     table, found = cubic_table(axes, function), np.empty(200)
-    args = (table, packed(axes), strides, pieces, shares, np.arange(200))
+    args = (table, *knots(axes), strides, pieces, shares, np.arange(200))
     tensor.interpolate(*args, np.zeros(4, np.int64), found)
     np.testing.assert_allclose(found, function(*at.T), rtol=1e-5, atol=1e-5)
     tensor.interpolate(*args, np.array([1, 0, 0, 0]), found)
@@ -152,7 +148,7 @@ def test_end_effects_give_back_what_was_stored(variable):
     )
     effects, noise = np.empty(2), np.empty(2)
     errors = 1e-9 * np.abs(stored)
-    reference.end_effects(variable, kind, points, states, np.arange(2), stored, errors, effects, noise)
+    reference.end_effects(variable, kind, points, states, stored, errors, effects, noise)
     np.testing.assert_allclose(effects, 0.3, rtol=1e-6)
     values, estimates, bounds = np.empty((3, 2))
     args = (effects, np.full(2, 1e-3), noise, values, estimates, bounds)

@@ -11,9 +11,9 @@ from freesweep import Actuator, MooneyRivlin, inflate, run_sweep, status
 from freesweep.atlas.store import Atlas, describe
 from freesweep.bench.query import table
 from freesweep.cli import DONE
-from freesweep.query import calibration
+from freesweep.query import calibration, errors
+from freesweep.query.calibrate import calibrate
 from freesweep.query.faults import QueryError
-from freesweep.query.measure import calibrate
 from freesweep.sweep.grade import graded
 from freesweep.sweep.spec import SpecificationError, parse
 from freesweep.verify import faults as verify
@@ -110,16 +110,29 @@ def test_tolerances_and_budgets_are_checked(solver, says):
 
 def test_factors_are_the_least_that_hold():
     draw = np.random.default_rng(0)
-    estimate = 10.0 ** draw.uniform(-9, -3, 20_000)
-    bound = np.full(20_000, 1e-8)
-    error = estimate * draw.uniform(0.0, 3.0, 20_000) + 0.1 * bound * draw.uniform(0.0, 1.0, 20_000)
-    factors = calibrate(error, estimate, bound, np.ones(20_000))
-    stated = calibration.stated(factors, estimate, bound, np.ones(20_000))
-    assert (stated >= error).mean() >= 0.999
-    assert np.median(stated / error) < 4.0
-    few = calibrate(error[:50], estimate[:50], bound[:50], np.ones(50))
+    count = 40_000
+    estimate, bound, size = 10.0 ** draw.uniform(-9, -3, count), np.full(count, 1e-8), np.ones(count)
+    beside = draw.random(count) < 0.1
+    error = estimate * draw.uniform(0.0, 3.0, count) * np.where(beside, 20.0, 1.0) + 1e-9 * draw.uniform(
+        0.0, 1.0, count
+    )
+    seen, fresh = np.arange(count) % 2 == 0, np.arange(count) % 2 == 1
+    factors = calibrate(*(each[seen] for each in (error, estimate, bound, size, beside)), np.full(count // 2, 1e-2))
+    stated = errors.stated(factors, estimate, bound, size, beside)
+    assert (stated >= error)[fresh].mean() >= 0.999
+    assert np.median((stated / error)[fresh]) < 4.0
+    assert factors.classes[1, 7] > 10.0 * factors.classes[0, 7]
+    assert factors.bound < 1.0
+    few = calibrate(*(each[:50] for each in (error, estimate, bound, size, beside)), np.full(50, 1e-2))
     assert (few.classes == calibration.UNMEASURED).all()
     assert few.bound == 1.0
+
+
+def test_ends_of_an_axis_have_estimates_of_their_own(made):
+    found = calibration.factors(made.data, "volume", ("alpha", "beta", "length", "pressure"))
+    assert found.scales.shape == (4, calibration.RANKS)
+    assert (found.scales != 1.0).sum() >= 3
+    assert (calibration.factors(made.data, "volume", ("torque",)).scales == 1.0).all()
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"variables": {"rotation": {"factors": [1], "bound": 0}}}'])

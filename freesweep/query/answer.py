@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
-from . import calibration, reference, tensor
+from . import errors, reference, tensor
 from .family import LOOSE, MIRRORED
 from .holes import MIXED
 from .place import place
@@ -29,8 +29,8 @@ class Inquiry:
         self.pieces, self.shares = np.empty((self.size, d), np.int64), np.empty((self.size, d))
         self.marks = np.empty((self.size, 7), np.int64)
         place(
-            asked, table.kinds, table.bounds, table.fixed, table.options, table.packed, table.strides,
-            (table.codes, table.cells), (table.slack, table.slack_cells), self.points, self.states, self.pieces,
+            asked, table.kinds, table.bounds, table.fixed, table.options, table.knots, table.shape, table.coordinates,
+            table.strides, table.codes, table.cells, table.slack, table.slack_cells, self.points, self.states, self.pieces,
             self.shares, self.marks,
         )  # fmt: skip
         self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
@@ -52,33 +52,38 @@ class Inquiry:
             orders[derivative] = 1
         return orders
 
-    def effects(self, name, orders):
-        """Interpolated end effects (n,)."""
+    def effects(self, name, orders, order=None):
+        """Interpolated end effects (n,); only at the places ``order`` if they are given."""
         table, found = self.table, np.empty(self.size)
-        args = (table.packed, table.strides, self.pieces, self.shares, self.order, orders, found)
+        order = self.order if order is None else order
+        args = (table.knots, table.windows, table.labels, table.strides, self.pieces, self.shares, order, orders, found)
         tensor.interpolate(table.variable(name).values, *args)
         return found
 
-    def estimate(self, name):
-        """``(value, estimate, bound)``: interpolated, what the next order would add, and what was stored wrongly."""
-        table, family = self.table, self.table.family
+    def estimate(self, name, scales):
+        """``(value, estimate, bound, beside)``: interpolated, what the next order would add, what was stored wrongly, and
+        whether beside a hole; ``scales`` (d, RANKS) of the estimate.
+        """
+        table = self.table
         effects = self.effects(name, self.orders())
-        rest = np.empty(self.size)
-        kept = table.variable(name)
-        tensor.remainders(kept.roughness, table.strides, self.pieces, self.shares, self.order, rest)
+        rest, noise, beside = np.empty(self.size), np.empty(self.size), np.empty(self.size, bool)
+        args = (table.shape, table.strides, self.pieces, self.shares, self.order, rest, noise, beside)
+        tensor.remainders(table.variable(name).cells, scales, *args)
         if self.method == LINEAR:
             rest += np.abs(effects - self.effects(name, np.zeros(len(table.axes), np.int64)))
-        value, estimate, bound = np.empty((3, self.size))
-        reference.restore_all(
-            family.variables[name], family.kind, self.points, self.states, effects, rest, kept.noise[self.cell], value,
-            estimate, bound,
-        )  # fmt: skip
+        return *self._restored(name, slice(None), effects, rest, noise), beside
+
+    def _restored(self, name, places, effects, rest, noise):
+        """``(value, estimate, bound)`` at some places, (k,) each, from end effects, what they lack and their bounds."""
+        family, (value, estimate, bound) = self.table.family, np.empty((3, len(effects)))
+        args = (self.points[places], self.states[places], effects, rest, noise, value, estimate, bound)
+        reference.restore_all(family.variables[name], family.kind, *args)
         return value, estimate, bound
 
     def answer(self, name, factors):
         """``(value, error)`` of one variable, (n,) each; stored bits at nodes. NaN where nothing can be said."""
-        value, estimate, bound = self.estimate(name)
-        error = calibration.stated(factors, estimate, bound, self.natural_size(name, value))
+        value, estimate, bound, beside = self.estimate(name, factors.scales)
+        error = errors.stated(factors, estimate, bound, self.natural_size(name, value), beside)
         if self.exact.any():
             at = self.node[self.exact]
             value[self.exact], error[self.exact] = self.table.stored(name)[at], self.table.errors(name)[at]
@@ -116,10 +121,12 @@ class Inquiry:
             look = (slack == MIXED) & self.valued
             slack = np.where(slack == MIXED, 0, slack >> 4)
             if look.any():
-                middle, _, _ = self.estimate("mid_radius")
-                told = np.empty(int(look.sum()), np.uint8)
-                slack_families(self.points[look], self.states[look], middle[look], table.options[1], told)
-                slack[look] = np.where(told == UNKNOWN, 0, told)
-                self.status[np.flatnonzero(look)[told == UNKNOWN]] = NOT_INTERPOLABLE
+                places = np.flatnonzero(look)
+                effects, nothing = self.effects("mid_radius", self.orders(), places)[places], np.zeros(len(places))
+                middle, _, _ = self._restored("mid_radius", places, effects, nothing, nothing)
+                told = np.empty(len(places), np.uint8)
+                slack_families(self.points[places], self.states[places], middle, table.options[1], told)
+                slack[places] = np.where(told == UNKNOWN, 0, told)
+                self.status[places[told == UNKNOWN]] = NOT_INTERPOLABLE
             found["slack_fiber"] = np.where(exchanged, (slack & 1) << 1 | slack >> 1 & 1, slack)
         return found

@@ -1,8 +1,9 @@
-"""How much larger than its estimate an interpolation error may be: measured by the atlas itself, kept in its attributes.
+"""How much larger than its estimate an error may be: measured by the atlas itself, kept in its attributes.
 
-The estimate is what the next order would add. Where the grid resolves the physics well it is sharp; where not, it falls
-short by factors that the measurement finds: one for each decade of the estimate relative to the value. Stored bounds hold
-everywhere but are far from sharp; the measurement says which share of them the errors reach.
+The estimate is what the next order would add, and a share of the bounds of what is stored, which hold but are far from
+sharp. Where the grid resolves the physics well it is sharp; where not, it falls short by factors that the measurement finds:
+one for each decade of the estimate relative to the value, beside holes and elsewhere. The ends of an axis have scales of
+their own, measured as well.
 """
 
 import json
@@ -13,28 +14,40 @@ import numpy as np
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
 DEFAULT_TOLERANCE = 1e-4
-DECADES = np.arange(-9, -2)  # edges of the classes, log10 of estimate over value
+DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
+CLASSES = len(DECADES) + 1
+RANKS = 5  # of the pieces of an axis: the first, the next, those between, the last but one, the last
 UNMEASURED = 12.0  # factor of an atlas that was not measured, or of a class with too few samples
 
 
 class Factors(NamedTuple):
-    """Of one variable: factors (classes,) of the interpolation's estimate, and the share of stored bounds that is true."""
+    """Of one variable: ``classes`` (2, CLASSES), elsewhere and beside holes, the share of stored ``bound`` that counts, and
+    ``scales`` (d, RANKS) of what the next order would add.
+    """
 
     classes: np.ndarray
     bound: float
+    scales: np.ndarray
 
 
-def factors(data, name) -> Factors:
-    """What was measured of one variable, else cautious numbers."""
-    found = read(data).get("variables", {}).get(name, {})
+def cautious(count) -> Factors:
+    """Factors of a variable over ``count`` axes that was not measured."""
+    return Factors(np.full((2, CLASSES), UNMEASURED), 1.0, np.ones((count, RANKS)))
+
+
+def factors(data, name, axes=()) -> Factors:
+    """What was measured of one variable over ``axes``, by their names; else cautious numbers."""
+    found = read(data).get("variables", {})
     try:
-        numbers = np.array(found["factors"], float)
-        share = float(found["bound"])
-        if numbers.shape == (len(DECADES) + 1,) and np.all(numbers > 0.0) and share > 0.0:
-            return Factors(numbers, share)
-    except (KeyError, TypeError, ValueError):
+        found = found[name]
+        numbers, share = np.array(found["factors"], float), float(found["bound"])
+        scales = np.array([found["scales"].get(axis, [1.0] * RANKS) for axis in axes], float).reshape(-1, RANKS)
+        shapes = numbers.shape == (2, CLASSES) and scales.shape == (len(axes), RANKS)
+        if shapes and np.all(numbers > 0.0) and share > 0.0 and np.all(scales > 0.0):
+            return Factors(numbers, share, scales)
+    except (AttributeError, KeyError, TypeError, ValueError):
         pass
-    return Factors(np.full(len(DECADES) + 1, UNMEASURED), 1.0)
+    return cautious(len(axes))
 
 
 def read(data) -> dict:
@@ -43,18 +56,7 @@ def read(data) -> dict:
         found = json.loads(data.attrs.get(ATTRIBUTE, "{}"))
     except (TypeError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
-
-
-def stated(factors: Factors, estimate, bound, size):
-    """Stated errors (n,) from estimates of the interpolation and bounds of what was stored."""
-    return factors.classes[classes(estimate, size)] * estimate + factors.bound * bound
-
-
-def classes(estimate, size) -> np.ndarray:
-    """Class of each estimate (n,) by its size relative to the value's."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        return np.digitize(np.log10(np.maximum(estimate / size, 1e-300)), DECADES)
+    return found if isinstance(found, dict) and isinstance(found.get("variables", {}), dict) else {}
 
 
 def tolerance(data) -> float:

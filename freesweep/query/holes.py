@@ -10,12 +10,12 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from ..status import INACCURATE, OK
+from .axis import WINDOW
 
 SWEEPS = 6  # how far from good nodes numbers are put, in steps along the axes: windows reach two nodes beyond a cell
 REACH = 4  # nodes along an axis that a hole looks at, on either side
 BETWEEN = 3  # of those it takes the nearest on each side,
 BEYOND = 4  # or so many where one side has none
-WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
 MIXED = 255  # code of a cell whose nodes do not agree
 
 
@@ -86,33 +86,44 @@ def fill(values, shape, strides, nodes):
             good[put[k]] = True
 
 
+@kernel
+def _short_slope(values, at, index, count, step, widths):
+    """Slope at a node from the nodes next to it; NaN if there are none."""
+    before, after = math.nan, math.nan
+    if index > 0:
+        before = (values[at] - values[at - step]) / widths[index - 1]
+    if index + 1 < count:
+        after = (values[at + step] - values[at]) / widths[index]
+    if math.isfinite(before) and math.isfinite(after):
+        h, k = widths[index - 1], widths[index]
+        return (k * before + h * after) / (h + k)
+    return before if math.isfinite(before) else after
+
+
 @entry_point
-def slopes(values, shape, strides, axis, first, left, right, widths, out):
-    """Slopes of ``values`` (nodes,) along one axis into ``out`` (nodes,); where its window has holes, from fewer nodes."""
-    count, step = shape[axis], strides[axis]
-    size = min(6, count)
-    for at in range(len(values)):
-        index = (at // step) % count
-        piece = index if index < count - 1 else count - 2
-        weights = left[piece] if index == piece else right[piece]
-        origin = at + (first[piece] - index) * step
-        total = 0.0
-        for j in range(size):
-            if weights[j] != 0.0:
-                total += weights[j] * values[origin + j * step]
-        total /= widths[piece]
-        if not math.isfinite(total):
-            before, after = math.nan, math.nan
-            if index > 0:
-                before = (values[at] - values[at - step]) / widths[index - 1]
-            if index + 1 < count:
-                after = (values[at + step] - values[at]) / widths[index]
-            if math.isfinite(before) and math.isfinite(after):
-                h, k = widths[index - 1], widths[index]
-                total = (k * before + h * after) / (h + k)
-            else:
-                total = before if math.isfinite(before) else after
-        out[at] = total
+def slopes(values, count, step, first, left, right, widths, out):
+    """Slopes of ``values`` (nodes,) along an axis of ``count`` nodes, ``step`` apart, into ``out`` (nodes,).
+
+    Where the window of a node has holes, from fewer nodes.
+    """
+    size = min(WINDOW, count)
+    for block in range(len(values) // (count * step)):
+        for index in range(count):
+            piece = index if index < count - 1 else count - 2
+            weights = (left if index == piece else right)[piece]
+            at = (block * count + index) * step
+            out[at : at + step] = 0.0
+            for j in range(size):
+                if weights[j] != 0.0:
+                    weight, there = weights[j] / widths[piece], (block * count + first[piece] + j) * step
+                    if step == 1:
+                        out[at] += weight * values[there]
+                    else:
+                        for k in range(step):
+                            out[at + k] += weight * values[there + k]
+            for k in range(at, at + step):
+                if not math.isfinite(out[k]):
+                    out[k] = _short_slope(values, k, index, count, step, widths)
 
 
 @kernel
@@ -132,18 +143,20 @@ def cell_codes(codes, shape, strides, labels, cells):
     cells[:] = codes
     for a in range(len(shape)):
         if not labels[a]:
-            for at in range(len(codes)):
-                if (at // strides[a]) % shape[a] + 1 < shape[a]:
-                    cells[at] = _common(cells[at], cells[at + strides[a]])
+            count, step = shape[a], strides[a]
+            for block in range(len(codes) // (count * step)):
+                for at in range(block * count * step, ((block + 1) * count - 1) * step):
+                    if cells[at] != cells[at + step]:
+                        cells[at] = _common(cells[at], cells[at + step])
 
 
 @kernel
-def corner_code(codes, cells, strides, pieces, shares, cell):
-    """Code of the nodes that a located point (d,) lies between; MIXED where they differ."""
+def corner_code(codes, cells, strides, pieces, shares, k, cell):
+    """Code of the nodes that located point k lies between; MIXED where they differ."""
     d = len(strides)
     inside = True
     for a in range(d):
-        inside = inside and 0.0 < shares[a] < 1.0
+        inside = inside and 0.0 < shares[k, a] < 1.0
     if inside or cells[cell] != MIXED:
         return cells[cell]
     code, first = MIXED, True
@@ -151,7 +164,7 @@ def corner_code(codes, cells, strides, pieces, shares, cell):
         i, used = cell, True
         for a in range(d):
             up = corner >> a & 1
-            if (up and shares[a] == 0.0) or (not up and shares[a] == 1.0):
+            if (up and shares[k, a] == 0.0) or (not up and shares[k, a] == 1.0):
                 used = False
                 break
             i += up * strides[a]
@@ -159,60 +172,3 @@ def corner_code(codes, cells, strides, pieces, shares, cell):
             code = codes[i] if first else _common(code, codes[i])
             first = False
     return code
-
-
-@entry_point
-def worst_noise(noise, shape, strides, labels, cells):
-    """Largest bound of the end effects at each cell's corners, and WEIGHT of those beside it, single precision.
-
-    ``noise`` and ``cells`` are (nodes,).
-    """
-    cells[:] = noise
-    beside = np.empty(len(noise), np.float32)
-    for a in range(len(shape)):
-        if labels[a]:
-            continue
-        step, count = strides[a], shape[a]
-        for at in range(len(noise)):
-            index = (at // step) % count
-            worst = cells[at]
-            if index + 1 < count:
-                worst = max(worst, cells[at + step])
-            if index > 0:
-                worst = max(worst, WEIGHT * cells[at - step])
-            if index + 2 < count:
-                worst = max(worst, WEIGHT * cells[at + 2 * step])
-            beside[at] = worst
-        cells[:] = beside
-
-
-@entry_point
-def roughness(values, shape, strides, labels, axis, first, remainder, out):
-    """Largest remainder along one axis, in the middle of its pieces, over each cell and the next to it, into ``out``.
-
-    ``values`` (nodes,) with holes filled, ``out`` (nodes, d) single precision, column ``axis``; infinite where unknown.
-    """
-    step, count = strides[axis], shape[axis]
-    size = min(6, count)
-    rough = np.empty(len(values), np.float32)
-    for at in range(len(values)):
-        piece = (at // step) % count
-        total = 0.0
-        if piece + 1 < count:
-            origin = at + (first[piece] - piece) * step
-            for j in range(size):
-                total += remainder[piece, j] * values[origin + j * step]
-        rough[at] = abs(total) if math.isfinite(total) else math.inf
-    for a in range(len(shape)):
-        if a != axis and not labels[a]:
-            for at in range(len(values)):
-                if (at // strides[a]) % shape[a] + 1 < shape[a]:
-                    rough[at] = max(rough[at], rough[at + strides[a]])
-    for at in range(len(values)):
-        piece = (at // step) % count
-        worst = rough[at]
-        if piece > 0:
-            worst = max(worst, rough[at - step])
-        if piece + 2 < count:
-            worst = max(worst, rough[at + step])
-        out[at, axis] = worst

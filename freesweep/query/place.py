@@ -13,7 +13,7 @@ from ..status import DEGENERATE, INACCURATE, INVALID, NOT_INTERPOLABLE, OK, OUTS
 from .axis import LABEL
 from .holes import MIXED, corner_code
 from .reference import ALPHA, BETA, FIBERS, HELD, LENGTH, RADIUS, uniform
-from .tensor import INSIDE, NO_NUMBER, locate
+from .tensor import INSIDE, NO_NUMBER, PLACE, locate
 
 NEAR = 1e-12  # relative: what counts as the value that an atlas fixes, or as the end of an axis
 LARGEST, CLOSEST = 90.0, 0.5 * (1.0 - 1e-9)  # [degree] of a fiber angle, of two
@@ -27,16 +27,16 @@ def within(x, low, high):
 
 
 @kernel
-def image(row, a, b, swap, turn, kinds, ranges, out):
-    """Put one image of a point into ``out`` (k,); whether what turns with it lies in the table."""
+def image(asked, k, a, b, swap, turn, kinds, ranges, out):
+    """Put one image of point k into ``out`` (k,); whether what turns with it lies in the table."""
     sign = -1.0 if turn else 1.0
     good = True
-    for j in range(len(row)):
-        x = row[j]
+    for j in range(len(out)):
+        x = asked[k, j]
         if j == a:
-            x = sign * (row[b] if swap else row[a]) + 0.0
+            x = sign * (asked[k, b] if swap else x) + 0.0
         elif j == b:
-            x = sign * (row[a] if swap else row[b]) + 0.0
+            x = sign * (asked[k, a] if swap else x) + 0.0
         elif turn and kinds[j, 2] == 1:
             x = 0.0 - x
         out[j] = x
@@ -46,30 +46,31 @@ def image(row, a, b, swap, turn, kinds, ranges, out):
 
 
 @kernel
-def touches_diagonal(alpha, beta, kinds, a, b, nodes, pieces, shares):
-    """Whether a cell holds designs with one fiber family only, or nearly so."""
+def touches_diagonal(alpha, beta, i, j, knots, pieces, shares, k):
+    """Whether the cell of point k holds designs with one fiber family only, or nearly so; angles on axes i and j."""
     a0, a1, b0, b1 = alpha, alpha, beta, beta
-    i, j = kinds[a, 1], kinds[b, 1]
-    if i >= 0 and 0.0 < shares[i] < 1.0:
-        a0, a1 = nodes[i, pieces[i]], nodes[i, pieces[i] + 1]
-    if j >= 0 and 0.0 < shares[j] < 1.0:
-        b0, b1 = nodes[j, pieces[j]], nodes[j, pieces[j] + 1]
+    if i >= 0 and 0.0 < shares[k, i] < 1.0:
+        a0, a1 = knots[i, pieces[k, i], PLACE], knots[i, pieces[k, i] + 1, PLACE]
+    if j >= 0 and 0.0 < shares[k, j] < 1.0:
+        b0, b1 = knots[j, pieces[k, j], PLACE], knots[j, pieces[k, j] + 1, PLACE]
     return a0 - b1 < CLOSEST and a1 - b0 > -CLOSEST
 
 
 @entry_point
-def place(asked, kinds, ranges, fixed, options, axes, strides, codes, slack, points, states, pieces, shares, marks):
+def place(
+    asked, kinds, ranges, fixed, options, knots, counts, coordinates, strides, codes, cells, slack, slack_cells, points,
+    states, pieces, shares, marks,
+):  # fmt: skip
     """Place points (n, k) in a table.
 
     ``fixed`` (designs, 15): what the atlas fixes of a point. ``options``: kind of state, shear, whether the fibers lie at
-    the inner radius, whether HELD is given as a length, whether there are statuses. ``codes`` and ``slack``: pairs of node
-    and cell codes. Out: ``points`` (n, 15), ``states`` (n, UNIFORM), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7):
+    the inner radius, whether HELD is given as a length, whether there are statuses. ``codes`` and ``slack``: of the nodes,
+    and of their cells. Out: ``points`` (n, 15), ``states`` (n, UNIFORM), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7):
     status, code, code of slack fibers, cell, node (-1: between nodes), 1 if exchanged, 1 if mirrored.
     """
     kind, shear, inner, by_length, has_status = options
-    nodes, counts, axis_kinds = axes[0], axes[1], axes[3]
     many, d = asked.shape[1], len(strides)
-    row = np.empty(many)
+    row, point, state = np.empty(many), np.empty(points.shape[1]), np.empty(states.shape[1])
     a = b = design = -1
     for j in range(many):
         if kinds[j, 0] == ALPHA:
@@ -81,20 +82,20 @@ def place(asked, kinds, ranges, fixed, options, axes, strides, codes, slack, poi
     for k in range(len(asked)):
         status = -1
         exchanged, mirrored = False, False
-        row[:] = asked[k]
-        if a >= 0 and b >= 0 and not image(asked[k], a, b, False, False, kinds, ranges, row):
+        image(asked, k, -1, -1, False, False, kinds, ranges, row)
+        if a >= 0 and b >= 0 and not image(asked, k, a, b, False, False, kinds, ranges, row):
             found = False
             for way in range(1, 4):
-                if image(asked[k], a, b, way != 2, way > 1, kinds, ranges, row):
+                if image(asked, k, a, b, way != 2, way > 1, kinds, ranges, row):
                     exchanged, mirrored, found = way != 2, way > 1, True
                     break
             if not found:
-                row[:] = asked[k]
+                image(asked, k, -1, -1, False, False, kinds, ranges, row)
                 status = OUTSIDE
-        point = points[k]
         label = row[design] if design >= 0 else 0.0
         known = 0.0 <= label < len(fixed)
-        point[:] = fixed[int(label) if known else 0]
+        for i in range(len(point)):
+            point[i] = fixed[int(label) if known else 0, i]
         for i in range(d):
             pieces[k, i], shares[k, i] = 0, 0.0
         bad = not known
@@ -105,7 +106,7 @@ def place(asked, kinds, ranges, fixed, options, axes, strides, codes, slack, poi
             if column >= 0:
                 point[column] = x
             if axis >= 0:
-                pieces[k, axis], shares[k, axis], where = locate(x, axis_kinds[axis], nodes[axis], counts[axis])
+                pieces[k, axis], shares[k, axis], where = locate(x, knots, axis, coordinates[axis], counts[axis])
                 if where != INSIDE and where != NO_NUMBER:
                     status = OUTSIDE
             elif column >= 0 and not within(x, ranges[j, 0], ranges[j, 1]):
@@ -120,9 +121,9 @@ def place(asked, kinds, ranges, fixed, options, axes, strides, codes, slack, poi
         for i in range(d):
             cell += pieces[k, i] * strides[i]
             node += (pieces[k, i] + (1 if shares[k, i] == 1.0 else 0)) * strides[i]
-            exact = exact and (axis_kinds[i] == LABEL or shares[k, i] == 0.0 or shares[k, i] == 1.0)
-        code = corner_code(codes[0], codes[1], strides, pieces[k], shares[k], cell)
-        of_slack = corner_code(slack[0], slack[1], strides, pieces[k], shares[k], cell) if len(slack[0]) > 0 else MIXED
+            exact = exact and (coordinates[i] == LABEL or shares[k, i] == 0.0 or shares[k, i] == 1.0)
+        code = corner_code(codes, cells, strides, pieces, shares, k, cell)
+        of_slack = corner_code(slack, slack_cells, strides, pieces, shares, k, cell) if len(slack) > 0 else MIXED
         if status < 0:
             status = NOT_INTERPOLABLE if code == MIXED else code & 15 if has_status else OK
             if not exact:
@@ -134,8 +135,12 @@ def place(asked, kinds, ranges, fixed, options, axes, strides, codes, slack, poi
                         status = DEGENERATE
                     elif abs(alpha - beta) < CLOSEST or max(abs(alpha), abs(beta)) >= LARGEST:
                         status = INVALID
-                    elif touches_diagonal(alpha, beta, kinds, a, b, nodes, pieces[k], shares[k]):
+                    elif touches_diagonal(alpha, beta, kinds[a, 1], kinds[b, 1], knots, pieces, shares, k):
                         status = NOT_INTERPOLABLE
-        uniform(kind, point, shear, states[k])
+        uniform(kind, point, shear, state)
+        for i in range(len(point)):
+            points[k, i] = point[i]
+        for i in range(len(state)):
+            states[k, i] = state[i]
         marks[k, 0], marks[k, 1], marks[k, 2], marks[k, 3] = status, code, of_slack, cell
         marks[k, 4], marks[k, 5], marks[k, 6] = node if exact else -1, exchanged, mirrored

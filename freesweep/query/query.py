@@ -41,7 +41,8 @@ class Reader:
     def factors(self, name) -> calibration.Factors:
         """What was measured of one variable's stated errors."""
         if name not in self._factors:
-            self._factors[name] = calibration.factors(self.data, name)
+            axes = tuple(axis.name for axis in self.table(FAMILY_OF[name]).axes)
+            self._factors[name] = calibration.factors(self.data, name, axes)
         return self._factors[name]
 
     def attributes(self, name) -> dict:

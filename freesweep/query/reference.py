@@ -24,7 +24,9 @@ PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOL
 
 UNIFORM = 8  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier
 TINY = 1e-5  # what the middle of a long tube lacks is not told from nothing below it, of its swelling
-ROUNDING = 1e-12  # of a value, and of the closed form
+GUESS = 10.0  # times what the middle lacks is the estimate of its error there
+CANCELLATION = 1e-15  # of the energy of a unit of strain
+ROUNDING = 1e-13  # of a value, and of the closed form
 LEAST = 1e-7  # q - 1 or H below it: what the ends add cannot be told from rounding
 
 
@@ -139,32 +141,36 @@ def restore_all(variable, kind, points, states, effects, rests, noise, values, e
         estimate = abs(slope) * rests[k]
         if base != 0.0:
             estimate = abs(value - offset) * math.expm1(min(abs(scale) * rests[k], 50.0))
+        if variable == MID_RADIUS:  # below TINY what the middle lacks is a guess
+            lack = abs(math.exp(effects[k]) - TINY)
+            estimate += GUESS * abs(base) * lack / (1.0 + lack / TINY)
+        elif variable == ENERGY and base + scale != 0.0:  # invariants less three: of a tube near rest little is left
+            stiffness = points[k, C10] + points[k, C01]
+            volume = math.pi * points[k, FIBERS] ** 2 * states[k, 2] * points[k, LENGTH]
+            estimate += CANCELLATION * stiffness * volume
         noise_slope = base if variable == MID_RADIUS else slope
         values[k], estimates[k], bounds[k] = value, estimate, abs(noise_slope) * noise[k]
-        bounds[k] += ROUNDING * (abs(value) + abs(offset) + abs(base))
+        estimates[k] += ROUNDING * (abs(value) + abs(offset) + abs(base))
+
+
+@kernel
+def end_effect(variable, kind, point, u, stored, error):
+    """``(end effect, its bound)`` of a stored number and its bound; NaN where it cannot be told."""
+    shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE
+    if kind == LOADED and point[PRESSURE] == 0.0 and u[3] == 1.0 and shape:
+        # at rest; the width of the end layer goes with the square root of pressure
+        return math.log(TINY) if variable == MID_RADIUS else 0.0, 0.0
+    if (shape and abs(u[3] - 1.0) < LEAST) or (variable == ROTATION and abs(u[0]) < LEAST):
+        return math.nan, 0.0
+    offset, base, scale = reference(variable, kind, point, u)
+    effect = _inverse(stored, offset, base, scale)
+    _, slope = restore(offset, base, scale, effect)
+    noise = error / abs(base if variable == MID_RADIUS else slope)
+    return (effect, noise) if math.isfinite(effect) and math.isfinite(noise) else (math.nan, 0.0)
 
 
 @entry_point
-def end_effects(variable, kind, points, states, which, stored, errors, effects, noise):
-    """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); point k has state ``which[k]``.
-
-    NaN where the end effect cannot be told: the neighbours will say.
-    """
+def end_effects(variable, kind, points, states, stored, errors, effects, noise):
+    """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); NaN where the neighbours have to say."""
     for k in range(len(stored)):
-        u = states[which[k]]
-        offset, base, scale = reference(variable, kind, points[k], u)
-        effects[k] = _inverse(stored[k], offset, base, scale)
-        _, slope = restore(offset, base, scale, effects[k])
-        if variable == MID_RADIUS:
-            slope = base
-        noise[k] = errors[k] / abs(slope)
-        shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE
-        if kind == LOADED and points[k, PRESSURE] == 0.0 and u[3] == 1.0 and shape:
-            # at rest; the width of the end layer goes with the square root of pressure
-            effects[k], noise[k] = math.log(TINY) if variable == MID_RADIUS else 0.0, 0.0
-        elif (
-            (shape and abs(u[3] - 1.0) < LEAST)
-            or (variable == ROTATION and abs(u[0]) < LEAST)
-            or not (math.isfinite(effects[k]) and math.isfinite(noise[k]))
-        ):
-            effects[k], noise[k] = math.nan, 0.0
+        effects[k], noise[k] = end_effect(variable, kind, points[k], states[k], stored[k], errors[k])

@@ -8,10 +8,13 @@ from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis
+from .cells import beside_holes, put_column, roughness, worst_noise
 from .family import FAMILIES
 from .frame import DEFAULTS
-from .holes import cell_codes, fill, roughness, slopes, worst_noise
-from .reference import COLUMNS, UNIFORM, end_effects, uniform_states
+from .grid import LABELS, grid_effects, grid_states
+from .holes import cell_codes, fill, slopes
+from .reference import COLUMNS, UNIFORM
+from .tensor import BESIDE, FIRST, KNOT, LEFT, NODE, NOISE, PLACE, RIGHT, ROUGH, WIDTH, pack_nodes
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
@@ -19,11 +22,12 @@ TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
 class Interpolant(NamedTuple):
-    """End effects of one variable: values and slopes (4 nodes,); of each cell bound (nodes,) and roughness (nodes, d)."""
+    """End effects of one variable: ``values`` and slopes (4 nodes,); of each cell (nodes, 2 + d): bound, 1 beside a hole,
+    roughness along each axis.
+    """
 
     values: np.ndarray
-    noise: np.ndarray
-    roughness: np.ndarray
+    cells: np.ndarray
 
 
 class Table:
@@ -43,15 +47,16 @@ class Table:
         self.axes += [make_axis(f"none {k}", [0.0, 1.0]) for k in range(self.padding)]
         self.shape = np.array([len(axis.nodes) for axis in self.axes], np.int64)
         self.strides = np.array([int(np.prod(self.shape[k + 1 :])) for k in range(len(self.shape))], np.int64)
+        self.size = int(np.prod(self.shape))
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
-        self.packed = self._packed()
+        self.knots, self.windows, self.coordinates = self._packed()
         self._place()
         self.has_flag = self.family.flag in frame.dims
         self.codes, self.cells = self._cells(self._codes())
         self.slack = self.slack_cells = np.empty(0, np.uint8)
         if key == "state" and "slack_fiber" in frame.dims:
             self.slack, self.slack_cells = self._cells(self._grid("slack_fiber").astype(np.uint8) << 4)
-        self._variables, self._stored, self._errors = {}, {}, {}
+        self._variables, self._stored, self._errors, self._states = {}, {}, {}, None
 
     def _place(self):
         """What :func:`place` has to know of the columns of a question."""
@@ -82,16 +87,18 @@ class Table:
         self.options = (kind, shear, inner, by_length, self.family.status is not None)
 
     def _packed(self):
-        count, most = len(self.axes), max(len(axis.nodes) for axis in self.axes)
-        nodes, first = np.zeros((count, most)), np.zeros((count, most), np.int64)
-        left, right, remainder = np.zeros((3, count, most, WINDOW))
-        for a, axis in enumerate(self.axes):
-            own = slice(0, len(axis.nodes))
-            nodes[a, own], first[a, own] = axis.nodes, axis.first
-            left[a, own], right[a, own], remainder[a, own] = axis.left, axis.right, axis.remainder
+        """What :mod:`tensor` knows of the axes: knots (d, n, KNOT), sizes of the windows and kinds (d,)."""
+        knots = np.zeros((len(self.axes), max(len(axis.nodes) for axis in self.axes), KNOT))
+        for own, axis in zip(knots, self.axes):
+            count = len(axis.nodes)
+            own[:count, PLACE], own[: count - 1, WIDTH], own[:count, FIRST] = (
+                axis.nodes,
+                np.diff(axis.nodes),
+                axis.first,
+            )
+            own[:count, LEFT : LEFT + WINDOW], own[:count, RIGHT : RIGHT + WINDOW] = axis.left, axis.right
         windows = np.array([axis.window for axis in self.axes], np.int64)
-        kinds = np.array([axis.kind for axis in self.axes], np.int64)
-        return nodes, self.shape, windows, kinds, first, left, right, remainder
+        return knots, windows, np.array([axis.kind for axis in self.axes], np.int64)
 
     def _grid(self, name):
         """A stored variable over the axes of the table (nodes,), the kernels' own axes among them."""
@@ -108,7 +115,7 @@ class Table:
     def _codes(self):
         """Status of each node in the low half of a byte, above it the flag that nodes must share to be mixed."""
         status, flag = self.family.status, self.family.flag
-        codes = np.zeros(int(np.prod(self.shape)), np.uint8)
+        codes = np.zeros(self.size, np.uint8)
         if status:
             codes |= self._grid(status).astype(np.uint8)
         if self.has_flag:
@@ -130,9 +137,12 @@ class Table:
     def errors(self, name):
         """The bounds of the atlas (nodes,); zero where it holds none."""
         if name not in self._errors:
-            bound = f"{name}_error"
-            self._errors[name] = self._grid(bound) if bound in self.frame.dims else np.zeros(int(np.prod(self.shape)))
+            self._errors[name] = self._bounds(name)
         return self._errors[name]
+
+    def _bounds(self, name):
+        bound = f"{name}_error"
+        return self._grid(bound) if bound in self.frame.dims else np.zeros(self.size, np.float32)
 
     def forget(self, name):
         """Let go of the arrays of one variable."""
@@ -142,74 +152,63 @@ class Table:
     def variable(self, name):
         """The :class:`Interpolant` of one variable."""
         if name not in self._variables:
-            effects, noise = self._end_effects(name)
-            nodes = self.packed[0]
-            fill(effects, self.shape, self.strides, nodes)
-            table = np.empty((len(effects), 4))
-            table[:, 0] = effects
-            for column, source, axis in ((1, 0, -1), (2, 0, -2), (3, 2, -1)):
-                a = len(self.axes) + axis
-                own = self.axes[a]
-                widths = np.append(np.diff(own.nodes), 1.0)
-                out = np.empty(len(effects))
-                values = np.ascontiguousarray(table[:, source])
-                slopes(values, self.shape, self.strides, a, own.first, own.left, own.right, widths, out)
-                table[:, column] = out
-            cells = np.empty(len(noise), np.float32)
-            worst_noise(noise, self.shape, self.strides, self.labels, cells)
-            rough = np.zeros((len(effects), len(self.axes)), np.float32)
-            for a, axis in enumerate(self.axes):
-                if axis.kind != LABEL:
-                    args = (a, axis.first, axis.remainder, rough)
-                    roughness(effects, self.shape, self.strides, self.labels, *args)
-            self._variables[name] = Interpolant(table.ravel(), cells, rough)
+            self._variables[name] = self._interpolant(name)
         return self._variables[name]
 
+    def _interpolant(self, name):
+        effects, noise = self._end_effects(name)
+        bad = ~np.isfinite(effects)
+        fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
+        along = np.empty((3, len(effects)))
+        for column, source, axis in ((0, effects, -1), (1, effects, -2), (2, along[0], -2)):
+            own = self.axes[axis]
+            extent, widths = (int(self.shape[axis]), int(self.strides[axis])), np.append(np.diff(own.nodes), 1.0)
+            slopes(source, *extent, own.first, own.left, own.right, widths, along[column])
+        table = np.empty(NODE * len(effects))
+        pack_nodes(effects, along, table)
+        del along
+        kept = np.flatnonzero(~self.labels)
+        extents = [(int(self.shape[a]), int(self.strides[a])) for a in kept]
+        cells = np.zeros((len(effects), ROUGH + len(self.axes)), np.float32)
+        put_column(worst_noise(noise, extents), NOISE, cells)
+        put_column(beside_holes(bad, extents, [self.axes[a].first for a in kept]), BESIDE, cells)
+        for k, a in enumerate(kept):
+            put_column(roughness(effects, extents, k, self.axes[a].first, self.axes[a].remainder), ROUGH + a, cells)
+        return Interpolant(table, cells)
+
     def _end_effects(self, name):
-        """End effects of the stored numbers and their bounds, (nodes,), slab by slab along the first axis."""
-        stored, errors = self.stored(name), self.errors(name)
+        """End effects of the stored numbers and their bounds, (nodes,)."""
+        stored, errors = self._grid(name), self._bounds(name)
         if self.family.kind == reference.NONE:
             return np.where(self.is_number(self.codes), stored, np.nan), errors.astype(float)
         effects, noise = np.empty(len(stored)), np.empty(len(stored))
-        slab = int(self.strides[0])
-        # what the uniform state does not know is left out of its grid
-        shape = tuple(self.shape[1:])
-        without = ("length",) if self.family.kind in (reference.LOADED, reference.LOCKED) else ()
-        reduced = tuple(1 if axis.name in without else len(axis.nodes) for axis in self.axes[1:])
-        which = np.ascontiguousarray(
-            np.broadcast_to(np.arange(int(np.prod(reduced)), dtype=np.int64).reshape(reduced), shape)
-        ).ravel()
-        take = tuple(0 if axis.name in without else slice(None) for axis in self.axes[1:])
-        for i in range(int(self.shape[0])):
-            points = self._slab_points(i)
-            few = points.reshape(*shape, len(COLUMNS))[take].reshape(-1, len(COLUMNS))
-            states = np.empty((len(few), UNIFORM))
-            uniform_states(self.family.kind, np.ascontiguousarray(few), self.options[1], states)
-            own = slice(i * slab, (i + 1) * slab)
-            end_effects(
-                self.family.variables[name], self.family.kind, points, states, which, stored[own],
-                errors[own].astype(float), effects[own], noise[own],
-            )  # fmt: skip
+        states, strides = self._uniform_states()
+        variable, kind = self.family.variables[name], self.family.kind
+        grid_effects(variable, kind, self._whole_grid(self.shape), states, strides, stored, errors, effects, noise)
         bad = ~self.is_number(self.codes)
         effects[bad], noise[bad] = np.nan, 0.0
         return effects, noise
 
-    def _slab_points(self, index):
-        """Points (slab, 15) of the nodes at one index of the first axis."""
-        shape = tuple(self.shape[1:])
-        values = {self.axes[0].name: self.axes[0].values[index]}
-        for a, axis in enumerate(self.axes[1:]):
-            side = [1] * len(shape)
-            side[a] = -1
-            values[axis.name] = axis.values.reshape(side)
-        points = np.empty((*shape, len(COLUMNS)))
-        points[:] = self.fixed[int(values.get("design", 0))]
-        for name, array in values.items():
-            if name in COLUMNS or name in HELD_NAMES:
-                points[..., COLUMNS.index("held" if name in HELD_NAMES else name)] = array
+    def _uniform_states(self):
+        """Uniform states (n, UNIFORM) of the grid and the strides (d,) of the axes in it; those that it does not know: 0."""
+        if self._states is None:
+            without = ("length",) if self.family.kind in (reference.LOADED, reference.LOCKED) else ()
+            shape = np.array([1 if axis.name in without else len(axis.nodes) for axis in self.axes], np.int64)
+            strides = np.array([int(np.prod(shape[k + 1 :])) for k in range(len(shape))], np.int64)
+            states = np.empty((int(np.prod(shape)), UNIFORM))
+            grid_states(self.family.kind, self._whole_grid(shape), self.options[1], states)
+            self._states = states, np.where(shape == self.shape, strides, 0)
+        return self._states
+
+    def _whole_grid(self, shape):
+        """The grid as :mod:`grid` takes it."""
+        columns = np.full(len(self.axes), -1)
+        values = np.zeros((len(self.axes), max(len(axis.nodes) for axis in self.axes)))
+        for a, axis in enumerate(self.axes):
+            if axis.name == "design":
+                columns[a] = LABELS
+            elif axis.name in COLUMNS or axis.name in HELD_NAMES:
+                columns[a] = COLUMNS.index("held" if axis.name in HELD_NAMES else axis.name)
+            values[a, : len(axis.nodes)] = axis.values
         _, _, inner, by_length, _ = self.options
-        if inner:
-            points[..., reference.FIBERS] = points[..., reference.RADIUS]
-        if by_length:
-            points[..., reference.HELD] /= points[..., reference.LENGTH]
-        return points.reshape(-1, len(COLUMNS))
+        return self.fixed, columns, values, shape, inner, by_length

@@ -1,24 +1,29 @@
 """Tensor cubics on a grid of any number of axes: where a point lies, and the sum over the nodes around it.
 
 The two inner axes carry their slopes beside the values, so a point reads 2 x 2 nodes of four numbers there; the outer axes
-read windows of six nodes. ``axes`` is (nodes (d, n), counts (d,), windows (d,), kinds (d,), first (d, n), left, right,
-remainder (d, n, 6)), inner axes last.
+read windows of six nodes. ``knots`` (d, n, 15) holds what is known of each piece of each axis, inner axes last. Kernels take
+whole arrays and places in them: parts of arrays would be counted in and out, which takes longer than the sum.
 """
 
 import math
 
 import numpy as np
 
-from ..jit import entry_point, kernel
-from .axis import LABEL, LOG, SQRT
+from ..jit import entry_point, inlined, kernel
+from .axis import LABEL, LOG, SQRT, WINDOW
+from .rows import ROW, weigh_rows
 
 INSIDE, BELOW, ABOVE, NO_NUMBER = range(4)
+NOISE, BESIDE, ROUGH = range(3)  # columns of what is known of a cell; one of roughness for each axis
+NODE = ROW // 2  # numbers of a node
+PLACE, WIDTH, FIRST, LEFT, RIGHT = 0, 1, 2, 3, 3 + WINDOW  # columns of knots
+KNOT = 3 + 2 * WINDOW
 SNAP = 1e-12  # of a piece: nearer to a node than rounding of a unit, a point lies on it
 
 
 @kernel
-def locate(x, kind, nodes, count):
-    """``(piece, share, where)`` of a value on an axis: share 0 to 1 of the piece from its left node."""
+def locate(x, knots, a, kind, count):
+    """``(piece, share, where)`` of a value on axis ``a``: share 0 to 1 of the piece from its left node."""
     if not math.isfinite(x):
         return 0, 0.0, BELOW if x == -math.inf else ABOVE if x == math.inf else NO_NUMBER
     if kind == SQRT:
@@ -34,11 +39,11 @@ def locate(x, kind, nodes, count):
     low, high = 0, count - 1
     while high - low > 1:
         middle = (low + high) // 2
-        if x >= nodes[middle]:
+        if x >= knots[a, middle, PLACE]:
             low = middle
         else:
             high = middle
-    share = (x - nodes[low]) / (nodes[high] - nodes[low])
+    share = (x - knots[a, low, PLACE]) / knots[a, low, WIDTH]
     if abs(share) < SNAP:
         share = 0.0
     elif abs(share - 1.0) < SNAP:
@@ -51,71 +56,39 @@ def locate(x, kind, nodes, count):
 
 
 @kernel
-def piece_weights(axes, a, piece, share, order, weights):
-    """Weights of the window of one piece: values (order 0), slopes by the axis' coordinate (1), or linear (-1)."""
-    size = axes[2][a]
-    begin = axes[4][a, piece]
-    t = share
-    for j in range(size):
-        weights[j] = 0.0
-    if axes[3][a] == LABEL:
-        weights[0] = 1.0
-        return
-    place = piece - begin
-    if order == -1:
-        weights[place] += 1.0 - t
-        weights[place + 1] += t
-        return
-    if order == 0:
-        end, start_slope, end_slope, width = t * t * (3.0 - 2.0 * t), t * (1.0 - t) ** 2, -t * t * (1.0 - t), 1.0
-        start = 1.0 - end
-    else:
-        end, start_slope, end_slope = 6.0 * t * (1.0 - t), (1.0 - t) * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)
-        start = -end
-        width = axes[0][a, piece + 1] - axes[0][a, piece]
-    left, right = axes[5][a, piece], axes[6][a, piece]
-    for j in range(size):
-        weights[j] = (start_slope * left[j] + end_slope * right[j]) / width
-    weights[place] += start / width
-    weights[place + 1] += end / width
-
-
-@kernel
-def inner_weights(axes, a, piece, share, order):
-    """``(value, slope, value, slope)`` weights of the two nodes of a piece of an inner axis."""
-    t = share
-    width = axes[0][a, piece + 1] - axes[0][a, piece]
+def hermite(t, order):
+    """Weights (value, slope, value, slope) at a share t of a piece of width one: linear (-1), values (0), slopes (1)."""
     if order == -1:
         return 1.0 - t, 0.0, t, 0.0
     if order == 0:
         end = t * t * (3.0 - 2.0 * t)
-        return 1.0 - end, width * t * (1.0 - t) ** 2, end, -width * t * t * (1.0 - t)
-    end = 6.0 * t * (1.0 - t) / width
+        return 1.0 - end, t * (1.0 - t) ** 2, end, -t * t * (1.0 - t)
+    end = 6.0 * t * (1.0 - t)
     return -end, (1.0 - t) * (1.0 - 3.0 * t), end, t * (3.0 * t - 2.0)
 
 
-@kernel
-def spread(axes, strides, outer, pieces, shares, orders, offsets, weights, own):
-    """Offsets and weights of all nodes of the outer windows, those of weight zero left out; returns how many."""
-    many = 1
-    offsets[0], weights[0] = 0, 1.0
-    for a in range(outer):
-        piece_weights(axes, a, pieces[a], shares[a], orders[a], own)
-        begin, size, step = axes[4][a, pieces[a]], axes[2][a], strides[a]
-        used = 0
-        for j in range(size):
-            if own[j] != 0.0:
-                used += 1
-        # from the last to the first, so that nothing is overwritten before it is read
-        for e in range(many - 1, -1, -1):
-            at, weight, put = offsets[e], weights[e], e * used
-            for j in range(size):
-                if own[j] != 0.0:
-                    offsets[put] = at + (begin + j) * step
-                    weights[put] = weight * own[j]
-                    put += 1
-        many *= used
-    return many
+@inlined
+def window(knots, a, size, label, stride, piece, share, order, offsets, weights):
+    """Offsets (in the table) and weights of the nodes around a place, those of weight zero left out; returns how many."""
+    first = int(knots[a, piece, FIRST])
+    if label:
+        offsets[0], weights[0] = NODE * stride * first, 1.0
+        return 1
+    start, start_slope, end, end_slope = hermite(share, order)
+    used, place = 0, piece - first
+    for j in range(size):
+        weight = start_slope * knots[a, piece, LEFT + j] + end_slope * knots[a, piece, RIGHT + j]
+        if j == place:
+            weight += start
+        elif j == place + 1:
+            weight += end
+        if weight != 0.0:
+            offsets[used], weights[used] = NODE * stride * (first + j), weight
+            used += 1
+    if order == 1:
+        for j in range(used):
+            weights[j] /= knots[a, piece, WIDTH]
+    return used
 
 
 @kernel
@@ -124,72 +97,78 @@ def product_term(weight, number):
     return weight * number if weight != 0.0 else 0.0
 
 
-@kernel
-def contract(table, axes, strides, pieces, shares, orders, offsets, weights, own):
-    """The tensor cubic at one point; ``table`` (nodes, 4): value, slopes along the last and the last but one axis, both."""
-    d = len(strides)
-    many = spread(axes, strides, d - 2, pieces, shares, orders, offsets, weights, own)
+@entry_point
+def interpolate(table, knots, sizes, labels, strides, pieces, shares, order, orders, values):
+    """The tensor cubic at placed points (n, d) into ``values`` (n,), taken in the sequence ``order`` (n,).
+
+    ``table`` (NODE nodes,): value, slope along the last axis, along the last but one, along both. The outer axes' windows
+    are multiplied out but for the nearest, along which rows are summed.
+    """
+    d, most = len(strides), 1
+    for a in range(d - 3):
+        most *= sizes[a]
+    offsets, weights = np.empty(most, np.int64), np.empty(most)
+    own_offsets, own, sums = np.empty(WINDOW, np.int64), np.empty(WINDOW), np.empty(2 * ROW)
     r, p = d - 2, d - 1
-    corner = pieces[r] * strides[r] + pieces[p]
-    w0, w1, w2, w3 = inner_weights(axes, p, pieces[p], shares[p], orders[p])
-    near, near_slope, far, far_slope = inner_weights(axes, r, pieces[r], shares[r], orders[r])
-    next_row = strides[r]
-    a0, a1, a2, a3, a4, a5, a6, a7 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    b0, b1, b2, b3, b4, b5, b6, b7 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for e in range(many):
-        w, i = weights[e], 4 * (offsets[e] + corner)
-        a0 += w * table[i]
-        a1 += w * table[i + 1]
-        a2 += w * table[i + 2]
-        a3 += w * table[i + 3]
-        a4 += w * table[i + 4]
-        a5 += w * table[i + 5]
-        a6 += w * table[i + 6]
-        a7 += w * table[i + 7]
-        i += 4 * next_row
-        b0 += w * table[i]
-        b1 += w * table[i + 1]
-        b2 += w * table[i + 2]
-        b3 += w * table[i + 3]
-        b4 += w * table[i + 4]
-        b5 += w * table[i + 5]
-        b6 += w * table[i + 6]
-        b7 += w * table[i + 7]
-    total = product_term(near * w0, a0) + product_term(near * w1, a1)
-    total += product_term(near * w2, a4) + product_term(near * w3, a5)
-    total += product_term(near_slope * w0, a2) + product_term(near_slope * w1, a3)
-    total += product_term(near_slope * w2, a6) + product_term(near_slope * w3, a7)
-    total += product_term(far * w0, b0) + product_term(far * w1, b1)
-    total += product_term(far * w2, b4) + product_term(far * w3, b5)
-    total += product_term(far_slope * w0, b2) + product_term(far_slope * w1, b3)
-    total += product_term(far_slope * w2, b6) + product_term(far_slope * w3, b7)
-    return total
+    for e in range(len(order)):
+        at = order[e]
+        many, used = 1, 1
+        offsets[0], weights[0] = NODE * (pieces[at, r] * strides[r] + pieces[at, p]), 1.0
+        own_offsets[0], own[0] = 0, 1.0
+        for a in range(d - 2):
+            piece, share = pieces[at, a], shares[at, a]
+            used = window(knots, a, sizes[a], labels[a], strides[a], piece, share, orders[a], own_offsets, own)
+            if a == d - 3:
+                break
+            # from the last to the first, so that nothing is overwritten before it is read
+            for k in range(many - 1, -1, -1):
+                begin, weight = offsets[k], weights[k]
+                for j in range(used):
+                    offsets[k * used + j], weights[k * used + j] = begin + own_offsets[j], weight * own[j]
+            many *= used
+        weigh_rows(table, offsets, weights, many, own_offsets, own, used, NODE * strides[r], sums)
+        width, across = knots[p, pieces[at, p], WIDTH], knots[r, pieces[at, r], WIDTH]
+        w0, w1, w2, w3 = hermite(shares[at, p], orders[p])
+        v0, v1, v2, v3 = hermite(shares[at, r], orders[r])
+        w1, w3, v1, v3 = w1 * width, w3 * width, v1 * across, v3 * across
+        total = 0.0
+        for k in range(2):
+            value, slope = (v0, v1) if k == 0 else (v2, v3)
+            total += product_term(value * w0, sums[ROW * k]) + product_term(value * w1, sums[ROW * k + 1])
+            total += product_term(slope * w0, sums[ROW * k + 2]) + product_term(slope * w1, sums[ROW * k + 3])
+            total += product_term(value * w2, sums[ROW * k + 4]) + product_term(value * w3, sums[ROW * k + 5])
+            total += product_term(slope * w2, sums[ROW * k + 6]) + product_term(slope * w3, sums[ROW * k + 7])
+        if orders[p] == 1:
+            total /= width
+        if orders[r] == 1:
+            total /= across
+        values[at] = total
+
+
+@entry_point
+def pack_nodes(values, slopes, table):
+    """Values (nodes,) and slopes (3, nodes), along the last axis, the last but one and both, for :func:`interpolate`."""
+    for k in range(len(values)):
+        table[NODE * k] = values[k]
+        for j in range(3):
+            table[NODE * k + 1 + j] = slopes[j, k]
 
 
 @kernel
-def room(axes, strides):
-    """Most nodes that the outer windows of a point may hold."""
-    most = 1
-    for a in range(len(strides) - 2):
-        most *= axes[2][a]
-    return most
+def rank(piece, count):
+    """Which of calibration.RANKS a piece is: the first, the next, one between, the last but one, the last."""
+    from_end = count - 2 - piece
+    if piece < 2 and piece <= from_end:
+        return piece
+    return 4 - from_end if from_end < 2 else 2
 
 
 @entry_point
-def interpolate(table, axes, strides, pieces, shares, order, orders, values):
-    """:func:`contract` of placed points (n, d) into ``values`` (n,), taken in the sequence ``order`` (n,)."""
-    most = room(axes, strides)
-    offsets, weights, own = np.empty(most, np.int64), np.empty(most), np.empty(8)
-    for e in range(len(order)):
-        k = order[e]
-        values[k] = contract(table, axes, strides, pieces[k], shares[k], orders, offsets, weights, own)
+def remainders(cells, scales, counts, strides, pieces, shares, order, rests, noise, beside):
+    """Of placed points (n, d): what the next order would add, bounds of what is stored, and 1 beside a hole, (n,) each.
 
-
-@entry_point
-def remainders(roughness, strides, pieces, shares, order, out):
-    """What the next order would add at placed points (n, d) into ``out`` (n,); ``roughness`` (nodes, d) of the cells.
-
-    Between two nodes what the slopes lack goes with t (1 - t); what the cubic lacks, with its square, is smaller.
+    ``cells`` (nodes, 2 + d), ``scales`` (d, RANKS): the measured share of what the next order would add. Between two nodes
+    what the slopes lack goes with t (1 - t); what the cubic lacks, with its square, is smaller.
     """
     for e in range(len(order)):
         k = order[e]
@@ -199,8 +178,8 @@ def remainders(roughness, strides, pieces, shares, order, out):
         for a in range(len(strides)):
             bubble = 4.0 * shares[k, a] * (1.0 - shares[k, a])
             if bubble > 0.0:  # on a node an unknown roughness says nothing
-                total += roughness[cell, a] * bubble
-        out[k] = total
+                total += cells[cell, ROUGH + a] * bubble * scales[a, rank(pieces[k, a], counts[a])]
+        rests[k], noise[k], beside[k] = total, cells[cell, NOISE], cells[cell, BESIDE]
 
 
 @entry_point

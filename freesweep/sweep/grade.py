@@ -98,7 +98,7 @@ def _failing(sweep, axes, name):
         effects, noise = np.empty(len(around)), np.empty(len(around))
         stored, errors = nodes[variable], nodes[f"{variable}_error"]
         args = (stored, errors, effects, noise)
-        reference.end_effects(kind, reference.LOADED, around, beside, np.arange(len(around)), *args)
+        reference.end_effects(kind, reference.LOADED, around, beside, *args)
         effects = effects.reshape(DESIGNS, -1)
         effect = (weights * effects).sum(axis=1)
         rest = np.abs((axis.remainder[piece, : axis.window] * effects).sum(axis=1)) * 4.0 * share * (1.0 - share)

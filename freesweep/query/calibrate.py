@@ -1,0 +1,89 @@
+"""The least factors with which stated errors hold, found from true errors at many designs."""
+
+import numpy as np
+
+from . import calibration, errors
+from .calibration import CLASSES, RANKS
+from .reference import MID_RADIUS
+from .tensor import ROUGH
+
+BEYOND = 4e-4  # share of the designs of a class that may need more than its factor
+FEW = 200.0  # factors go beyond what was seen, the more the fewer designs were seen
+ENOUGH, LEAST = 500, 200  # designs of a class that speak for it; of all classes together
+SMALLEST = 0.03  # of all factors
+SHARES = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)  # of stored bounds, from which the sharpest is taken
+ALONE = 0.6  # share of an estimate with which one axis makes it
+HIGH = 0.95  # quantile of errors over estimates that is made equal among the pieces of the axes
+SPEAK = 50  # designs of a piece that speak for it
+WIDEST = 10.0  # largest scale, and the smallest's inverse
+PLAIN = 0.03  # of the bound: an estimate above it is not hidden by what was stored
+
+
+def calibrate(error, estimate, bound, size, beside, allowed) -> calibration.Factors:
+    """The least factors with which stated errors hold, with a margin: (n,) errors and what they are told from.
+
+    Of the shares of stored bounds that one is taken with which stated errors up to what is ``allowed`` are nearest to the
+    true ones.
+    """
+    best, least = calibration.cautious(0), np.inf
+    for share in SHARES if np.isfinite(error).sum() >= LEAST else ():
+        total = estimate + share * bound
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = _by_class(error / total, errors.classes(total, size), beside)
+        factors = calibration.Factors(found, share, best.scales)
+        stated = errors.stated(factors, estimate, bound, size, beside)
+        given = np.isfinite(error) & (stated <= allowed) & (error > 0.0)
+        excess = np.median(np.log(stated[given] / error[given])) if given.any() else np.inf
+        if excess < least or not np.isfinite(least):
+            best, least = factors, excess
+    return best
+
+
+def _by_class(needed, classes, beside):
+    """Largest factor but a few of each class, beside holes or not; classes with few designs ask their neighbours."""
+    known = np.isfinite(needed)
+    lists = [[needed[known & (classes == k) & (beside == kind)] for k in range(CLASSES)] for kind in (False, True)]
+    found = np.empty((2, CLASSES))
+    for kind, own in enumerate(lists):
+        for k in range(CLASSES):
+            for reach in range(CLASSES):
+                near = own[max(k - reach, 0) : k + reach + 1]
+                if sum(map(len, near)) >= ENOUGH:
+                    break
+            else:  # too few of the kind: all designs
+                near = [*lists[0], *lists[1]]
+            found[kind, k] = float(f"{max(SMALLEST, _high(np.concatenate(near))):.3g}")
+    return found
+
+
+def _high(numbers):
+    """The largest but a few in ten thousand, and more where few designs cannot have met the worst."""
+    return (1.0 + FEW / len(numbers)) * np.quantile(numbers, 1.0 - BEYOND)
+
+
+def piece_scales(inquiry, name, places, exact):
+    """Scales (d, RANKS) of what the next order would add, so that errors reach the same share of it on all pieces.
+
+    ``exact`` (k,) solutions at ``places`` of the inquiry, NaN where there is none.
+    """
+    table = inquiry.table
+    scales = np.ones((len(table.axes), RANKS))
+    value, estimate, bound, beside = (array[places] for array in inquiry.estimate(name, scales))
+    pieces, shares = inquiry.pieces[places], inquiry.shares[places]
+    parts = table.variable(name).cells[inquiry.cell[places], ROUGH:] * (shares * (1.0 - shares))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.abs(value - exact) / estimate
+        alone = parts > ALONE * parts.sum(axis=1, keepdims=True)
+    use = np.isfinite(ratio) & ~beside & (estimate > PLAIN * bound)
+    if use.sum() < SPEAK or table.family.variables[name] == MID_RADIUS:  # whose estimate is no sum over axes
+        return scales
+    usual = np.quantile(ratio[use & alone.any(axis=1)], HIGH) if (use & alone.any(axis=1)).any() else 0.0
+    for a, count in enumerate(table.shape):
+        from_end = count - 2 - pieces[:, a]
+        ranks = np.where((pieces[:, a] < 2) & (pieces[:, a] <= from_end), pieces[:, a], np.maximum(4 - from_end, 2))
+        for rank in range(RANKS):
+            mine = ratio[use & alone[:, a] & (ranks == rank)]
+            if len(mine) >= SPEAK and usual > 0.0:
+                scale = np.clip(np.quantile(mine, HIGH) / usual, 1.0 / WIDEST, WIDEST)
+                scales[a, rank] = float(f"{scale:.3g}")
+    return scales
