@@ -5,7 +5,8 @@ import warnings
 import numpy as np
 import pytest
 import xarray as xr
-from grids import make
+from commands import run
+from grids import make, swept
 from oracle import collocation, first_integral
 
 from freesweep import (
@@ -21,6 +22,7 @@ from freesweep import (
     inflate,
     materials,
 )  # fmt: skip
+from freesweep.cli import DONE
 from freesweep.elastomer import convex_to
 from freesweep.resolve import resolve
 from freesweep.status import BEYOND_LIMIT
@@ -177,17 +179,28 @@ def test_a_state_beyond_convexity_is_warned_of():
     assert [warning.filename for warning in seen] == [__file__]
 
 
-def test_constants_are_recovered_from_curves():
+def test_constants_are_recovered_from_curves(tmp_path, capsys):
     rubber = Yeoh(90e3, 9e3, 200.0)
     pressure = np.linspace(1e4, 2e5, 8)
-    curves = []
+    curves, rows = [], ["alpha [deg],beta [deg],pressure [Pa],deformed_length [m]"]
     for alpha, beta in ((20, -20), (10, 50)):
         exact = inflate(Actuator(alpha=alpha, beta=beta, **SIZES, material=rubber), pressure, x=0.0)
         guess = Actuator(alpha=alpha, beta=beta, **SIZES, material=Yeoh(0.2e6))
         curves.append(Measurement(guess, pressure, deformed_length=exact["deformed_length"].values))
+        rows += [
+            f"{alpha},{beta},{p!r},{y!r}" for p, y in zip(pressure.tolist(), exact["deformed_length"].values.tolist())
+        ]
     found = calibrate(curves, ["c1", "c2", "c3"])
     assert found.values == pytest.approx([90e3, 9e3, 200.0], rel=1e-3)
     assert isinstance(found.material, Yeoh)
+    (tmp_path / "curves.csv").write_text("\n".join(rows))
+    sizes = [f"--{name}={value}" for name, value in SIZES.items()]
+    assert run("calibrate", str(tmp_path / "curves.csv"), *sizes, "--fit", "c1", "c2", "c3") == DONE
+    shown = capsys.readouterr().out
+    assert "Yeoh(c1=" in shown
+    rows = {line.split()[0]: line.split() for line in shown.splitlines() if line.strip()}
+    assert float(rows["c1"][1]) == pytest.approx(0.09, rel=1e-3)
+    assert float(rows["c2"][1]) == pytest.approx(0.009, rel=1e-2)
 
 
 SWEEP = """
@@ -217,6 +230,23 @@ def test_a_sweep_over_the_constants_stands_the_second_method(tmp_path):
     tube = Actuator(alpha=40, beta=-60, length=0.1, radius=5e-3, wall=1.5e-3, material=Yeoh(92.2e3, 9.03e3))
     here = dataset["rotation"].sel(alpha=40, beta=-60, c20=9.03e3, c30=0.0, pressure=1e5).item()
     assert here == pytest.approx(inflate(tube, 1e5)["rotation"].item(), rel=1e-7)
+
+
+def test_an_atlas_answers_between_constants(tmp_path):
+    axes = {"alpha": [20.0, 25.0, 30.0, 35.0], "beta": [-60.0, -55.0, -50.0, -45.0], "c20": [0.0, 4e3, 8e3, 12e3]}
+    axes["pressure"] = [4e4, 7e4, 1e5, 1.3e5]
+    with swept(tmp_path, axes, fixed={"c01": 0.0, "c10": 90e3, "c30": 100.0}) as atlas:
+        here = {"alpha": 27.0, "beta": -52.0, "c20": 7e3, "pressure": 9e4}
+        names = ["deformed_length", "rotation", "strain_energy"]
+        between, exact = (atlas.query(**here, variables=names, refine=refine, **more)
+                          for refine, more in ((False, {}), (True, {"x": [0.05]})))  # fmt: skip
+        sizes = {"length": 0.1, "radius": 4.76e-3, "wall": 1.59e-3}
+    tube = Actuator(alpha=27, beta=-52, **sizes, material=Yeoh(90e3, 7e3, 100.0))
+    alone = inflate(tube, 9e4, x=[0.05])
+    for name in names:
+        assert between[name].item() == pytest.approx(alone[name].item(), abs=between[f"{name}_error"].item())
+        assert between[f"{name}_error"].item() < 2e-3 * abs(alone[name].item())
+    assert exact["deformed_radius"].item() == pytest.approx(alone["deformed_radius"].item(), rel=1e-8)
 
 
 @pytest.mark.parametrize(

@@ -50,10 +50,13 @@ def _run(options):
     from ..calibration.csv_file import FIRST_GUESS, read_measurements
     from ..calibration.fit import calibrate
     from ..calibration.report import table, to_dataset
+    from ..elastomer import Yeoh
 
     faults = []
     values = read_options(options, NUMBERS, faults)
     material = read_rubber(options, faults, f"{FIRST_GUESS.c10} Pa") if _any_rubber(options) else FIRST_GUESS
+    if material is not None and {"c2", "c3"} & set(options.fit or ()) and not isinstance(material, Yeoh):
+        material = Yeoh(material.c10)
     if not faults:
         try:
             measurements = read_measurements(
