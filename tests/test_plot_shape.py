@@ -161,6 +161,8 @@ def test_commands(tmp_path, capsys):
     first = out.read_bytes()
     assert run("plot", "shape", *WORDS, "-o", str(out)) == 0
     assert out.read_bytes() == first
+    named = [*WORDS[:6], *WORDS[8:], "--material", "dragon-skin-30"]  # a rubber by name, in place of its constant
+    assert run("plot", "shape", *named, "--pressure", "20kPa", "-o", str(out)) == 0
     assert run("plot", "shape", *WORDS, "--pressure", "0", "0.1MPa", "--steps", "2", "-o", str(tmp_path / "t.gif")) == 0
     capsys.readouterr()
     assert "give --pressure" in refused(capsys, "plot", "shape", *WORDS, "-o", "tube.gif")
