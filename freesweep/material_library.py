@@ -1,7 +1,8 @@
 """Published constants of rubbers by name, each with its source and the stretch up to which they hold.
 
-Silicones differ between batches, curing and test speeds: published constants of one product differ by a factor of 1.5 and
-more (Ecoflex 00-30: 2 c10 from 16 to 25 kPa). Take these for a first design, and :func:`freesweep.calibrate` for your own.
+Silicones differ between batches, curing and test speeds: published constants of one product differ by a factor of 2 (Ecoflex
+00-30: c1 is 7.9 kPa here, 8.4 and 17 kPa in two sets of the simulator Sorotoki). Take these for a first design, and
+:func:`freesweep.calibrate` for your own.
 """
 
 import difflib
@@ -17,7 +18,8 @@ _TABLE_1 = (
 _TENSILE = (
     "least squares, to a stretch of {stretch}, of the tensile test (ASTM D412, 450 mm/min) published by L. Marechal,"
     " P. Balland, L. Lindenroth, F. Petrou, C. Kontovounisios, F. Bello: Toward a Common Framework and Database of Materials"
-    " for Soft Robotics, Soft Robotics 8 (2021), doi 10.1089/soro.2019.0115; largest misfit {misfit} of the stress there"
+    " for Soft Robotics, Soft Robotics 8 (2021), doi 10.1089/soro.2019.0115 (data: their Soft-Robotics-Materials-Database);"
+    " largest misfit {misfit} of the stress there"
 )
 
 
@@ -52,7 +54,8 @@ materials = Library(
             largest_stretch=2.0,
             source="Yeoh C1 = 0.11 MPa, C2 = 0.02 MPa, of Elastosil (Shore A 28) in the soft-robot simulator Sorotoki"
             " (B. Caasenbrood, SorotokiCode, preset material Elastosil28) and in public finite-element models of PneuNets"
-            " actuators; they come with no tests and no range: the stretch of 2 is our own caution",
+            " actuators. That M 4601 is meant is our reading: neither names the type, tests or a range; the stretch of 2 is"
+            " our own caution",
         ),
     }
 )
