@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import config
 
-from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, D, walk_many
+from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, walk_many
 from .profile import FIELDS
 from .status import PENDING
 
@@ -40,29 +40,23 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
         np.full((count, OUTPUTS), np.nan), np.full((count, OUTPUTS), np.nan), np.full(count, PENDING, np.int64),
         np.zeros(count, np.int64), np.full((len(problems), 2), np.nan), np.full((count, FIELDS, len(stations)), np.nan),
     )  # fmt: skip
-    states = np.full((len(problems), 2, base + 2), np.nan)
     if lanes and uniform_tubes and not config.DISABLE_JIT:
-        from .lanes.walk import walk_lanes
+        from .lanes.walk import carry_lanes, solve_lanes
 
-        # designs that share a vector should need much the same work: as many pressures, as steep angles
-        order = np.lexsort((np.abs(problems[:, D]), np.diff(first)))
-        yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)[order]
-        for constants, some in ((MOONEY_RIVLIN, order[~yeoh]), (YEOH, order[yeoh])):
-            if len(some):
-                walk_lanes(
-                    problems,
-                    first,
-                    pressures,
-                    some,
-                    constants,
-                    base,
-                    accuracy,
-                    *found[:4],
-                    stations,
-                    found.profiles,
-                    states,
-                )
+        # what shares a vector should need much the same work: as many pressures, as steep ends
+        steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
+        owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
+        stretches, cosines = np.full(count, np.nan), np.full(count, np.nan)
+        for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
+            if not np.any(some):
+                continue
+            carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
+            rows = np.flatnonzero(some[owners] & (found.status == PENDING) & np.isfinite(stretches))
+            solve_lanes(
+                problems, owners, pressures, stretches, rows[np.argsort(cosines[rows], kind="stable")], constants, base,
+                accuracy, *found[:4], stations, found.profiles,
+            )  # fmt: skip
         if not np.any(found.status == PENDING):
             return found
-    walk_many(problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles, states)
+    walk_many(problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles)
     return found

@@ -32,7 +32,7 @@ def rubber_of(problem):
 
 
 @inlined
-def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slack, limit, stations, profiles, state):
+def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slack, limit, stations, profiles):
     """Equilibria of one design at rising ``pressures``, on the branch that the module describes.
 
     Rows whose status is not PENDING are passed over.
@@ -47,7 +47,6 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     status, slack : (n,) codes; values are NaN unless the status is OK or INACCURATE
     limit : (2,) limit pressure and its bound, NaN if none was met
     stations, profiles : (m,), (n, FIELDS, m): see :func:`at_stations`; m = 0 for none
-    state : (2, base + 2) from where to go on: see :func:`lanes.walk.walk_lanes`
     """
     fine, shapes, guides = space[0], space[4], space[5]
     base = tube[1][len(tube[1]) - 1]
@@ -69,13 +68,6 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
         clamped = min(clamped, 1.0 + stretch)
     for k in range(places):
         u[k] = 1.0
-    last = state.shape[1] - 1
-    if places == 1 and not np.isnan(state[0, last]):
-        started, u[0] = True, state[1, last]
-        before = (gamma, rubber, shear, state[0, last], f, m, 1.0)
-        for k in range(base + 1):
-            x[k], y[k] = state[0, k], state[1, k]
-            last_x[k], last_y[k] = x[k], y[k]
     limit[0], limit[1] = np.nan, np.nan
     for i in range(len(pressures)):
         if status[i] != PENDING:
@@ -156,7 +148,6 @@ def walk_many(
     limits,
     stations,
     profiles,
-    states,
 ):
     """:func:`walk` for each row of ``problems``; problem k owns rows ``first[k]`` to ``first[k + 1]`` of all others.
 
@@ -196,8 +187,8 @@ def walk_many(
             tube = (own_course, factor * edges, cells, not varying, factor * middle, own_places)
             walk(
                 problems[k], tube, pressures[own], accuracy, space, values[own], bounds[own], status[own], slack[own],
-                limits[k], stations, profiles[own], states[k],
+                limits[k], stations, profiles[own],
             )  # fmt: skip
             if factor == FINER or not np.any(status[own] == NOT_CONVERGED):
                 break
-            status[own], states[k] = PENDING, np.nan  # all of it again
+            status[own] = PENDING  # all of it again

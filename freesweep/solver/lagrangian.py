@@ -141,6 +141,16 @@ def density(y, v, cell, load):
 
 
 @kernel
+def uniform_tube(y, cell, load):
+    """``(sqrt(G), T sqrt(G), L)`` at slope 0: meridional stretch and resultant, and the density itself (Eq. 2.11)."""
+    psi, _, _, G_1, _, _ = kinematics(y, cell, load)
+    w, _, _ = strain_energy(y, cell, load)
+    s = sqrt(max(1.0 + G_1, NO_ROOM))
+    pull = (load[3] * y * y + load[4]) * s
+    return s, pull, pull - load[6] * cell[2] * w + load[5] * psi
+
+
+@kernel
 def integrands(y, v, cell, load):
     """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w (Eqs. 2.2, 2.5 - 2.7)."""
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)

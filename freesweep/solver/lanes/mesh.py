@@ -6,63 +6,9 @@ The inverse of a monotone piecewise linear function is written as a sum of ramps
 from math import sqrt
 
 from ...jit import kernel
-from ..mesh import EVEN_SHARE, SMOOTHINGS, TAIL_SHARE
 from .vector import get, put, select, spread
 
-
-@kernel
-def turning(integrands, x, y, n, free, cell, load, sine, slant, out):
-    """Root of the meridian's turning |d(angle)/dx| (1 + |tan(angle)|) in each cell."""
-    for j in range(n):
-        v = (get(y, j + 1) - get(y, j)) / (get(x, j + 1) - get(x, j))
-        s = integrands(0.5 * (get(y, j) + get(y, j + 1)), v, cell, load)[0]
-        per_cosine = sqrt(s * s + v * v) / s
-        put(sine, j, v / (s * per_cosine))
-        put(slant, j, per_cosine)
-    for j in range(n):
-        left, right = max(j - 1, 0), min(j + 1, n - 1)
-        change = abs(get(sine, right) - get(sine, left))
-        distance = 0.5 * (get(x, right + 1) + get(x, right) - get(x, left + 1) - get(x, left))
-        if j == n - 1 and free:  # the slope vanishes in the plane of symmetry
-            change, distance = abs(get(sine, left)), get(x, n) - 0.5 * (get(x, left) + get(x, left + 1))
-        per_cosine = get(slant, j)
-        put(out, j, sqrt(change / distance * (1.0 + abs(get(sine, j)) * per_cosine) * per_cosine))
-
-
-@kernel
-def node_shares(x, n, root, out):
-    """How many nodes belong to each cell, from the ``root`` of its turning."""
-    largest = spread(1e-150)
-    for j in range(n):
-        largest = max(largest, get(root, j))
-    layer, tail = spread(1e-300), spread(1e-300)
-    for j in range(n):
-        h = get(x, j + 1) - get(x, j)
-        here = get(root, j) / largest
-        put(root, j, here)
-        put(out, j, sqrt(sqrt(here)))
-        layer = layer + h * here
-        tail = tail + h * get(out, j)
-    even = EVEN_SHARE / (get(x, n) - get(x, 0))
-    per_layer, per_tail = (1.0 - TAIL_SHARE - EVEN_SHARE) / layer, TAIL_SHARE / tail
-    for j in range(n):
-        put(out, j, even + get(root, j) * per_layer + get(out, j) * per_tail)
-        put(out, j, get(out, j) * (get(x, j + 1) - get(x, j)))
-
-
-@kernel
-def interpolate(at, n, grid, values, out):
-    """Value at each of n - 1 inner places ``at`` of the piecewise linear function through ``values`` on ``grid``: the first
-    value and a ramp for each cell.
-    """
-    for i in range(1, n):
-        put(out, i, get(values, 0))
-    for j in range(n):
-        start, rise = get(grid, j), get(values, j + 1) - get(values, j)
-        per_width = 1.0 / (get(grid, j + 1) - start)
-        for i in range(1, n):
-            ramp = min(max((get(at, i) - start) * per_width, 0.0), 1.0)
-            put(out, i, get(out, i) + ramp * rise)
+SMOOTHINGS = 5  # passes over the cell sizes
 
 
 @kernel
@@ -84,27 +30,6 @@ def even_out(x, n, size):
     for j in range(n - 1):
         start = start + get(size, j) * share
         put(x, j + 1, start)
-
-
-@kernel
-def adapt(integrands, x, y, n, free, cell, load, work, new_x, new_y):
-    """Spread n cells to where the solution bends, and carry it over, linearly: ``new_x`` and ``new_y``."""
-    root, share, scratch = work[0], work[1], work[2]
-    turning(integrands, x, y, n, free, cell, load, share, scratch, root)
-    node_shares(x, n, root, share)
-    total = spread(0.0)
-    for j in range(n):  # nodes up to each old node, in scratch; where the new ones belong, in root
-        put(scratch, j, total)
-        total = total + get(share, j)
-    put(scratch, n, total)
-    for i in range(n):
-        put(root, i, total * (i / n))
-    for end in range(2):
-        put(new_x, end * n, get(x, end * n))
-        put(new_y, end * n, get(y, end * n))
-    interpolate(root, n, scratch, x, new_x)
-    even_out(new_x, n, share)
-    interpolate(new_x, n, x, y, new_y)
 
 
 @kernel
@@ -188,12 +113,3 @@ def merge(integrands, x, y, n, cell, load, out):
         room = integrands(at + 0.5 * h * turned * room, 0.0, cell, load)[0]
         at = at + h * turned * room
         put(out, i + 1, at)
-
-
-@kernel
-def farthest(x, new_x, n):
-    """The longest way of a node to its new place, in cells of the new mesh."""
-    longest = spread(0.0)
-    for i in range(1, n):
-        longest = max(longest, 2.0 * abs(get(new_x, i) - get(x, i)) / (get(new_x, i + 1) - get(new_x, i - 1)))
-    return longest

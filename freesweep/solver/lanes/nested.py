@@ -6,17 +6,17 @@ A lane whose bounds meet the accuracy keeps its numbers; the others go on to fin
 
 from ...jit import kernel
 from .. import lagrangian
-from ..nested import LIKELY, SAFETY, SMALLEST_TOLERANCE, STEP_SHARE
+from ..nested import LIKELY, SAFETY, SMALLEST_TOLERANCE
 from ..newton import SMALL_STEP
 from . import mesh, newton
 from .slack import pushing
-from .vector import HUGE, WIDTH, bits, get, mask_of, put, select, some, spread
+from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
+MIDDLE = 4
 LANE_DOUBLINGS = 6  # of the base mesh
-ROUGH_STEP = 2e-3  # last step on a mesh that serves to grade the next one
-MAX_REGRADES = 4  # of the base mesh
-LARGEST_MOVE = 1.0  # of a node in the last of them, in cells
+STEP_SHARE = 1e-4  # of the accuracy: what Newton's last step may leave; what it does leave is in the bounds
+EARLY = 2.0  # of the change between two extrapolations: a bound of the second one, generous as no third one confirms it
 
 
 @kernel
@@ -42,7 +42,9 @@ def integrate(x, y, n, cell, load, row):
 
 @kernel
 def extrapolate(table, level, load, length, error, sizes, values, bounds):
-    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound, rounding left out."""
+    """Fourth-order values and bounds from the last four rows, or the first three; returns the largest scaled bound,
+    rounding left out.
+    """
     row = table[level]
     outputs = (get(row, 0), get(row, 1), get(row, 2), get(row, 3), get(row, 4))
     scale, floor = lagrangian.scales(outputs, load, length, error)
@@ -53,9 +55,14 @@ def extrapolate(table, level, load, length, error, sizes, values, bounds):
     put(sizes, 4, scale[4])
     fourth, second_order, largest = spread(0.0), spread(1e-300), spread(0.0)
     for k in range(OUTPUTS):
-        a, b, c, d = get(table[level - 3], k), get(table[level - 2], k), get(table[level - 1], k), get(row, k)
-        first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-        estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
+        b, c, d = get(table[level - 2], k), get(table[level - 1], k), get(row, k)
+        second, third = (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
+        estimate = abs(third - second) * (EARLY / SAFETY if level == 2 else 1.0 / 15.0)
+        if level > 2:
+            first = (4.0 * b - get(table[level - 3], k)) / 3.0
+            estimate = max(estimate, abs(second - first) / 225.0)
+        elif k == MIDDLE:
+            estimate = max(estimate, abs(d - c) / SAFETY)
         put(values, k, third)
         put(bounds, k, SAFETY * estimate)
         fourth = fourth + estimate / get(sizes, k)
@@ -106,9 +113,9 @@ def keep(ready, count, coarse_x, coarse_y, x, y, kept):
 
 
 @kernel
-def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out, kept, doublings):
-    """Solve the ``active`` lanes; ``x`` and ``y`` (n + 1, WIDTH) are the graded base mesh and a first guess, replaced by the
-    adapted mesh and its solution; ``safe`` is an admissible shape.
+def solve(x, y, n, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out, kept, doublings):
+    """Solve the ``active`` lanes; ``x`` and ``y`` (n + 1, WIDTH) are the graded base mesh and a first guess, replaced by its
+    solution.
 
     ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
     values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH or 0, 5, ...), if asked for,
@@ -117,22 +124,8 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
     """
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     density, integrands = lagrangian.density, lagrangian.integrands
-    todo, moving = active, active
-    for _ in range(MAX_REGRADES):  # on a mesh that may be far from what the solution needs
-        if not some(moving):
-            break
-        converged, _ = newton.solve(density, x, y, n, True, cell, load, moving, safe, True, ROUGH_STEP, HUGE, work)
-        todo = todo & (converged | ~moving)
-        moving = moving & converged
-        new_x, new_y = meshes[0], meshes[1]
-        mesh.adapt(integrands, x, y, n, True, cell, load, work, new_x, new_y)
-        moved = mesh.farthest(x, new_x, n)
-        for i in range(n + 1):
-            put(x, i, select(moving, get(new_x, i), get(x, i)))
-            put(y, i, select(moving, get(new_y, i), get(y, i)))
-            put(safe, i, select(moving, get(y, i), get(safe, i)))
-        moving = moving & (moved > LARGEST_MOVE)
-    converged, error = newton.solve(density, x, y, n, True, cell, load, todo, safe, True, SMALL_STEP, tolerance, work)
+    todo = active
+    converged, error = newton.solve(density, x, y, n, True, cell, load, todo, y, True, SMALL_STEP, tolerance, work)
     todo = todo & converged
     integrate(x, y, n, cell, load, table[1])
     half_x, half_y, here_x, here_y, fine_x, fine_y = meshes[0], meshes[1], meshes[2], meshes[3], meshes[4], meshes[5]
@@ -143,10 +136,11 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
         put(here_x, i, get(x, i))
         put(here_y, i, get(y, i))
     converged, _ = newton.solve(
-        density, half_x, half_y, n // 2, True, cell, load, todo, safe, False, SMALL_STEP, tolerance, work
+        density, half_x, half_y, n // 2, True, cell, load, todo, y, False, SMALL_STEP, tolerance, work
     )
     lost = todo & ~converged
     if some(lost):
+        safe = meshes[6]
         mesh.merge(integrands, x, y, n, cell, load, safe)
         restart(lost, safe, n // 2, half_y)
         again, _ = newton.solve(
@@ -165,7 +159,7 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
         half_x, half_y, here_x, here_y, fine_x, fine_y = here_x, here_y, fine_x, fine_y, half_x, half_y
         coarser = error
         converged, error = newton.solve(
-            density, here_x, here_y, count, True, cell, load, todo, safe, False, SMALL_STEP, tolerance, work
+            density, here_x, here_y, count, True, cell, load, todo, here_y, False, SMALL_STEP, tolerance, work
         )
         lost = todo & ~converged
         if some(lost):
@@ -178,7 +172,7 @@ def solve(x, y, safe, n, cell, load, length, active, accuracy, meshes, work, tab
             converged, error = converged | again, select(again, last, error)
         todo = todo & converged
         integrate(here_x, here_y, count, cell, load, table[level])
-        if level >= 3:
+        if level >= 2:
             largest = extrapolate(table, level, load, length, max(error, coarser), sizes, found[0], found[1])
             ready = todo & (largest <= accuracy)
             for k in range(OUTPUTS):

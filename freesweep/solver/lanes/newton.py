@@ -12,6 +12,7 @@ from .vector import HUGE, get, mask_of, put, select, some, spread
 MAX_ITERATIONS = 30
 SHRINK = 0.85  # of a first guess toward y = 1, where every state is admissible
 SMALLEST_FRACTION = 1e-6  # of a step
+LARGEST_SHARE = 0.9  # of the room of a cell that a step may take, by the linear model
 CAUTION, SOFTNESS = 3.0, 10.0  # how far Newton's model is off: the room that a step takes, and its own size
 
 
@@ -131,7 +132,7 @@ def solve(density, x, y, n, free, cell, load, active, safe, patient, small, tole
         before = select((fraction == 1.0) & ~convex, size, spread(HUGE))
         now, share = substitute(y, step, fraction, n, accepted, ratio, value, steepness, last)
         size, slope = select(accepted, now, size), select(accepted, decline, slope)
-        fraction = select(accepted, spread(1.0), select(good, fraction, 0.5 * fraction))
+        fraction = select(accepted, min(LARGEST_SHARE / share, 1.0), select(good, fraction, 0.5 * fraction))
         ahead = CAUTION * size * (share + SOFTNESS * size)
         rounded = (size < 1e-9) & (size > 0.3 * before)
         settled = accepted & ~convex & (size < small) & ((ahead < tolerance) | rounded)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...jit import kernel
-from .. import guide, lagrangian
+from .. import lagrangian
 from ..branch import AREA, FORCE, GAMMA, LENGTH, PROBLEM_SIZE, RATIO, SECOND, SHEAR, THIRD, TORQUE, D, H, rubber_of
 from ..profile import at_stations
 from ..status import COMPRESSED, INVALID, OK
@@ -45,14 +45,12 @@ def loads(columns, constants):
 
 
 @kernel
-def enter(lane, problem, columns, base, x, y):
-    """Put a design into a lane, undeformed."""
+def enter(lane, problem, columns):
+    """Put a design into a lane, without load."""
     for i in range(PROBLEM_SIZE):
         columns[i, lane] = problem[i]
     columns[LENGTH, lane] = 0.5 * problem[LENGTH]
     columns[PRESSURE, lane], columns[BEFORE, lane], columns[WEIGHT, lane] = 1.0, 0.0, 1.0
-    for i in range(base + 1):
-        x[i, lane], y[i, lane] = 1.0 * i, 1.0
 
 
 @kernel
@@ -72,16 +70,6 @@ def seat(lane, columns, tube):
         columns[GAMMA, lane], rubber_of(columns[:, lane]), columns[SHEAR, lane], columns[PRESSURE, lane],
         columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
     )  # fmt: skip
-
-
-@kernel
-def begin(lane, columns, base, stretch, x, y, safe, tube, line):
-    """Mesh and first shape of one lane, from its uniform ``stretch``."""
-    load = seat(lane, columns, tube)
-    line[2, 0] = stretch
-    guide.start(tube, line[2, :1], load, line[0], line[1])
-    for i in range(base + 1):
-        x[i, lane], y[i, lane], safe[i, lane] = line[0, i], line[1, i], line[1, i]
 
 
 @kernel
