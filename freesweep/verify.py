@@ -1,11 +1,14 @@
 """Whether an atlas is what was written, and whole: its seal, its specification, its statuses."""
 
 import hashlib
+import math
 from pathlib import Path
 
 import numpy as np
 
-from .atlas.schema import FLAG_OF, PARAMETERS, STATUS_OF, VARIABLES
+from .atlas.content import faulty_codes
+from .atlas.guard import Unsafe, check_file, check_structure
+from .atlas.schema import FLAG_OF, VARIABLES, status_of
 from .atlas.seal import seal_fault
 from .atlas.store import AtlasError, open_atlas
 from .status import VALUED
@@ -20,16 +23,18 @@ def faults(path) -> list:
     Raises FileNotFoundError; OSError where the file cannot be read.
     """
     path = Path(path)
-    if not path.is_file():
+    if not path.exists():
         if Path(f"{path}.parts").is_dir():
             return _of_unfinished(path)
         raise FileNotFoundError(f"no atlas at {path}")
-    if fault := seal_fault(path):
-        return [fault]
     try:
+        check_file(path)
+        if fault := seal_fault(path):
+            return [fault]
+        check_structure(path, math.inf)
         atlas = open_atlas(path)
-    except AtlasError as error:
-        return [str(error)]
+    except (Unsafe, AtlasError) as refusal:
+        return [str(refusal)]
     with atlas:
         return [*_of_specification(atlas.data), *_of_content(atlas.data)]
 
@@ -84,16 +89,10 @@ def _of_grown_axes(data, sweep):
 
 
 def _of_content(data):
-    """Faults of values against statuses, and of bounds."""
-    known = {*VARIABLES, *(f"{name}_error" for name in VARIABLES), *STATUS_OF, *FLAG_OF, *PARAMETERS}
-    found = [f"{name} is unknown to this version" for name in data.data_vars if name not in known]
-    found += [f"{name} is missing" for name in ("status", "locked_status") if name not in data]
+    """Faults of labels, of values against statuses, and of bounds."""
+    found = [*faulty_codes(data, math.inf)]
     for name in (name for name in VARIABLES if name in data):
         judge = status_of(name)
-        lacking = [other for other in (f"{name}_error", judge) if other not in data]
-        if lacking:
-            found.append(f"{name} lacks {' and '.join(lacking)}")
-            continue
         wrong = unbounded = 0
         for part in _parts(data[name]):
             value, codes = data[name].isel(part), data[judge].isel(part, missing_dims="ignore")
@@ -106,15 +105,6 @@ def _of_content(data):
         if unbounded:
             found.append(f"{name}: {unbounded:,} numbers without a bound, or bounds without a number")
     return found
-
-
-def status_of(name) -> str:
-    """The variable that says where another has numbers."""
-    if name == "limit_pressure":
-        return "limit_found"
-    if f"{name}_status" in STATUS_OF:
-        return f"{name}_status"
-    return "locked_status" if name.startswith("locked_") else "status"
 
 
 def _parts(variable):

@@ -3,8 +3,14 @@
 import os
 from pathlib import Path
 
+import xarray as xr
+
 import freesweep
 from freesweep import run_sweep
+from freesweep.atlas import schema
+from freesweep.atlas.files import write_whole
+from freesweep.atlas.seal import sealed
+from freesweep.atlas.store import FORMAT
 from freesweep.sweep.spec import parse
 
 # for child processes, wherever they start: the package under test
@@ -49,3 +55,31 @@ def make(out, sweep, threads=2, **more):
 
 def only(folder, *names):
     assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+
+
+def completed(made):
+    """A made-up Dataset with what it lacks of an atlas: coordinates, attributes, bounds, statuses of locked shapes."""
+    made = made.sortby([name for name in made.dims if name != "design"])
+    fixed = FIXED | {"pressure": 1e5}
+    made = made.assign_coords({name: value for name, value in fixed.items() if name not in made.coords})
+    of_locked = [name for name in made.dims if name not in schema.without("locked_status")]
+    made["locked_status"] = xr.zeros_like(
+        made["status"].isel({name: 0 for name in {*made.dims} - {*of_locked}}, drop=True)
+    )
+    for name in [name for name in schema.VARIABLES if name in made]:
+        made[f"{name}_error"] = made[name] * 0.0
+    for name in made.variables:
+        made[name].attrs = schema.attributes(name) if name != "design" else {}
+    texts = {name: "made up" for name in ("title", "specification", "specification_sha256", "code_sha256", "version")}
+    return made.assign_attrs(texts | {"energy": "full", "accuracy": 1e-6} | made.attrs)
+
+
+def store(dataset, path):
+    """Write a Dataset as if it were an atlas, seal and all: for files that no sweep makes."""
+    encoding = {
+        name: {"zlib": True, "complevel": 1, "shuffle": True, "_FillValue": None}
+        for name, variable in dataset.variables.items()
+        if variable.ndim > 0 and variable.dtype.kind in "fiu"
+    }
+    content = dataset.assign_attrs(freesweep_format=FORMAT).to_netcdf(engine="netcdf4", encoding=encoding)
+    write_whole(path, sealed(content))

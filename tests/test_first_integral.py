@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 from commands import refused, run
-from grids import GRID, make, spec
+from grids import GRID, make, spec, store
 from oracle import NoState
 from oracle import first_integral as oracle
 
 from freesweep import closed_form, open_atlas
-from freesweep.atlas.store import save_atlas
 from freesweep.first_integral import folded, held
 from freesweep.first_integral.divided_differences import Divided
 from freesweep.first_integral.roots import find_roots
@@ -218,7 +217,7 @@ def test_a_number_outside_its_bound_is_found(atlas, tmp_path, capsys):
     assert {compared.name: int(compared.broken.sum()) for compared in comparisons if compared.broken.any()} == {
         "rotation": 1
     }
-    save_atlas(data, tmp_path / "wrong.nc")
+    store(data, tmp_path / "wrong.nc")
     assert run("verify", str(tmp_path / "wrong.nc"), "--resolve", "100000") == 2
     assert "1 stored numbers lie farther" in capsys.readouterr().err
 

@@ -8,12 +8,12 @@ import xarray as xr
 matplotlib.use("Agg")
 
 from commands import refused, run
+from grids import completed, store
 from matplotlib import pyplot
 from matplotlib.colors import to_rgb
 
 from freesweep import status
 from freesweep.atlas import schema
-from freesweep.atlas.store import save_atlas
 from freesweep.plot import style
 from freesweep.plot.curve import MOST, curve, spread
 
@@ -152,7 +152,7 @@ def test_named_designs_are_told_apart_by_name():
 
 def test_command(data, tmp_path, capsys):
     atlas, out = tmp_path / "made.nc", tmp_path / "curve.svg"
-    save_atlas(data, atlas)
+    store(completed(data), atlas)
     assert run("plot", "curve", str(atlas), "--each", "alpha", "-o", str(out)) == 0
     assert capsys.readouterr().out == f"{out}\n"
     first = out.read_bytes()

@@ -8,12 +8,12 @@ import xarray as xr
 matplotlib.use("Agg")
 
 from commands import refused, run
+from grids import completed, store
 from matplotlib import pyplot
 from matplotlib.collections import QuadMesh
 
 from freesweep import status
 from freesweep.atlas import schema
-from freesweep.atlas.store import save_atlas
 from freesweep.plot.section import multiples, section_map
 from freesweep.plot.validity import KINDS, validity_map, validity_maps
 
@@ -162,7 +162,7 @@ def test_validity_marks_unstable_and_failed(data):
 
 def test_commands(data, tmp_path, capsys):
     atlas = tmp_path / "made.nc"
-    save_atlas(data, atlas)
+    store(completed(data), atlas)
     for words in (
         ["map", "--axes", "pressure", "alpha", "--at", "beta=-20 deg"],
         ["map", "--over", "length", "--at", "pressure=50 kPa"],

@@ -118,6 +118,15 @@ def without(name: str) -> tuple:
     return STATUS_OF[of][1] if of in STATUS_OF else FLAG_OF[of][1] if of in FLAG_OF else VARIABLES[of].without
 
 
+def status_of(name) -> str:
+    """The variable that says where another has numbers."""
+    if name == "limit_pressure":
+        return "limit_found"
+    if f"{name}_status" in STATUS_OF:
+        return f"{name}_status"
+    return "locked_status" if name.startswith("locked_") else "status"
+
+
 def attributes(name: str) -> dict:
     """CF attributes of any variable or coordinate that a dataset may hold."""
     if name.removesuffix("_error") in PARAMETERS and name not in PARAMETERS:

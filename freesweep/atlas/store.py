@@ -1,4 +1,4 @@
-"""Atlases as netCDF4 files: saved whole, opened lazily."""
+"""Atlases as netCDF4 files: opened lazily, once they are known to be harmless."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from ..status import STATUSES
-from .files import write_whole
+from .content import faults
+from .guard import Unsafe, check_structure
 from .schema import STATUS_OF
-from .seal import sealed
 
 FORMAT = "1"
+MOST_FAULTS = 20  # listed of one file
 READ_AT_ONCE = 1 << 22  # numbers
-COMPRESSION = {"zlib": True, "complevel": 1, "shuffle": True}  # checksums come with it; higher levels gain 3 %
 
 
 class AtlasError(ValueError):
@@ -98,39 +98,47 @@ class Atlas:
         self.close()
 
 
-def save_atlas(dataset, path) -> None:
-    """Write a Dataset as an atlas: one netCDF4 file with its seal, whole or not at all.
-
-    Raises :class:`freesweep.atlas.files.EnvironmentFault`.
-    """
-    encoding = {
-        name: COMPRESSION | {"_FillValue": None}
-        for name, variable in dataset.variables.items()
-        if variable.ndim > 0 and variable.dtype.kind in "fiu"
-    }
-    content = dataset.assign_attrs(freesweep_format=FORMAT).to_netcdf(engine="netcdf4", encoding=encoding)
-    write_whole(path, sealed(content))
-
-
 def open_atlas(path) -> Atlas:
     """Open an atlas; its numbers are read when they are used.
 
+    The file may be anybody's: nothing but this file is read, and it is refused with the reason unless it is an atlas in
+    structure and content (:func:`freesweep.verify.faults` says whether every bit is the one that was written).
     Raises FileNotFoundError, or :class:`AtlasError` for a file that is no atlas of this program.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise FileNotFoundError(f"no atlas at {path}; make one with: freesweep sweep SPEC -o {path.name}")
+    data = open_results(path)
+    try:
+        found = data.attrs.get("freesweep_format")
+        if found != FORMAT or "status" not in data:
+            raise AtlasError(f"{path} is no freesweep atlas of format {FORMAT} (found format {found!r:.40})")
+        if wrong := [fault for fault, _ in zip(faults(data), range(MOST_FAULTS))]:
+            raise AtlasError("\n  - ".join([f"{path} is no atlas:", *wrong]))
+    except AtlasError:
+        data.close()
+        raise
+    except Exception as error:  # the libraries raise many kinds for a damaged file
+        data.close()
+        raise AtlasError(f"{path} is no readable atlas: {error}") from error
+    return Atlas(data, path)
+
+
+def open_results(path):
+    """The Dataset in a file of this program, an atlas or the results of one actuator, read when it is used.
+
+    Raises :class:`AtlasError` for a file that cannot be read, or that a stranger may have made to do harm.
     """
     import xarray as xr
 
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"no atlas at {path}; make one with: freesweep sweep SPEC -o {path.name}")
     try:
-        data = xr.open_dataset(path, engine="netcdf4", decode_times=False)
-    except Exception as error:  # the HDF5 library raises many kinds for a damaged file
+        check_structure(path)
+    except Unsafe as refusal:
+        raise AtlasError(f"{path} is no readable netCDF4 file: {refusal}") from refusal
+    try:
+        return xr.open_dataset(path, engine="netcdf4", decode_times=False)
+    except Exception as error:
         raise AtlasError(f"{path} is no readable netCDF4 file: {error}") from error
-    found = data.attrs.get("freesweep_format")
-    if found != FORMAT or "status" not in data:
-        data.close()
-        raise AtlasError(f"{path} is no freesweep atlas of format {FORMAT} (found format {found!r})")
-    return Atlas(data, path)
 
 
 def describe(atlas) -> str:

@@ -3,20 +3,16 @@
 
 def read(path):
     """The Dataset of an atlas, or of one actuator as ``--out`` keeps it; a context manager."""
-    from ..atlas.store import AtlasError, open_atlas
+    from ..atlas.store import AtlasError, open_atlas, open_results
 
     try:
         return open_atlas(path).data
     except AtlasError:
-        import xarray as xr
-
-        try:
-            data = xr.open_dataset(path, engine="netcdf4", decode_times=False)
-        except OSError:
-            data = None
-        if data is None or "status" not in data or "x" not in data.dims:
-            raise
-        return data
+        data = open_results(path)
+        if "status" in data and "x" in data.dims:
+            return data
+        data.close()
+        raise
 
 
 def selection(items):
