@@ -87,6 +87,13 @@ def _sweep(commands):
     command.add_argument("-o", "--out", metavar="FILE.nc", help="the atlas to make (default: named after SPEC, here)")
     command.add_argument("--map", metavar="FILE", help="draw the design-space map too (.png, .svg, .pdf)")
     command.add_argument("--threads", type=int, metavar="N", help="default: one for each core")
+    command.add_argument(
+        "--dask",
+        nargs="?",
+        const="",
+        metavar="ADDRESS",
+        help="solve on the workers of the Dask scheduler there (tcp://host:8786); without ADDRESS on processes here",
+    )
     command.add_argument("--overwrite", action="store_true", help="replace an atlas of another specification")
     command.add_argument("--dry-run", action="store_true", help="say what would be solved, and stop")
     command.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
@@ -111,10 +118,27 @@ def _run_sweep(options):
 
     if options.map:
         check_map(sweep, options.map)
-    with _terminated_as_interrupted():
-        atlas = run_sweep(sweep, out, threads=options.threads, progress=not options.quiet, overwrite=options.overwrite)
+    with _terminated_as_interrupted(), _executor(options) as executor:
+        atlas = run_sweep(
+            sweep,
+            out,
+            threads=options.threads,
+            executor=executor,
+            progress=not options.quiet,
+            overwrite=options.overwrite,
+        )
     if options.map:
         draw_map(atlas.data, options.map)
+
+
+def _executor(options):
+    """What solves instead of threads, as a context manager."""
+    if options.dask is None:
+        return contextlib.nullcontext()
+    from ..sweep.cluster import executor_of
+    from ..sweep.estimate import cores
+
+    return executor_of(options.dask, options.threads or cores(), lambda text: options.quiet or print(text))
 
 
 @contextlib.contextmanager

@@ -16,3 +16,13 @@ def upward(bound):
     """An error bound in single precision, rounded up: it still holds."""
     single = bound.astype(np.float32)
     return np.where(single < bound, np.nextafter(single, np.float32(np.inf)), single)
+
+
+def unsolved(dtype, status):
+    """A record of nothing but its status."""
+    record = np.zeros((), dtype)
+    for name in set(dtype.names) & {"values", "bounds", "value", "bound", "limit"}:
+        record[name] = np.nan
+    if "status" in dtype.names:
+        record["status"] = status
+    return record

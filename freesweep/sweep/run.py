@@ -1,9 +1,9 @@
 """Run a sweep: shards of distinct problems on threads, resumed after any interruption, collected into an atlas."""
 
+import contextlib
 import platform
 import time
-from collections import deque
-from concurrent.futures import ThreadPoolExecutor
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +16,9 @@ from .collect import groups
 from .grade import graded
 from .grid import coordinates
 from .identity import fingerprint, identify
+from .jobs import bar, in_order
 from .plan import plan as make_plan
+from .remote import solve_remotely
 from .rubber import rubber_attributes, warn_beyond_range
 from .shards import Records, Shards, SweepError
 from .solve import solve_shard
@@ -24,10 +26,9 @@ from .spec import Sweep, read_file
 
 SHARD_EQUILIBRIA = 8192  # a second of work or less: what an interruption can cost, for each thread
 HELD_COST, VARYING_COST = 32, 8  # of a held state, of a tube that varies: in those of a free state of one that does not
-AHEAD = 4  # jobs for each thread that are begun or waited for
 
 
-def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atlas:
+def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrite=False) -> Atlas:
     """Solve a sweep and store its atlas.
 
     Parameters
@@ -35,6 +36,8 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
     spec : path of a TOML specification, or a :class:`freesweep.sweep.spec.Sweep`
     out : path of the atlas to make
     threads : how many threads solve; default: one for each core. The result does not depend on it
+    executor : a ``concurrent.futures.Executor`` that solves instead, such as ``client.get_executor()`` of Dask. Its workers
+        have to see the folder of ``out`` under the same path; the bits are the same
     progress : show a bar and a summary
     overwrite : replace an atlas that was made from another specification
 
@@ -63,14 +66,17 @@ def run_sweep(spec, out, *, threads=None, progress=True, overwrite=False) -> Atl
         done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, overwrite)
         needed = estimate.check_disk(sweep, {kind: table.equilibria for kind, table in tables.items()}, out, done)
         threads = threads or estimate.cores()
-        records = _solve_all(tables, split_up, done, shards, sweep.accuracy, threads, progress)
+        records = _solve_all(tables, split_up, done, shards, sweep.accuracy, threads, executor, progress)
         solved = time.perf_counter()
-        attrs = _provenance(sweep, tables, identity, shards.started)
+        lost = _lost(tables, split_up, done)
+        attrs = _provenance(sweep, tables, identity, shards.started) | ({"not_solved": lost} if lost else {})
         _write(sweep, tables, records, out, attrs, needed, threads, progress)
         shards.clear()
     finally:
         shards.release()
     atlas = open_atlas(out)
+    if lost:
+        warnings.warn(f"{lost}; their status is not_converged, sweep again with overwriting to try anew", stacklevel=2)
     warn_beyond_range(atlas.data)
     if progress:
         now = time.perf_counter()
@@ -133,8 +139,27 @@ def _provenance(sweep, tables, identity, started):
     }
 
 
-def _solve_all(tables, split_up, done, shards, accuracy, threads, progress):
-    """Records of all shards, those found on disk among them: kind -> Records."""
+def _solve_all(tables, split_up, done, shards, accuracy, threads, executor, progress):
+    """Records of all shards, those found on disk among them: kind -> Records; ``done`` gets the file of each, or None."""
+    todo = [(kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done]
+    total = sum(table.equilibria for table in tables.values())
+    left = sum(int(tables[kind].first[b] - tables[kind].first[a]) for kind, _, a, b in todo)
+    if executor is None:
+        solved = _solve_here(tables, todo, shards, accuracy, threads, progress)
+    else:
+        solved = solve_remotely(executor, tables, todo, shards, accuracy)
+    with bar(total, total - left, " equilibria", progress) as shown, contextlib.closing(solved):
+        for key, path, count in solved:
+            done[key] = path
+            shown.update(count)
+    return {
+        kind: Records(kind, own, tables[kind].first, [done[kind, k] for k in range(len(own))])
+        for kind, own in split_up.items()
+    }
+
+
+def _solve_here(tables, todo, shards, accuracy, threads, progress):
+    """Solve shards on threads: (kind, index), file, states, as they are done."""
     from ..jit import is_compiled
 
     if progress and not is_compiled("solver"):
@@ -146,17 +171,15 @@ def _solve_all(tables, split_up, done, shards, accuracy, threads, progress):
         states, limits = solve_shard(tables[kind].job(a, b), accuracy)
         return (kind, index), shards.save(kind, index, states, limits), len(states)
 
-    todo = [(kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done]
-    total = sum(table.equilibria for table in tables.values())
-    left = sum(int(tables[kind].first[b] - tables[kind].first[a]) for kind, _, a, b in todo)
-    with _bar(total, total - left, " equilibria", progress) as bar:
-        for key, path, count in _in_order(run, todo, threads):
-            done[key] = path
-            bar.update(count)
-    return {
-        kind: Records(kind, own, tables[kind].first, [done[kind, k] for k in range(len(own))])
-        for kind, own in split_up.items()
-    }
+    yield from in_order(run, todo, threads)
+
+
+def _lost(tables, split_up, done):
+    """Which shards killed their workers, in words; "": none."""
+    parts = [(kind, *split_up[kind][k]) for (kind, k), path in done.items() if path is None]
+    states = sum(int(tables[kind].first[b] - tables[kind].first[a]) for kind, a, b in parts)
+    where = ", ".join(f"{kind} {a} to {b - 1}" for kind, a, b in parts[:20])
+    return f"{states:,} states of problems that killed their workers: {where}" if parts else ""
 
 
 def _write(sweep, tables, records, out, attrs, needed, threads, progress):
@@ -176,11 +199,11 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
     jobs = ((group, shape, *part) for group, shape in shapes for part in parts(shape))
     total = sum(1 for _, shape in shapes for _ in parts(shape))
     with AtlasWriter(out, sizes, coordinates(sweep), variables, attrs, needed) as writer:
-        with _bar(total, 0, " parts", progress) as bar:
-            for chunks in _in_order(run, jobs, threads):
+        with bar(total, 0, " parts", progress) as shown:
+            for chunks in in_order(run, jobs, threads):
                 for chunk in chunks:
                     writer.put(*chunk)
-                bar.update(1)
+                shown.update(1)
         if estimate.is_measured(sweep):
             from ..query.measure import measure
 
@@ -188,35 +211,6 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
                 found = measure(data)
             writer.describe(found)
         writer.publish()
-
-
-def _in_order(function, jobs, threads):
-    """Results of ``function(*job)`` from threads, in the order of the jobs, of which only a few are begun at a time."""
-    jobs, running = iter(jobs), deque()
-    pool = ThreadPoolExecutor(threads)
-    try:
-        while True:
-            while len(running) < AHEAD * threads and (job := next(jobs, None)) is not None:
-                running.append(pool.submit(function, *job))
-            if not running:
-                return
-            yield running.popleft().result()
-    finally:
-        pool.shutdown(cancel_futures=True)
-
-
-def _bar(total, finished, unit, progress):
-    from tqdm import tqdm
-
-    return tqdm(
-        total=total,
-        initial=finished,
-        unit=unit,
-        unit_scale=True,
-        disable=not progress,
-        dynamic_ncols=True,
-        leave=True,
-    )
 
 
 def summary(atlas, tables, solving, total) -> str:

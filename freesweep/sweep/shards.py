@@ -17,7 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from ..atlas.files import BLOCK, EnvironmentFault, write_whole
-from .records import LIMIT, state
+from ..status import NOT_CONVERGED
+from .records import LIMIT, state, unsolved
 
 GAP = 64  # records that are read along rather than passed over
 NO_LOCKS = (errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS)  # of a file system without them
@@ -91,7 +92,7 @@ class Shards:
         manifest = self.folder / "manifest.json"
         self.plan = identity["plan_sha256"]
         if manifest.exists():
-            found = json.loads(manifest.read_text())
+            found = _read(manifest)
             self.started = found.get("started")
             differs = [key for key, wanted in identity.items() if found.get(key) != wanted]
             key = differs[0] if differs else None
@@ -107,11 +108,11 @@ class Shards:
         if not manifest.exists():
             self.started = datetime.now(UTC).isoformat(timespec="seconds")
             write_whole(manifest, json.dumps(identity | {"started": self.started}, indent=1).encode())
-        for left in self.out.parent.glob(f".{self.out.name}.*.part"):
+        for left in (*self.out.parent.glob(f".{self.out.name}.*.part"), *self.folder.glob(".*.part")):
             left.unlink(missing_ok=True)
         done = {}
         for path in sorted(self.folder.glob("*-*.bin")):
-            if key := _key(path, self.plan):
+            if key := key_of(path, self.plan):
                 done[key] = path
             else:
                 path.unlink()
@@ -119,12 +120,7 @@ class Shards:
 
     def save(self, kind, index, states, limits):
         """Store one finished shard; returns its file."""
-        content = states.tobytes() + limits.tobytes()
-        digest = _digest(self.plan, kind, index)
-        digest.update(content)
-        path = self.folder / f"{kind}-{index:06d}-{digest.hexdigest()[:DIGITS]}.bin"
-        write_whole(path, content)
-        return path
+        return save(self.folder, self.plan, kind, index, states, limits)
 
     def tidy(self):
         """Remove the folder that a process left which was killed when its atlas was whole, unless another is at work."""
@@ -141,6 +137,16 @@ class Shards:
             left.unlink(missing_ok=True)
 
 
+def _read(manifest):
+    try:
+        found = json.loads(manifest.read_text())
+        if isinstance(found, dict):
+            return found
+    except ValueError:
+        pass
+    raise SweepError(f"{manifest} is damaged; delete the folder {manifest.parent} to begin anew")
+
+
 def examine(out):
     """``(whole, faulty)`` shard files of the unfinished sweep beside ``out``; nothing is changed."""
     folder = Path(f"{out}.parts")
@@ -149,8 +155,18 @@ def examine(out):
     except (OSError, ValueError):
         plan = ""
     files = sorted(folder.glob("*-*.bin"))
-    whole = [path for path in files if _key(path, plan)]
+    whole = [path for path in files if key_of(path, plan)]
     return whole, [path for path in files if path not in whole]
+
+
+def save(folder, plan, kind, index, states, limits) -> Path:
+    """Store one finished shard of a plan in a folder; returns its file."""
+    content = states.tobytes() + limits.tobytes()
+    digest = _digest(plan, kind, index)
+    digest.update(content)
+    path = folder / f"{kind}-{index:06d}-{digest.hexdigest()[:DIGITS]}.bin"
+    write_whole(path, content)
+    return path
 
 
 def _digest(plan, kind, index):
@@ -158,7 +174,7 @@ def _digest(plan, kind, index):
     return hashlib.sha256(f"{plan} {kind} {index}\n".encode())
 
 
-def _key(path, plan):
+def key_of(path, plan):
     """``(kind, index)`` of a shard file, or None where its bytes, plan or number are not those it was named after."""
     kind, index, digest = path.stem.rsplit("-", 2)
     if not index.isdigit():
@@ -173,7 +189,8 @@ def _key(path, plan):
 class Records:
     """The records of one kind of state, read from its shards a few at a time.
 
-    ``parts`` are (first, last + 1) problems of each shard, ``first`` where each problem's states begin, ``paths`` the files.
+    ``parts`` are (first, last + 1) problems of each shard, ``first`` where each problem's states begin, ``paths`` the files;
+    None: a shard that could not be solved, of which every state is ``not_converged``.
     """
 
     def __init__(self, kind, parts, first, paths):
@@ -196,6 +213,9 @@ class Records:
         cuts = np.searchsorted(wanted, edges)
         for shard in np.flatnonzero(np.diff(cuts)).tolist():
             own = wanted[cuts[shard] : cuts[shard + 1]] - edges[shard]
+            if self.paths[shard] is None:
+                found[cuts[shard] : cuts[shard + 1]] = unsolved(dtype, NOT_CONVERGED)
+                continue
             ends = np.flatnonzero(np.diff(own) > GAP) + 1
             descriptor = os.open(self.paths[shard], os.O_RDONLY)
             try:

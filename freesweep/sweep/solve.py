@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..status import INVALID
-from .records import FREE_STATE, HELD_STATE, LIMIT, state, upward
+from .records import FREE_STATE, HELD_STATE, LIMIT, state, unsolved, upward
 
 BASE_CELLS = 24
 UNIFORM = np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2)
@@ -20,7 +20,7 @@ def solve_shard(job, accuracy):
         own = np.flatnonzero(job.course == k)
         rows = np.concatenate([np.arange(job.first[i], job.first[i + 1]) for i in own])
         if tube is None:  # a profile that no mesh can follow
-            states[rows] = _without_result(states.dtype)
+            states[rows] = unsolved(states.dtype, INVALID)
             continue
         first = np.concatenate([[0], np.cumsum(np.diff(job.first)[own])])
         found = solve(job.kind, job.problems[own], job.targets[own], first, job.pressures[rows], tube, accuracy)
@@ -56,12 +56,3 @@ def _solve_held(kind, problems, targets, first, pressures, tube, accuracy):
     states = np.empty(count, HELD_STATE)
     states["value"], states["bound"], states["status"], states["stable"] = values, upward(bounds), status, stable
     return states, np.empty(0, LIMIT)
-
-
-def _without_result(dtype):
-    """A record of nothing but its status."""
-    record = np.zeros((), dtype)
-    for name in set(dtype.names) & {"values", "bounds", "value", "bound"}:
-        record[name] = np.nan
-    record["status"] = INVALID
-    return record
