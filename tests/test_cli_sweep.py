@@ -97,7 +97,8 @@ def test_files_that_are_absent_or_no_atlas_are_refused(specification, tmp_path, 
 
 def test_an_output_in_a_missing_folder_is_the_environments_fault(specification, capsys):
     err = refused(capsys, "sweep", specification, "-o", "absent/tiny.nc", code=ENVIRONMENT)
-    assert "cannot make the folder absent/tiny.nc.parts: No such file or directory" in err
+    assert "cannot make the folder absent/tiny.nc.parts: No such file or directory; there is no folder absent" in err
+    assert ". is a folder or a device" in refused(capsys, "sweep", specification, "-o", ".", "--overwrite")
 
 
 def test_threads_and_places_in_the_atlas_are_checked(specification, capsys):
@@ -106,6 +107,16 @@ def test_threads_and_places_in_the_atlas_are_checked(specification, capsys):
     assert "give NAME=VALUE" in refused(capsys, "plot", "map", "tiny.nc", "--at", "pressure")
     assert "expects a pressure" in refused(capsys, "plot", "map", "tiny.nc", "--at", "pressure=1 mm")
     assert "sideways" in refused(capsys, "plot", "map", "tiny.nc", "--variable", "sideways")
+
+
+def test_too_little_memory_is_one_line(specification, capsys, monkeypatch):
+    def fill(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr("freesweep.sweep.run.run_sweep", fill)
+    error = refused(capsys, "sweep", specification, code=ENVIRONMENT)
+    assert error.startswith("freesweep: not enough memory; ")
+    assert error.count("\n") == 1
 
 
 def test_an_interruption_has_its_own_exit_code(specification, capsys, monkeypatch):

@@ -32,8 +32,8 @@ CALLS = ("pwrite", "fsync", "replace", "fchmod", "close", "open")
 class Disk:
     """The module ``os`` to files.py, of which calls of one name fail from the n-th on: once, or for ever; or lie."""
 
-    def __init__(self, call, moment, kind):
-        self.call, self.moment, self.kind, self.count = call, moment, kind, 0
+    def __init__(self, call, moment, kind, code=errno.ENOSPC):
+        self.call, self.moment, self.kind, self.code, self.count = call, moment, kind, code, 0
 
     def __getattr__(self, name):
         real = getattr(os, name)
@@ -48,9 +48,11 @@ class Disk:
             return real(given[0], given[1][: max(1, len(given[1]) // 2)], given[2])
         if self.kind == "lost":
             return len(given[1])
+        if self.kind == "kill":
+            os.kill(os.getpid(), signal.SIGKILL)
         if self.call == "close":
             real(*given)
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        raise OSError(self.code, os.strerror(self.code))
 
 
 @pytest.fixture(autouse=True)
@@ -72,9 +74,9 @@ def moments(call, tmp_path, monkeypatch, count):
     return sorted({int(k) for k in np.linspace(1, disk.count, count)})
 
 
-def struck(out, call, moment, kind, monkeypatch):
+def struck(out, call, moment, kind, monkeypatch, code=errno.ENOSPC):
     with monkeypatch.context() as patch:
-        patch.setattr(files, "os", Disk(call, moment, kind))
+        patch.setattr(files, "os", Disk(call, moment, kind, code))
         return make(out, SWEEP, threads=1)
 
 
@@ -92,6 +94,65 @@ def test_a_full_disk_costs_nothing_but_a_sentence(call, reference, tmp_path, mon
         assert not out.exists() or seal_fault(out) is None
         same_bits(reference, make(out, SWEEP))
         assert [path.name for path in folder.iterdir()] == ["atlas.nc"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EIO])
+@pytest.mark.parametrize("kind", ["once", "for ever"])
+@pytest.mark.parametrize("call", CALLS)
+def test_every_call_may_fail(call, kind, code, reference, tmp_path, monkeypatch):
+    for moment in moments(call, tmp_path, monkeypatch, 1000):
+        folder = tmp_path / str(moment)
+        folder.mkdir()
+        out = folder / "atlas.nc"
+        with pytest.raises(EnvironmentFault, match=os.strerror(code)):
+            struck(out, call, moment, kind, monkeypatch, code)
+        assert not out.exists() or seal_fault(out) is None
+        same_bits(reference, make(out, SWEEP))
+        assert [path.name for path in folder.iterdir()] == ["atlas.nc"]
+
+
+KILLS = """
+import os, sys
+from pathlib import Path
+import pytest
+from freesweep.atlas import files
+from freesweep.sweep import run
+from grids import make
+from test_sweep_faults import CALLS, Disk, SWEEP, moments
+from test_sweep_resume import same_bits
+run.SHARD_EQUILIBRIA = 6
+folder = Path(sys.argv[1])
+reference = make(folder / "whole.nc", SWEEP)
+for call in CALLS:
+    counted = folder / call
+    counted.mkdir()
+    every = moments(call, counted, pytest.MonkeyPatch(), int(sys.argv[2]))
+    for moment in every:
+        out = folder / f"{call}{moment}.nc"
+        if not (child := os.fork()):
+            files.os = Disk(call, moment, "kill")
+            make(out, SWEEP, threads=1)
+            os._exit(0)
+        _, how = os.waitpid(child, 0)
+        assert os.WIFSIGNALED(how) and os.WTERMSIG(how) == 9, (call, moment, how)
+        same_bits(reference, make(out, SWEEP))
+        assert [path.name for path in folder.glob(f"*{out.name}*")] == [out.name], (call, moment)
+        out.unlink()
+    print(call, len(every), flush=True)
+"""
+
+
+@pytest.mark.long
+def test_killed_in_every_call(tmp_path):
+    """Killed in each write, fsync, rename, change of mode, close and opening of a folder; then the sweep goes on."""
+    here = os.pathsep.join([CHILD_ENVIRONMENT["PYTHONPATH"], os.path.dirname(__file__)])
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", KILLS, str(tmp_path), "1000"],
+        capture_output=True, text=True, env=CHILD_ENVIRONMENT | {"PYTHONPATH": here},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert [line.split()[0] for line in done.stdout.splitlines()] == [*CALLS]
 
 
 def test_short_writes_are_completed(reference, tmp_path, monkeypatch):

@@ -144,8 +144,10 @@ def begin(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(begin, tmp_path_factory):
-    """The atlas of an undisturbed sweep, and how long that took [s]."""
-    out, begun = tmp_path_factory.mktemp("whole") / "atlas.nc", time.perf_counter()
+    """The atlas of an undisturbed sweep, and how long that took [s] once the kernels were compiled."""
+    folder = tmp_path_factory.mktemp("whole")
+    assert begin(folder / "first.nc").communicate()[1] == ""
+    out, begun = folder / "atlas.nc", time.perf_counter()
     assert begin(out).communicate()[1] == ""
     with open_atlas(out) as atlas:
         return atlas.data.load(), time.perf_counter() - begun

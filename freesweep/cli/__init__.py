@@ -33,7 +33,8 @@ def main(arguments=None) -> int:
         sys.stderr.close()
         return DONE
     except (MemoryError, PermissionError) as error:
-        print(f"freesweep: {error or 'not enough memory'}", file=sys.stderr)
+        short = "not enough memory; close other programs, use fewer --threads, or split the sweep"
+        print(f"freesweep: {str(error) or short}", file=sys.stderr)
         return ENVIRONMENT
     except (ValueError, OSError) as error:
         from ..atlas.files import EnvironmentFault

@@ -21,6 +21,7 @@ SHRINKS = 0.9  # of the numbers when they are compressed, at least
 FILE = 1_000_000  # [bytes] of an atlas without its numbers, at most
 MOST_PLANNED = 300_000  # designs that a dry run compares: half a second
 SAMPLE_SECONDS, SAMPLES, TOGETHER = 0.2, 64, 32  # of each kind of state; problems solved at once, as vectors need them
+KERNELS = {FREE: ("walk_lanes", "walk_many"), "blocked_force": ("block_many",), "blocked_torque": ("block_many",)}
 TYPICAL = {FREE: 100e-6, "blocked_force": 4e-3, "blocked_torque": 4e-3}  # [s] of one equilibrium on one core
 
 
@@ -119,9 +120,7 @@ def dry_run(sweep, out, threads=None) -> str:
 
 def _time(sweep, tables, equilibria, threads):
     """Time of the solver in words: from a sample of the problems, or what is typical before the kernels are compiled."""
-    from ..jit import is_compiled
-
-    measured = bool(tables) and is_compiled("solver")
+    measured = bool(tables) and all(_is_compiled(kind) for kind in equilibria)
     each = {kind: _sampled(tables[kind], sweep.accuracy) if measured else TYPICAL[kind] for kind in equilibria}
     took = sum(each[kind] * count for kind, count in equilibria.items()) / threads
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)):
@@ -133,6 +132,14 @@ def _time(sweep, tables, equilibria, threads):
     return f"{words} on {threads} thread{'s' * (threads > 1)}" + (
         "" if measured else ", a guess before anything is solved"
     )
+
+
+def _is_compiled(kind):
+    """Whether the kernels of a kind of states lie on disk: a dry run compiles nothing."""
+    from ..jit import _cache_folder
+
+    stored = {path.name.split(".")[1].split("-")[0] for path in Path(_cache_folder("solver")).rglob("*.nbc")}
+    return set(KERNELS[kind]) <= stored
 
 
 def _sampled(table, accuracy):

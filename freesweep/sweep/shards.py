@@ -44,7 +44,8 @@ class Shards:
             try:
                 self.folder.mkdir(exist_ok=True)
             except OSError as error:
-                raise EnvironmentFault(f"cannot make the folder {self.folder}: {error.strerror}") from error
+                absent = "" if self.out.parent.is_dir() else f"; there is no folder {self.out.parent}, make it first"
+                raise EnvironmentFault(f"cannot make the folder {self.folder}: {error.strerror}{absent}") from error
             with contextlib.suppress(FileNotFoundError):
                 self._lock()
 
