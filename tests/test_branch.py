@@ -7,6 +7,9 @@ import pytest
 from oracle import NoState, collocation, first_integral, uniform_stretch
 
 from freesweep import closed_form
+from freesweep.census.designs import Drawn, quadrature
+from freesweep.first_integral.tube import solve
+from freesweep.first_integral.uniform import Tubes
 from freesweep.solver import batch
 from freesweep.solver.status import BEYOND_LIMIT, COMPRESSED, INVALID, OK
 
@@ -233,6 +236,32 @@ def test_small_snap_is_not_jumped(alpha, beta, length, area, ratio, far):
     assert one(design, far).status.tolist() == [BEYOND_LIMIT]
 
 
+def in_two_parts(problem):
+    """The same tube, told as one that varies: two segments alike; ``(course, edges, places)``."""
+    course = np.zeros((2, 1, 3, 4))
+    course[:, 0, :, 0] = problem[:3]
+    length = problem[8]
+    return course, np.array([0, 24, 48]), np.array([0.0, 0.5 * length, length])
+
+
+@pytest.mark.parametrize("parts", [1, 2])
+def test_fibers_that_extend_lead_up_to_the_turning_point_of_the_first_leg_and_no_further(parts):
+    """A short tube holds 1 % more than the uniform one, whose turning point comes at p = 1.23: there the walk creeps, in
+    steps of pressure and fiber extension together, until these die out at the tube's own.
+    """
+    design = tube(60, 55, length=8, area=0.78, energy="principal", gamma=1.01)
+    pressures = [1.235, 1.2375, 1.239, 1.3]
+    given = batch.uniform(24) if parts == 1 else in_two_parts(design)
+    walks = batch.walk_all(np.array([design] * 4), np.arange(5), np.array(pressures), given, 1e-6)
+    assert walks.status.tolist() == [OK, OK, BEYOND_LIMIT, BEYOND_LIMIT]
+    assert np.isnan(walks.limits).all()  # not of the pressure alone
+    loads = dict(gamma=1.01, energy="principal")
+    for row, p in enumerate(pressures[:2]):  # the quadrature's branch ends at 0.99936 of the way to the third
+        shape = first_integral(60, 55, 8, 0.78, 0.5, p, first_pressure=p, **loads)
+        exact = np.array([shape.length, shape.volume, shape.rotation, shape.energy, shape.middle])
+        assert np.all(np.abs(walks.values[row] * WHOLE - exact) <= walks.bounds[row] * WHOLE + 10 * shape.errors)
+
+
 def test_full_energy_has_no_limit_there():
     walks = one(tube(60, 55, energy="full"), 0.5, 2.0, 50.0)
     assert walks.status.tolist() == [OK] * 3
@@ -340,3 +369,36 @@ def test_torque_and_force_do_work_in_their_direction():
     assert pulled[0] > reference[0]
     assert turned[2] > reference[2]
     assert inflated[1] > reference[1]
+
+
+def test_tubes_that_leave_their_ends_almost_upright():
+    """Strong torque on a thin wall, or fibers so steep that their extension leaves the clamped ends hardly any meridian: no
+    mesh follows the shape from a rough guess. Quadrature of the first integral solves them too.
+    """
+    upright = np.array([
+        [-57.9189, 37.1325, 192.4893, 0.1667, 1.0, 0.0244, 0.0, -1.4742, 0.0030386, 1.0],
+        [34.3257, -65.3817, 52.7936, 0.1139, 1.0, 0.0, 0.0, -1.4287, 0.0043018, 1.0],
+        [-84.588, -82.4773, 69.7522, 0.1842, 1.006, 0.9586, 0.0, -0.0938, 0.0038022, 1.0],
+        [52.7150, -43.0510, 13.1688, 0.0316, 1.0, 1.81, 0.0, 1.4217, 0.0096, 0.0],
+    ])  # fmt: skip
+    drawn = Drawn(np.delete(upright, 8, axis=1), upright[:, 8:9])
+    walks = batch.walk_all(drawn.problems(), np.arange(5), upright[:, 8].copy(), batch.uniform(24), 1e-6)
+    assert walks.status.tolist() == [OK] * 4
+    exact, errors = quadrature(upright, walks.values[:, 4])
+    assert np.all(np.abs(walks.values - exact) <= walks.bounds + 3 * errors)
+
+
+def test_turning_point_that_no_rough_mesh_finds():
+    """A drawn-in tube whose layer at the ends moves as the pressure nears the limit: the branch is traced by its middle."""
+    design = np.array([63.6425, -49.0115, 11.0141, 0.0428, 1.02, 0.0, 1.6625, 0.79, 0.0])
+    problem = Drawn(design[None], None).problems()[0]
+    below, beyond = one(problem, 0.6, 3.1), one(problem, 0.6, 8.0)
+    assert below.status.tolist() == [OK, OK]
+    assert beyond.status.tolist() == [OK, BEYOND_LIMIT]
+    limit, bound = beyond.limits[0]
+    assert limit - bound > 3.1
+    H, D, area, gamma, ratio, shear, force, torque, length, *yeoh = problem
+    given = (H, D, area, gamma, ratio, shear, 3.1, force, torque, 1.0, 0.5 * length, *yeoh)
+    exact = solve(Tubes(*(np.array([number]) for number in given)), np.array([0.6]))
+    assert np.all(np.abs(below.values[1] - exact.values[0]) <= below.bounds[1] + 10 * exact.errors[0])
+    assert limit == pytest.approx(3.1081, abs=1e-3)

@@ -60,7 +60,7 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     rubber, shear = rubber_of(problem), problem[SHEAR]
     before = (1.0, rubber, shear, 0.0, 0.0, 0.0, 1.0)
     started, guided, ended = False, True, OK
-    clamped = 1.0
+    clamped, middle = 1.0, 1.0
     for end in range(2):
         stretch = lagrangian.kinematics(1.0, guide.cell_along(tube, 1.0 * end), (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[
             3
@@ -70,9 +70,10 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
         u[k] = 1.0
     limit[0], limit[1] = np.nan, np.nan
     for i in range(len(pressures)):
-        if status[i] != PENDING:
-            continue
         p = pressures[i]
+        if status[i] != PENDING:
+            middle = values[i, 4] if status[i] == OK and p < np.inf else middle
+            continue
         slack[i] = 0
         for k in range(5):
             values[i, k], bounds[i, k] = np.nan, np.nan
@@ -107,7 +108,7 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
         if reached == 1.0 and started:
             guide.carry(u, ahead, x[base], x, y)
         found, doublings, fold, fold_bound = reach(
-            x, y, last_x, last_y, ahead, scratch, reached, started, tube, before, load, accuracy, space, out
+            x, y, last_x, last_y, middle, ahead, scratch, reached, started, tube, before, load, accuracy, space, out
         )
         status[i] = found
         if found == OK or found == INACCURATE:
@@ -117,7 +118,7 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
             slack[i] = slack_fibers(fine[0], fine[1], base << doublings, base, tube, load)
             if len(stations) > 0:
                 at_stations(stations, base, doublings, tube, load, fine, space[3], profiles[i])
-            before, started, guided = load, True, reached == 1.0
+            before, started, guided, middle = load, True, reached == 1.0, out[0, nested.MIDDLE]
             for k in range(places):
                 u[k] = ahead[k]
             for k in range(base + 1):
@@ -189,6 +190,6 @@ def walk_many(
                 problems[k], tube, pressures[own], accuracy, space, values[own], bounds[own], status[own], slack[own],
                 limits[k], stations, profiles[own],
             )  # fmt: skip
-            if factor == FINER or not np.any(status[own] == NOT_CONVERGED):
+            if factor == FINER or not np.any((status[own] == NOT_CONVERGED) | (status[own] == INACCURATE)):
                 break
             status[own] = PENDING  # all of it again

@@ -16,6 +16,7 @@ SMALLEST_DENSITY = 3e-3  # of that grading; caps the length of the last cell of 
 TAIL_SHARE = 0.2  # of the nodes, by the eighth root
 EVEN_SHARE = 0.2  # of the nodes, by the constant
 SMOOTHINGS = 3  # passes over the cell sizes
+EASINGS = 8  # of a slope, whose room depends on it
 
 
 @kernel
@@ -37,17 +38,18 @@ def layer_mesh(length, rate, n, x):
 
 
 @kernel
-def turning(integrands, x, y, n, free, cells, load, work, out):
-    """The meridian's turning |d(angle)/dx| (1 + |tan(angle)|) in each cell; the second factor resolves the cosine.
-
-    The first of ``integrands`` is the axial length per length, so tan(angle) = v/s.
-    """
-    sine, cosine = work[0], work[1]
+def slants(integrands, x, y, n, cells, load, sine, cosine):
+    """Sine and cosine of the meridian's angle in each cell; the first of ``integrands`` is the axial length per length."""
     for j in range(n):
         v = (y[j + 1] - y[j]) / (x[j + 1] - x[j])
         s = integrands(0.5 * (y[j] + y[j + 1]), v, cell_at(cells, j), load)[0]
         i = 1.0 / sqrt(s * s + v * v)
         sine[j], cosine[j] = v * i, s * i
+
+
+@kernel
+def bends(x, sine, cosine, n, free, out):
+    """The meridian's turning |d(angle)/dx| (1 + |tan(angle)|) in each cell; the second factor resolves the cosine."""
     for j in range(n):
         left, right = max(j - 1, 0), min(j + 1, n - 1)
         change = abs(sine[right] - sine[left])
@@ -55,6 +57,30 @@ def turning(integrands, x, y, n, free, cells, load, work, out):
         if j == n - 1 and free:  # the slope vanishes in the plane of symmetry
             change, distance = abs(sine[left]), x[n] - 0.5 * (x[left] + x[left + 1])
         out[j] = change / distance * (1.0 + abs(sine[j]) / cosine[j]) / cosine[j]
+
+
+@kernel
+def turning(integrands, x, y, n, free, cells, load, work, out):
+    """:func:`bends` of a shape."""
+    slants(integrands, x, y, n, cells, load, work[0], work[1])
+    bends(x, work[0], work[1], n, free, out)
+
+
+@kernel
+def ease(integrands, x, y, n, cosine, cells, load):
+    """Let no cell of a guess be steeper than there is room for: ``y`` is followed from its first node on as closely as
+    slopes allow that leave half of what ``cosine`` (n,), of the meridian's angle, promises.
+    """
+    at = y[0]
+    for j in range(n):
+        h = x[j + 1] - x[j]
+        rise, v = (y[j + 1] - at) / h, 0.0
+        steepest = sqrt(1.0 - 0.25 * cosine[j] * cosine[j])
+        for _ in range(EASINGS):
+            most = steepest * integrands(at + 0.5 * h * v, 0.0, cell_at(cells, j), load)[0]
+            v = min(max(rise, -most), most)
+        at += h * v
+        y[j + 1] = at
 
 
 @kernel
@@ -76,27 +102,27 @@ def node_density(x, n, rate, out):
 
 
 @kernel
-def regrade(x, y, density, n, new_x, new_y, work):
-    """Spread n cells by ``density`` and carry ``y`` over, linearly."""
+def regrade(x, y, density, n, count, new_x, new_y, work):
+    """Spread ``count`` cells by the ``density`` in each of n, and carry ``y`` over, linearly."""
     total = 0.0
     for j in range(n):
         total += density[j] * (x[j + 1] - x[j])
     j, below = 0, 0.0
     new_x[0], new_y[0] = x[0], y[0]
-    for i in range(1, n):
-        target = total * i / n
+    for i in range(1, count):
+        target = total * i / count
         while j < n - 1 and below + density[j] * (x[j + 1] - x[j]) < target:
             below += density[j] * (x[j + 1] - x[j])
             j += 1
         new_x[i] = x[j] + (target - below) / density[j]
-    new_x[n] = x[n]
-    even_out(new_x, n, work)
+    new_x[count] = x[n]
+    even_out(new_x, count, work)
     j = 0
-    for i in range(1, n):
+    for i in range(1, count):
         while j < n - 1 and x[j + 1] < new_x[i]:
             j += 1
         new_y[i] = y[j] + (new_x[i] - x[j]) * (y[j + 1] - y[j]) / (x[j + 1] - x[j])
-    new_y[n] = y[n]
+    new_y[count] = y[n]
 
 
 @kernel

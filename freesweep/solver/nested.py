@@ -76,6 +76,16 @@ def make_admissible(density, x, y, n, cells, load):
 
 
 @kernel
+def ease(density, integrands, x, y, n, new_x, new_y, count, cells, load, work):
+    """Ease the guess ``new_y`` on half or twice as many cells as the solution ``y`` has, by the slopes of that."""
+    sine, cosine, here = work[0], work[1], work[2]
+    mesh.slants(integrands, x, y, n, cells, load, sine, cosine)
+    for j in range(count):
+        here[j] = min(cosine[2 * j], cosine[2 * j + 1]) if count < n else cosine[j // 2]
+    mesh.ease(integrands, new_x, new_y, count, here, cells, load)
+
+
+@kernel
 def adapt(density, integrands, x, y, n, tube, load, work):
     """Move the nodes of the base mesh to where the solution bends, and carry the solution over; returns whether it is
     admissible there.
@@ -89,7 +99,7 @@ def adapt(density, integrands, x, y, n, tube, load, work):
         symmetric = free and s == len(edges) - 2
         mesh.turning(integrands, x[a : b + 1], y[a : b + 1], b - a, symmetric, here, load, work, rate)
         mesh.node_density(x[a : b + 1], b - a, rate, nodes)
-        mesh.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
+        mesh.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
     for i in range(n + 1):
         x[i], y[i] = new_x[i], new_y[i]
     return newton.admissible(density, x, y, n, fill(course, edges, x, n, n, cells), load)
@@ -152,7 +162,12 @@ def solve(
             )
         if status == newton.INFEASIBLE and not shrunk:
             shrunk = True
-            if make_admissible(density, xs, ys, count, own, loaded(load, direction, mu)):
+            now = loaded(load, direction, mu)
+            if level == 0 and free:
+                ease(density, integrands, x, y, n, xs, ys, count, own, now, work)
+            elif level > 1 and free:
+                ease(density, integrands, fine[2], fine[4], count // 2, xs, ys, count, own, now, work)
+            if make_admissible(density, xs, ys, count, own, now):
                 continue
         if status != newton.CONVERGED:
             return status, unstable, max(level - 1, 0), on_base

@@ -3,18 +3,20 @@
 import numpy as np
 
 from ..jit import inlined
-from . import guide, lagrangian, nested, newton, uniform
+from . import guide, lagrangian, meridian, nested, newton, trail, uniform
 from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep, graded_for_turning
 from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK
 
 COLD_REGRADES, WARM_REGRADES = 3, 1
-WARM, COLD, SLOW, LAST_STEP = 0, 1, 2, 3
+WARM, COLD, STEEP, SLOW, LAST_STEP, TRACED = 0, 1, 2, 3, 4, 5
+CAUTION = 10.0  # times the bounds of shapes so steep: their errors fall to fourth order only on finer meshes
+TRACED_ERROR = 0.02  # of the way to a turning point that was traced only
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @inlined
-def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load, accuracy, space, out):
-    """The state at ``load``, from the last one at ``before``: the quick ways first, then the slow one.
+def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, before, load, accuracy, space, out):
+    """The state at ``load``, from the last one at ``before``, with stretch ``middle`` in the middle: the quick ways first.
 
     Returns ``(status, doublings, limit pressure, its bound)``.
     """
@@ -25,6 +27,7 @@ def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load
     flat, shapes = NEARLY_FLAT, space[4]
     for i in range(len(x)):
         shapes[4, i], shapes[5, i] = last_x[i], last_y[i]
+    alike = len(u) == 1  # all along
     if reached < 1.0:
         way = SLOW
     elif not started:
@@ -34,59 +37,92 @@ def reach(x, y, last_x, last_y, u, scratch, reached, started, tube, before, load
         if way == COLD:
             guide.start(tube, u, load, x, y)
             regrades = COLD_REGRADES
-        elif way == SLOW:
+        elif way == STEEP:
+            regrades = 0  # its mesh is that of the shape itself
+            if not meridian.start(tube, u, load, x, y, space[3], work):
+                way = SLOW
+        if way == SLOW:
             start = before
+            status, mu = OK, 1.0
             if started:
                 for i in range(len(x)):
                     x[i], y[i] = shapes[4, i], shapes[5, i]
             else:
                 part = guide.begin(tube, load, scratch[0], scratch[1], x, y)
-                if part == 0.0:
-                    return NOT_CONVERGED, 0, limit, limit_bound
                 start = uniform.between((1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0), load, part)
-            status, mu = OK, 1.0
-            if start[0] != load[0]:
+                status = OK if part > 0.0 else NOT_CONVERGED
+            if status == OK and start[0] != load[0]:
                 status, _ = creep(x, y, tube, start, load, work)
                 if status == BEYOND_LIMIT:
                     return status, 0, limit, limit_bound
-            else:
+            elif status == OK:
                 status, mu = climb(x, y, tube, start, load, flat, work)
             if status == BEYOND_LIMIT:
                 goal = nested.TURNING_POINT
                 regrades = 0  # close to a turning point no other mesh is safe
                 direction = (0.0, 0.0, 0.0, load[3] - start[3], load[4] - start[4], load[5] - start[5], 0.0)
                 graded_for_turning(x, y, len(x) - 1, tube, start, direction, mu, work)
+            elif status == NOT_CONVERGED and alike:
+                way = TRACED
             elif status != OK:
                 return status, 0, limit, limit_bound
             for i in range(len(x)):
                 last_x[i], last_y[i] = x[i], y[i]
+        if way == TRACED:
+            start, regrades = before, 0
+            what, mu, middle = trail.trail(tube, before, load, middle, x, y, space[3], work)
+            if what == trail.LOST:
+                return NOT_CONVERGED, 0, limit, limit_bound
+            if what == trail.TURNED and start[0] != load[0]:
+                return BEYOND_LIMIT, 0, limit, limit_bound
+            goal, direction = nested.PLAIN, FLAT
+            if what == trail.TURNED:
+                goal = nested.TURNING_POINT
+                direction = (0.0, 0.0, 0.0, load[3] - start[3], load[4] - start[4], load[5] - start[5], 0.0)
+        caution = CAUTION if way == STEEP or way == TRACED else 1.0
         from_load = load if goal == nested.PLAIN else start
         status, unstable, doublings, _ = nested.solve(
             lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube,
-            from_load, goal, direction, 0.0, mu if goal == nested.TURNING_POINT else 0.0, regrades, accuracy, fine,
-            work, table, out,
+            from_load, goal, direction, 0.0, mu if goal == nested.TURNING_POINT else 0.0, regrades, accuracy / caution,
+            fine, work, table, out,
         )  # fmt: skip
+        for k in range(nested.OUTPUTS):
+            out[1, k] *= caution
         solved = status == newton.CONVERGED or status == nested.UNREACHED
+        if status == nested.UNREACHED and way < STEEP and alike:
+            way = STEEP
+            continue
         if goal == nested.TURNING_POINT:
             if not solved:
-                if flat == 0.0:
+                if (
+                    way == TRACED and TRACED_ERROR < mu < 1.0 - TRACED_ERROR
+                ):  # no mesh holds it, but that it is there is certain
+                    return BEYOND_LIMIT, 0, start[3] + mu * direction[3], TRACED_ERROR * abs(mu * direction[3])
+                if way == TRACED or (flat == 0.0 and not alike):
                     return NOT_CONVERGED, 0, limit, limit_bound
-                goal, direction, way, flat = nested.PLAIN, FLAT, SLOW, 0.0  # hardly rising, but no turning point: go on
+                # hardly rising, but no turning point: go on
+                goal, direction, way, flat = nested.PLAIN, FLAT, TRACED if flat == 0.0 else SLOW, 0.0
                 continue
             if out[0, nested.MULTIPLIER] < 1.0:
                 limit = start[3] + out[0, nested.MULTIPLIER] * direction[3]
                 return BEYOND_LIMIT, 0, limit, out[1, nested.MULTIPLIER] * direction[3]
+            if way == TRACED:
+                return NOT_CONVERGED, 0, limit, limit_bound
             # the turning point lies just beyond: the state asked for is one step away
             goal, direction, way = nested.PLAIN, FLAT, LAST_STEP
             for i in range(len(x)):
                 x[i], y[i] = last_x[i], last_y[i]
             continue
         if solved and unstable == 0:
-            guided = way == WARM or way == COLD
-            if (guided and not guide.strays(y, u)) or (
-                not guided and abs(y[tube[4]] / last_y[tube[4]] - 1.0) < 3.0 * CLIMB_CHANGE
-            ):
+            guided = way <= STEEP
+            if way == TRACED:
+                found = abs(out[0, nested.MIDDLE] - middle) < guide.STRAY * abs(middle - 1.0) + 1e-6
+            elif guided:
+                found = not guide.strays(fine[1, : ((len(x) - 1) << doublings) + 1], u)
+            else:
+                found = abs(y[tube[4]] / last_y[tube[4]] - 1.0) < 3.0 * CLIMB_CHANGE
+            if found:
                 return (OK if status == newton.CONVERGED else INACCURATE), doublings, limit, limit_bound
-        if way == SLOW or way == LAST_STEP:
+        if way == TRACED or (way >= SLOW and not alike):
             return NOT_CONVERGED, 0, limit, limit_bound
-        way = COLD if way == WARM else SLOW
+        way = COLD if way == WARM else STEEP if way == COLD and alike else TRACED if way >= SLOW else SLOW
