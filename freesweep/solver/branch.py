@@ -69,10 +69,23 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     for k in range(places):
         u[k] = 1.0
     limit[0], limit[1] = np.nan, np.nan
+    passed = -1
+    for i in range(
+        len(pressures)
+    ):  # the last state that is done already, and goes on to one that is not, is solved again
+        if status[i] == OK and 0.0 < pressures[i] < np.inf:
+            passed = i
+        elif status[i] == PENDING and pressures[i] < np.inf:
+            if passed >= 0 and places == 1:
+                status[passed] = PENDING
+            break
     for i in range(len(pressures)):
         p = pressures[i]
         if status[i] != PENDING:
-            middle = values[i, 4] if status[i] == OK and p < np.inf else middle
+            if status[i] == OK and 0.0 < p < np.inf and places == 1:  # on the same two legs
+                load = (gamma, rubber, shear, p, f, m, 1.0)
+                if guide.follow(tube, u, before, load, ahead) == 1.0:
+                    before, u[0], middle = load, ahead[0], values[i, 4]
             continue
         slack[i] = 0
         for k in range(5):
