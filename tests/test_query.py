@@ -7,6 +7,7 @@ from grids import FIXED, spec, swept
 
 from freesweep import Actuator, MooneyRivlin, closed_form, inflate, lock, run_sweep, status
 from freesweep.atlas.store import Atlas
+from freesweep.query import box
 from freesweep.query.faults import QueryError
 from freesweep.sweep.spec import parse
 
@@ -134,6 +135,34 @@ def test_one_hole_spoils_nothing_beyond_its_neighbours(atlas):
     for name in STATE:
         bound = before[f"{name}_error"].values + after[f"{name}_error"].values
         assert (abs(before[name].values - after[name].values)[good] <= bound[good]).all(), name
+
+
+@pytest.mark.parametrize("one_by_one", [True, False])
+def test_a_few_points_read_a_part_of_the_grid_and_get_the_same_answer(atlas, monkeypatch, one_by_one):
+    monkeypatch.setattr(box, "SMALL", 0)
+    monkeypatch.setattr(box, "SPARE", 1)
+    monkeypatch.setattr(box, "MARGIN", 3)
+    monkeypatch.setattr(box, "WHOLE", 0)
+    whole, part = atlas, Atlas(atlas.data, atlas.path)
+    points = random_points(12, seed=11, alpha=(-20.0, 20.0), beta=(-55.0, 10.0))
+    points["alpha"][0], points["beta"][0], points["pressure"][1] = 0.0, -60.0, 6e4 * (1.0 + 1e-13)
+    points["beta"][2], points["radius"][3] = -70.0, np.nan
+    asked = [{name: array[k] for name, array in points.items()} for k in range(12)] if one_by_one else [points]
+    for one in asked:
+        try:
+            expected = whole.query(**one, variables=STATE)
+        except QueryError as error:
+            with pytest.raises(QueryError, match=str(error.faults[0])[:20]):
+                part.query(**one, variables=STATE)
+            continue
+        found = part.query(**one, variables=STATE)
+        np.testing.assert_array_equal(found["status"], expected["status"])
+        for name in STATE:
+            gap = abs(found[name] - expected[name])
+            assert not (gap > 1e-3 * expected[f"{name}_error"]).any(), name  # holes are filled from fewer nodes
+    made = part._reader._tables["state"]
+    assert made.whole is None
+    assert not one_by_one or made.read < 0.8 * len(asked) * made.size
 
 
 def test_one_family_alone_is_never_interpolated(atlas):

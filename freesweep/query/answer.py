@@ -67,7 +67,7 @@ class Inquiry:
         table = self.table
         effects = self.effects(name, self.orders())
         rest, noise, beside = np.empty(self.size), np.empty(self.size), np.empty(self.size, bool)
-        args = (table.shape, table.strides, self.pieces, self.shares, self.order, rest, noise, beside)
+        args = (table.knots, table.strides, self.pieces, self.shares, self.order, rest, noise, beside)
         tensor.remainders(table.variable(name).cells, scales, *args)
         if self.method == LINEAR:
             rest += np.abs(effects - self.effects(name, np.zeros(len(table.axes), np.int64)))

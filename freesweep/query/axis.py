@@ -5,7 +5,7 @@ differentiable, local, and a ninth of the error of cubics through four nodes. Th
 pressure (end layers give P^1.5 near zero), the logarithm of a size, else the value itself.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -91,6 +91,27 @@ def make_axis(name: str, values) -> Axis:
             best[others] = _lagrange(nodes[places[others]], nodes[i] + 0.5 * width)
         remainder[i] = best - middle
     return Axis(name, values, kind, nodes, first, left, right, remainder)
+
+
+def part_of(axis: Axis, start, stop) -> Axis:
+    """Nodes ``start`` to ``stop`` of an axis; pieces whose window lies among them keep it, others have one that does."""
+    if stop - start == len(axis.nodes):
+        return axis
+    part = make_axis(axis.name, axis.values[start:stop])
+    kept = np.arange(start, stop - 1)
+    kept = kept[(axis.first[kept] >= start) & (axis.first[kept] + axis.window <= stop)]
+    first, weights = part.first.copy(), [array.copy() for array in (part.left, part.right, part.remainder)]
+    first[kept - start] = axis.first[kept] - start
+    for mine, whole in zip(weights, (axis.left, axis.right, axis.remainder)):
+        mine[kept - start] = whole[kept]
+    return replace(part, first=first, left=weights[0], right=weights[1], remainder=weights[2])
+
+
+def ranks(count) -> np.ndarray:
+    """Which of calibration.RANKS each piece of an axis of ``count`` nodes is; (count,)."""
+    piece = np.arange(count)
+    from_end = count - 2 - piece
+    return np.where((piece < 2) & (piece <= from_end), piece, np.where(from_end < 2, np.minimum(4 - from_end, 4), 2))
 
 
 def _slope(nodes, i, places):

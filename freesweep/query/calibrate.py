@@ -5,7 +5,7 @@ import numpy as np
 from . import calibration, errors
 from .calibration import CLASSES, RANKS
 from .reference import MID_RADIUS
-from .tensor import ROUGH
+from .tensor import RANK, ROUGH
 
 BEYOND = 4e-4  # share of the designs of a class that may need more than its factor
 FEW = 200.0  # factors go beyond what was seen, the more the fewer designs were seen
@@ -78,9 +78,8 @@ def piece_scales(inquiry, name, places, exact):
     if use.sum() < SPEAK or table.family.variables[name] == MID_RADIUS:  # whose estimate is no sum over axes
         return scales
     usual = np.quantile(ratio[use & alone.any(axis=1)], HIGH) if (use & alone.any(axis=1)).any() else 0.0
-    for a, count in enumerate(table.shape):
-        from_end = count - 2 - pieces[:, a]
-        ranks = np.where((pieces[:, a] < 2) & (pieces[:, a] <= from_end), pieces[:, a], np.maximum(4 - from_end, 2))
+    for a in range(len(table.axes)):
+        ranks = table.knots[a, pieces[:, a], RANK]
         for rank in range(RANKS):
             mine = ratio[use & alone[:, a] & (ranks == rank)]
             if len(mine) >= SPEAK and usual > 0.0:

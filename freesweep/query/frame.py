@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from .axis import make_axis
 
 DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "c20": 0.0, "c30": 0.0, "force": 0.0, "torque": 0.0}
 
@@ -32,6 +33,13 @@ class Frame:
         self.energy = data.attrs.get("energy", "full")
         self.accuracy = float(data.attrs.get("accuracy", 1e-6))
         self.title = data.attrs.get("title", "")
+        self._axes = {}
+
+    def axis(self, name):
+        """The :class:`axis.Axis` of a name along which points are told apart."""
+        if name not in self._axes:
+            self._axes[name] = make_axis(name, self.values[name])
+        return self._axes[name]
 
     def varies(self, name) -> bool:
         """Whether a name is an axis along which points are told apart."""

@@ -44,7 +44,7 @@ def measured(data, designs=None) -> dict:
     answered, variables = {}, {}
     count = designs or int(np.clip(data["status"].size // EACH, LEAST, MOST))
     for key, family in FAMILIES.items():
-        names = [name for name in family.variables if name in data]
+        names = sorted((name for name in family.variables if name in data), key=lambda name: name != "mid_radius")
         if key == "limit" or not names or not reader.table(key).names:
             continue
         own = max(count // HELD_SHARE, LEAST_HELD) if key.startswith("blocked") else count
@@ -107,8 +107,7 @@ def _compare(inquiry, name, places, exact, solved, reader):
     allowed = reader.tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
     error = np.where(solved, np.abs(value - exact), np.inf)
     factors = calibrate(error, estimate, bound, size, beside, allowed)._replace(scales=scales)
-    if name != "mid_radius":  # the flags ask for it
-        inquiry.table.forget(name)
+    inquiry.table.forget(name)
     return error, errors.stated(factors, estimate, bound, size, beside), size, allowed, factors
 
 

@@ -11,6 +11,7 @@ from ..status import NOT_INTERPOLABLE, OUTSIDE, status_attributes
 from . import calibration
 from .answer import CUBIC, LINEAR, Inquiry
 from .ask import read_question
+from .box import Parts
 from .family import FAMILIES, FAMILY_OF, IDEAL
 from .faults import QueryError, unknown
 from .frame import Frame
@@ -32,16 +33,19 @@ class Reader:
         self.names = [name for name in data.data_vars if name in FAMILY_OF or name in IDEAL]
         self._tables, self._factors, self._attributes = {}, {}, {}
 
-    def table(self, key) -> Table:
-        """The table of a family of variables."""
+    def table(self, key, values=None) -> Table:
+        """The table of a family of variables; with ``values`` (axis -> (n,)) one that serves to answer at them."""
         if key not in self._tables:
-            self._tables[key] = Table(self.data, self.frame, key)
-        return self._tables[key]
+            some = next(name for name in FAMILIES[key].variables if name in self.frame.dims)
+            names = tuple(name for name in self.frame.dims[some] if self.frame.varies(name))
+            self._tables[key] = Parts(lambda box: Table(self.data, self.frame, key, box), self.frame, names)
+        return self._tables[key].table(values)
 
     def factors(self, name) -> calibration.Factors:
         """What was measured of one variable's stated errors."""
         if name not in self._factors:
-            axes = tuple(axis.name for axis in self.table(FAMILY_OF[name]).axes)
+            names = [axis for axis in self.frame.dims[name] if self.frame.varies(axis)]
+            axes = names + [""] * (2 - sum(axis != "design" for axis in names))  # the kernels' own
             self._factors[name] = calibration.factors(self.data, name, axes)
         return self._factors[name]
 
@@ -77,7 +81,7 @@ class Reader:
         for key in FAMILIES:
             own = [name for name in names if FAMILY_OF.get(name) == key]
             if own:
-                found |= self._in_chunks(self.table(key), values, size, own, method, tolerance)
+                found |= self._in_chunks(self.table(key, values), values, size, own, method, tolerance)
         for name in names:
             if name in IDEAL:
                 found |= ideal_answer(self.frame, name, values)

@@ -32,12 +32,13 @@ def refine_answers(reader, question, names, found) -> None:
 
 def as_points(reader, key, values):
     """Points (n, 15) of one family, as they were asked: ``values`` axis -> (n,)."""
-    inquiry = Inquiry(reader.table(key), {name: values[name] for name in reader.table(key).known})
+    table = reader.table(key, values)
+    inquiry = Inquiry(table, {name: values[name] for name in table.known})
     points = inquiry.points
     exchanged, mirrored = inquiry.marks[:, 5] == 1, inquiry.marks[:, 6] == 1
     points[exchanged, :2] = points[exchanged, 1::-1]
     points[np.ix_(mirrored, TURNED_COLUMNS)] *= -1.0
-    if reader.table(key).family.kind == reference.ROTATION_HELD:
+    if table.family.kind == reference.ROTATION_HELD:
         points[mirrored, reference.HELD] *= -1.0
     return points
 

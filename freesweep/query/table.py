@@ -7,14 +7,14 @@ import numpy as np
 from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
-from .axis import LABEL, WINDOW, make_axis
+from .axis import LABEL, WINDOW, make_axis, part_of, ranks
 from .cells import beside_holes, put_column, roughness, worst_noise
 from .family import FAMILIES
 from .frame import DEFAULTS
 from .grid import LABELS, grid_effects, grid_states
 from .holes import cell_codes, fill, slopes
 from .reference import COLUMNS, UNIFORM
-from .tensor import BESIDE, FIRST, KNOT, LEFT, NODE, NOISE, PLACE, RIGHT, ROUGH, WIDTH, pack_nodes
+from .tensor import BESIDE, FIRST, KNOT, LEFT, NODE, NOISE, PLACE, RANK, RIGHT, ROUGH, WIDTH, pack_nodes
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
@@ -34,17 +34,22 @@ class Table:
     """One family of an atlas over the axes it varies in.
 
     ``names`` are those axes, ``known`` all that the family depends on, fixed values among them. The kernels see two axes of
-    their own where there are fewer. Arrays of variables are made when they are first asked for.
+    their own where there are fewer. Arrays of variables are made when they are first asked for. With a ``box`` (axis ->
+    (first node, last + 1)) the table is that part of the grid, and only it is read.
     """
 
-    def __init__(self, data, frame, key):
+    def __init__(self, data, frame, key, box=None):
         self.data, self.frame = data, frame
         self.family = FAMILIES[key]
         some = next(name for name in self.family.variables if name in frame.dims)
         self.names = tuple(name for name in frame.dims[some] if frame.varies(name))
-        self.axes = [make_axis(name, frame.values[name]) for name in self.names]
+        self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
+        whole = [frame.axis(name) for name in self.names]
+        self.ranks = [ranks(len(axis.nodes))[slice(*self.box[axis.name])] for axis in whole]
+        self.axes = [part_of(axis, *self.box[axis.name]) for axis in whole]
         self.padding = max(0, 2 - sum(axis.kind != LABEL for axis in self.axes))
         self.axes += [make_axis(f"none {k}", [0.0, 1.0]) for k in range(self.padding)]
+        self.ranks += [ranks(2)] * self.padding
         self.shape = np.array([len(axis.nodes) for axis in self.axes], np.int64)
         self.strides = np.array([int(np.prod(self.shape[k + 1 :])) for k in range(len(self.shape))], np.int64)
         self.size = int(np.prod(self.shape))
@@ -87,10 +92,11 @@ class Table:
         self.options = (kind, shear, inner, by_length, self.family.status is not None)
 
     def _packed(self):
-        """What :mod:`tensor` knows of the axes: knots (d, n, KNOT), sizes of the windows and kinds (d,)."""
+        """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`tensor` knows of the axes."""
         knots = np.zeros((len(self.axes), max(len(axis.nodes) for axis in self.axes), KNOT))
-        for own, axis in zip(knots, self.axes):
+        for own, axis, rank in zip(knots, self.axes, self.ranks):
             count = len(axis.nodes)
+            own[:count, RANK] = rank
             own[:count, PLACE], own[: count - 1, WIDTH], own[:count, FIRST] = (
                 axis.nodes,
                 np.diff(axis.nodes),
@@ -103,7 +109,8 @@ class Table:
     def _grid(self, name):
         """A stored variable over the axes of the table (nodes,), the kernels' own axes among them."""
         variable = self.data[name]
-        array = np.asarray(variable.isel({d: 0 for d in variable.dims if d not in self.names}).values)
+        part = {name: slice(*self.box[name]) if name in self.names else 0 for name in variable.dims}
+        array = np.asarray(variable.isel(part).values)
         array = np.broadcast_to(array.reshape(array.shape + (1,) * self.padding), self.shape)
         return np.ascontiguousarray(array).ravel()
 
@@ -180,11 +187,10 @@ class Table:
         """End effects of the stored numbers and their bounds, (nodes,)."""
         stored, errors = self._grid(name), self._bounds(name)
         if self.family.kind == reference.NONE:
-            return np.where(self.is_number(self.codes), stored, np.nan), errors.astype(float)
-        effects, noise = np.empty(len(stored)), np.empty(len(stored))
-        states, strides = self._uniform_states()
-        variable, kind = self.family.variables[name], self.family.kind
-        grid_effects(variable, kind, self._whole_grid(self.shape), states, strides, stored, errors, effects, noise)
+            return np.where(self.is_number(self.codes), stored, np.nan), errors.astype(np.float32)
+        effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
+        kind, args = (self.family.variables[name], self.family.kind), (stored, errors, effects, noise)
+        grid_effects(*kind, self._whole_grid(self.shape), *self._uniform_states(), *args)
         bad = ~self.is_number(self.codes)
         effects[bad], noise[bad] = np.nan, 0.0
         return effects, noise

@@ -1,8 +1,8 @@
 """Tensor cubics on a grid of any number of axes: where a point lies, and the sum over the nodes around it.
 
 The two inner axes carry their slopes beside the values, so a point reads 2 x 2 nodes of four numbers there; the outer axes
-read windows of six nodes. ``knots`` (d, n, 15) holds what is known of each piece of each axis, inner axes last. Kernels take
-whole arrays and places in them: parts of arrays would be counted in and out, which takes longer than the sum.
+read windows of six nodes. ``knots`` (d, n, KNOT) holds what is known of each piece of each axis, inner axes last. Kernels
+take whole arrays and places in them: parts of arrays would be counted in and out, which takes longer than the sum.
 """
 
 import math
@@ -16,8 +16,8 @@ from .rows import ROW, weigh_rows
 INSIDE, BELOW, ABOVE, NO_NUMBER = range(4)
 NOISE, BESIDE, ROUGH = range(3)  # columns of what is known of a cell; one of roughness for each axis
 NODE = ROW // 2  # numbers of a node
-PLACE, WIDTH, FIRST, LEFT, RIGHT = 0, 1, 2, 3, 3 + WINDOW  # columns of knots
-KNOT = 3 + 2 * WINDOW
+PLACE, WIDTH, FIRST, RANK, LEFT, RIGHT = 0, 1, 2, 3, 4, 4 + WINDOW  # columns of knots
+KNOT = 4 + 2 * WINDOW
 SNAP = 1e-12  # of a piece: nearer to a node than rounding of a unit, a point lies on it
 
 
@@ -154,17 +154,8 @@ def pack_nodes(values, slopes, table):
             table[NODE * k + 1 + j] = slopes[j, k]
 
 
-@kernel
-def rank(piece, count):
-    """Which of calibration.RANKS a piece is: the first, the next, one between, the last but one, the last."""
-    from_end = count - 2 - piece
-    if piece < 2 and piece <= from_end:
-        return piece
-    return 4 - from_end if from_end < 2 else 2
-
-
 @entry_point
-def remainders(cells, scales, counts, strides, pieces, shares, order, rests, noise, beside):
+def remainders(cells, scales, knots, strides, pieces, shares, order, rests, noise, beside):
     """Of placed points (n, d): what the next order would add, bounds of what is stored, and 1 beside a hole, (n,) each.
 
     ``cells`` (nodes, 2 + d), ``scales`` (d, RANKS): the measured share of what the next order would add. Between two nodes
@@ -178,7 +169,7 @@ def remainders(cells, scales, counts, strides, pieces, shares, order, rests, noi
         for a in range(len(strides)):
             bubble = 4.0 * shares[k, a] * (1.0 - shares[k, a])
             if bubble > 0.0:  # on a node an unknown roughness says nothing
-                total += cells[cell, ROUGH + a] * bubble * scales[a, rank(pieces[k, a], counts[a])]
+                total += cells[cell, ROUGH + a] * bubble * scales[a, int(knots[a, pieces[k, a], RANK])]
         rests[k], noise[k], beside[k] = total, cells[cell, NOISE], cells[cell, BESIDE]
 
 

@@ -16,7 +16,8 @@ from .records import LIMIT, state
 BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and a few shards
 DESIGN_MEMORY = 80  # [bytes] of each design while a plan is made
 LEAST_MEASURED, MOST_MEASURED = 5_000, 15_000_000  # points of an atlas that measures itself
-MEASURING, POINT_MEMORY = 200_000_000, 80  # [bytes] of its kernels, and of each point in its tables
+MEASURING, POINT_MEMORY = 200_000_000, 110  # [bytes] of its kernels, and of each point in a table
+TWO_TABLES = 5_000_000  # points up to which it makes two at a time
 SHRINKS = 0.9  # of the numbers when they are compressed, at least
 FILE = 1_000_000  # [bytes] of an atlas without its numbers, at most
 MOST_PLANNED = 300_000  # designs that a dry run compares: half a second
@@ -46,7 +47,8 @@ def is_measured(sweep) -> bool:
 
 def memory(sweep) -> int:
     """Bytes of memory, at most."""
-    measuring = MEASURING + POINT_MEMORY * sweep.points if is_measured(sweep) else 0
+    points = max(sweep.points, 2 * min(sweep.points, TWO_TABLES))
+    measuring = MEASURING + POINT_MEMORY * points if is_measured(sweep) else 0
     return BASE_MEMORY + max(DESIGN_MEMORY * max(grids(sweep).values()), measuring)
 
 
