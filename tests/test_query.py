@@ -137,6 +137,24 @@ def test_one_hole_spoils_nothing_beyond_its_neighbours(atlas):
         assert (abs(before[name].values - after[name].values)[good] <= bound[good]).all(), name
 
 
+def test_rubbish_in_a_file_is_never_a_number(atlas):
+    draw, points = np.random.default_rng(3), random_points(300, seed=12)
+    nodes = {name: draw.choice(values, 300) for name, values in AXES.items()}
+    for _ in range(3):
+        data = atlas.data.load().copy(deep=True)
+        for name in ("status", "stable", "slack_fiber", *STATE, *(f"{name}_error" for name in STATE)):
+            array, some = data[name].values, draw.random(data[name].shape) < 0.3
+            rubbish = draw.integers(-128, 128, some.sum()) if array.dtype.kind == "i" else [np.nan, np.inf, -1e30]
+            array[some] = rubbish if len(rubbish) == some.sum() else draw.choice(rubbish, some.sum())
+        holed = Atlas(data, atlas.path)
+        for asked in (points, nodes):
+            found = holed.query(**asked, variables=STATE)
+            valued = found["status"].isin(status.VALUED)
+            for name in STATE:
+                assert (np.isfinite(found[name]) == valued).all(), name
+                assert (found[f"{name}_error"] >= 0.0)[valued].all(), name
+
+
 @pytest.mark.parametrize("one_by_one", [True, False])
 def test_a_few_points_read_a_part_of_the_grid_and_get_the_same_answer(atlas, monkeypatch, one_by_one):
     monkeypatch.setattr(box, "SMALL", 0)

@@ -107,9 +107,10 @@ class Inquiry:
         return self.table.family.variables[name] in LOOSE
 
     def exceeds(self, name, value, error, tolerance):
-        """Where an answer's stated error is too large to be given (nodes are given as they are)."""
+        """Where an answer is no number or its stated error too large to be given (nodes are given as they are)."""
         allowed = tolerance * (10.0 if self.is_loose(name) else 1.0)
-        return ~(error <= allowed * self.natural_size(name, value)) & ~self.exact
+        number = np.isfinite(value) & (error >= 0.0)
+        return ~number | (~(error <= allowed * self.natural_size(name, value)) & ~self.exact)
 
     def flags(self):
         """Flags (n,) by name; a point whose flags cannot be told becomes NOT_INTERPOLABLE."""

@@ -65,6 +65,7 @@ class Interpolator:
         result = tuple(array[0] for array in result) if self.single else result
         return result if gradient else result[0]
 
+    @np.errstate(all="ignore")  # whatever a file holds: what is no number is refused
     def _answer(self, table, flat, own, found, slopes):
         inquiry = Inquiry(table, flat)
         too_large = np.zeros(inquiry.size, bool)

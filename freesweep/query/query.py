@@ -105,6 +105,7 @@ class Reader:
             answers = list(pool.map(one, parts))
         return {name: np.concatenate([answer[name] for answer in answers]) for name in answers[0]}
 
+    @np.errstate(all="ignore")  # whatever a file holds: what is no number is refused
     def _answer_chunk(self, table, values, names, method, tolerance):
         inquiry = Inquiry(table, values, method)
         flags = inquiry.flags()

@@ -162,6 +162,7 @@ class Table:
             self._variables[name] = self._interpolant(name)
         return self._variables[name]
 
+    @np.errstate(all="ignore")  # whatever a file holds
     def _interpolant(self, name):
         effects, noise = self._end_effects(name)
         bad = ~np.isfinite(effects)
@@ -176,11 +177,11 @@ class Table:
         del along
         kept = np.flatnonzero(~self.labels)
         extents = [(int(self.shape[a]), int(self.strides[a])) for a in kept]
-        cells = np.zeros((len(effects), ROUGH + len(self.axes)), np.float32)
+        cells, firsts = np.zeros((len(effects), ROUGH + len(self.axes)), np.float32), [self.axes[a].first for a in kept]
         put_column(worst_noise(noise, extents), NOISE, cells)
-        put_column(beside_holes(bad, extents, [self.axes[a].first for a in kept]), BESIDE, cells)
+        put_column(beside_holes(bad, extents, firsts), BESIDE, cells)
         for k, a in enumerate(kept):
-            put_column(roughness(effects, extents, k, self.axes[a].first, self.axes[a].remainder), ROUGH + a, cells)
+            put_column(roughness(effects, extents, k, firsts[k], self.axes[a].remainder), ROUGH + a, cells)
         return Interpolant(table, cells)
 
     def _end_effects(self, name):
