@@ -32,7 +32,9 @@ class Factors(NamedTuple):
 
 def cautious(count) -> Factors:
     """Factors of a variable over ``count`` axes that was not measured."""
-    return Factors(np.full((2, CLASSES), UNMEASURED), 1.0, np.ones((count, RANKS)))
+    return Factors(
+        np.full((2, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS))
+    )  # bounds hold as they are
 
 
 def factors(data, name, axes=()) -> Factors:
