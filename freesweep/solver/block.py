@@ -5,7 +5,7 @@ import numpy as np
 from ..jit import entry_point
 from . import guide, lagrangian, nested
 from .branch import FORCE, GAMMA, LENGTH, TORQUE
-from .hold import HELD_LENGTH, find
+from .hold import HELD_LENGTH, find_on_some_mesh, workspace
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK
 
 
@@ -20,13 +20,8 @@ def block_many(
     while its length is held, its force while its rotation is. At zero pressure only the undeformed state is held.
     """
     base = edges[len(edges) - 1]
-    size = (base << nested.MAX_DOUBLINGS) + 2
     varying = course.shape[0] > 0
-    cells = np.zeros((size if varying else 1, 3))
-    space = (
-        np.zeros((5, size)), np.zeros((13, 2 * size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
-        np.zeros((5, size)), np.zeros((2, base + 1)), np.zeros((3, 2 * size)),
-    )  # fmt: skip
+    space, cells = workspace(base, varying)
     out = np.zeros((4, nested.OUTPUTS))
     own_course = course if varying else np.zeros((1, 1, 3, 4))
     own_places = places.copy() if varying else np.zeros(2)
@@ -56,8 +51,7 @@ def block_many(
                 if undeformed:
                     values[row], bounds[row], stable[row] = 0.0, 0.0, 1
             elif turns:
-                tube[0][:] = own_course  # a march leaves it changed
-                found, unstable, _, _, _ = find(
+                found, unstable, _, _, _, _ = find_on_some_mesh(
                     problems[k], p, other, targets[k] if varying else 0.5 * targets[k], kind, False, own_course, tube,
                     accuracy, space, out,
                 )  # fmt: skip

@@ -139,7 +139,7 @@ def climb(x, y, tube, start, end, flat, work):
                 target = hold(lagrangian.conjugate, x, y, n, own, loaded(start, direction, mu), direction, work[8])
             status, unstable, mu, sigma = solve_held(
                 lagrangian.density, lagrangian.conjugate, x, y, n, free, own, start, direction, mu, target, TOLERANCE,
-                work,
+                newton.MAX_ITERATIONS, work,
             )  # fmt: skip
         solved = status == newton.CONVERGED
         if solved and (sigma <= 0.0 or unstable > 0 or (stepping and mu < kept_mu)):

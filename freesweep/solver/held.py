@@ -65,8 +65,9 @@ def hold(conjugate, x, y, n, cells, load, direction, b):
 
 
 @kernel
-def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work):
-    """Newton for ``y`` (in place) and the multiplier ``mu`` of ``direction``, with the conjugate integral held.
+def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, iterations, work):
+    """Newton, at most so many ``iterations``, for ``y`` (in place) and the multiplier ``mu`` of ``direction``, with the
+    conjugate integral held.
 
     Returns ``(status, unstable directions that keep the integral, mu, sigma)``; ``work[9]`` is left with the change of y
     per unit of mu. ``direction`` is to be scaled so that mu is of order 1.
@@ -78,11 +79,11 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
         trial[i] = y[i]
         least[i] = 0.0
     size, before, rate, fraction, change, sigma = 1e300, 1e300, UNKNOWN, 0.0, 0.0, 0.0
-    iterations, halvings = 0, 0
-    while iterations < MAX_ITERATIONS and halvings < MAX_HALVINGS:
+    made, halvings = 0, 0
+    while made < iterations and halvings < MAX_HALVINGS:
         now = loaded(load, direction, mu + fraction * change)
         if not assemble(density, x, trial, n, cells, now, False, least, room, g, d, e):
-            if iterations == 0:
+            if made == 0:
                 return INFEASIBLE, 0, mu, 0.0
             fraction *= 0.5
             halvings += 1
@@ -119,7 +120,7 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
             for i in range(n + 1):
                 y[i] = trial[i]
             return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu + change, sigma
-        fraction, halvings, iterations = 1.0, 0, iterations + 1
+        fraction, halvings, made = 1.0, 0, made + 1
     return STALLED, 1, mu, 0.0
 
 
@@ -153,7 +154,7 @@ def turning_point(density, conjugate, x, y, n, free, cells, load, direction, mu,
     near_y, near_response, first_y = work[10], work[11], work[12]
     target = hold(conjugate, x, y, n, cells, loaded(load, direction, mu), direction, work[8])
     status, _, mu, sigma = solve_held(
-        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work
+        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, MAX_ITERATIONS, work
     )
     if status != CONVERGED:
         return status, mu
@@ -170,7 +171,7 @@ def turning_point(density, conjugate, x, y, n, free, cells, load, direction, mu,
         for i in range(n + 1):
             y[i] = near_y[i] + step * near_response[i]
         found, unstable, mu, sigma = solve_held(
-            density, conjugate, x, y, n, free, cells, load, direction, near_mu, target, tolerance, work
+            density, conjugate, x, y, n, free, cells, load, direction, near_mu, target, tolerance, MAX_ITERATIONS, work
         )
         slope = 1.0 / sigma
         gain = MOST_GAIN * max(abs(slope), abs(near_slope)) * abs(step) + ROUNDING_GAIN * max(1.0, abs(near_mu))
@@ -227,6 +228,6 @@ def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target,
                 y[i] = work[12, i]
         return status, 0, mu
     status, unstable, mu, _ = solve_held(
-        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, work
+        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, MAX_ITERATIONS, work
     )
     return status, unstable, mu
