@@ -80,7 +80,8 @@ def blocked_torque(
 
 
 def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False):
-    from .solver.hold import HELD_LENGTH, HELD_ROTATION, hold_many
+    from .solver.find import HELD_LENGTH, HELD_ROTATION
+    from .solver.hold import hold_many
     from .solver.profile import FIELDS
 
     faults = []

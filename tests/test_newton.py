@@ -239,7 +239,7 @@ def test_holding_the_conjugate_integral_stabilises_the_upper_branch(strength, pa
     work = np.zeros((13, len(x)))
     target = held.hold(conjugate, x, y, len(x) - 1, cells, load, ALONG_MU, work[8])
     status, unstable, mu, sigma = held.solve_held(
-        density, conjugate, x, y, len(x) - 1, True, cells, REST, ALONG_MU, 0.9 * strength, target, 1e-12, work
+        density, conjugate, x, y, len(x) - 1, True, cells, REST, ALONG_MU, 0.9 * strength, target, 1e-12, 60, work
     )
     assert (status, unstable) == (newton.CONVERGED, 0)
     assert mu == pytest.approx(strength, rel=1e-4)

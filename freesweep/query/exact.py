@@ -93,7 +93,8 @@ def _free(rows, pressure, most, accuracy):
 
 def _held(kind, rows, own, accuracy):
     """Held states, one design after the other; at zero pressure nothing has to be held."""
-    from ..solver.hold import HELD_LENGTH, HELD_ROTATION, hold_many
+    from ..solver.find import HELD_LENGTH, HELD_ROTATION
+    from ..solver.hold import hold_many
     from ..solver.status import HELD_IMPOSSIBLE
 
     count = len(rows)

@@ -5,7 +5,8 @@ import numpy as np
 from ..jit import entry_point
 from . import guide, lagrangian, nested
 from .branch import FORCE, GAMMA, LENGTH, TORQUE
-from .hold import HELD_LENGTH, find_on_some_mesh, workspace
+from .find import HELD_LENGTH
+from .hold import find_on_some_mesh, workspace
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK
 
 

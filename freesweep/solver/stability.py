@@ -4,10 +4,13 @@ from ..jit import kernel
 from . import held, lagrangian, newton
 from .course import fill
 
+ROUNDING = 4e-15  # of the sum over a fine mesh
+
 
 @kernel
-def unstable_directions(x, y, n, base, tube, load, direction, full, work):
-    """Directions, symmetric or not, in which the energy falls while the held integral stays.
+def unstable_directions(x, y, n, base, tube, load, direction, held_size, full, work):
+    """Directions, symmetric or not, in which the energy falls while the held integral stays; and by how much the rounding
+    of that integral, of size ``held_size`` but for what changes with y, moves its multiplier.
 
     ``full`` is scratch of shape (3, > 2 n), for the whole tube where only half of it was solved.
     """
@@ -26,6 +29,8 @@ def unstable_directions(x, y, n, base, tube, load, direction, full, work):
     held.hold(lagrangian.conjugate, full[0], full[1], count, own, load, direction, b)
     newton.substitute(inverse, e, 1, count - 1, b, response)
     sigma = 0.0
+    size = held_size
     for i in range(1, count):
         sigma += b[i] * response[i]
-    return negative - (1 if sigma < 0.0 else 0)
+        size += abs(b[i])
+    return negative - (1 if sigma < 0.0 else 0), ROUNDING * size / abs(sigma)

@@ -44,7 +44,7 @@ def _solve_free(_, problems, __, first, pressures, tube, accuracy):
 
 def _solve_held(kind, problems, targets, first, pressures, tube, accuracy):
     from ..solver.block import block_many
-    from ..solver.hold import HELD_LENGTH, HELD_ROTATION
+    from ..solver.find import HELD_LENGTH, HELD_ROTATION
 
     count = len(pressures)
     values, bounds = np.empty(count), np.empty(count)
