@@ -184,7 +184,7 @@ def solve(
         if level >= 3:
             out[2], out[3] = scales(row, now, x[n] - x[0], tolerance)
             if goal == HELD:  # the multiplier counts in units of its direction
-                unit = max(abs(direction[4]), abs(direction[5]))
+                unit = max(abs(direction[3]), max(abs(direction[4]), abs(direction[5])))
                 out[2, MULTIPLIER] /= max(unit, 1.0)
                 out[3, MULTIPLIER] /= unit
             if extrapolate(table, level, out[2], out[3], out[0], out[1]) <= accuracy:
