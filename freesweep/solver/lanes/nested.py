@@ -1,6 +1,7 @@
 """Nested meshes of :mod:`freesweep.solver.nested` for a vector of designs: the same values, the same bounds.
 
-A lane whose bounds meet the accuracy keeps its numbers; the others go on to finer meshes. A lane that needs more than
+Three meshes suffice where a generous bound meets the accuracy: the change between two extrapolations, times EARLY. A lane
+whose bounds meet the accuracy keeps its numbers; the others go on to finer meshes. A lane that needs more than
 ``LANE_DOUBLINGS``, or fails, is left to the scalar kernels.
 """
 
@@ -15,7 +16,7 @@ from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
 MIDDLE = 4
 LANE_DOUBLINGS = 6  # of the base mesh
-STEP_SHARE = 1e-4  # of the accuracy: what Newton's last step may leave; what it does leave is in the bounds
+LARGEST_TOLERANCE = 1e-7  # of Newton's last step; what it leaves is in the bounds
 EARLY = 2.0  # of the change between two extrapolations: a bound of the second one, generous as no third one confirms it
 
 
@@ -122,7 +123,8 @@ def solve(x, y, n, cell, load, length, active, accuracy, meshes, work, table, si
     takes their finest meshes as :func:`profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
     fibers would have to push, beta fibers would)``.
     """
-    tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
+    # the energy at a low pressure is little beside the work whose error it takes: more than the accuracy of the rest
+    tolerance = max(min(accuracy * accuracy, LARGEST_TOLERANCE), SMALLEST_TOLERANCE)
     density, integrands = lagrangian.density, lagrangian.integrands
     todo = active
     converged, error = newton.solve(density, x, y, n, True, cell, load, todo, y, True, SMALL_STEP, tolerance, work)
@@ -172,18 +174,19 @@ def solve(x, y, n, cell, load, length, active, accuracy, meshes, work, table, si
             converged, error = converged | again, select(again, last, error)
         todo = todo & converged
         integrate(here_x, here_y, count, cell, load, table[level])
-        if level >= 2:
-            largest = extrapolate(table, level, load, length, max(error, coarser), sizes, found[0], found[1])
-            ready = todo & (largest <= accuracy)
-            for k in range(OUTPUTS):
-                put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
-                put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
-            if some(ready):
-                alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
-                alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
-                if len(kept) > 0:
-                    keep(bits(ready), count, half_x, half_y, here_x, here_y, kept)
-                    for lane in range(WIDTH):
-                        doublings[lane] = level - 1 if (bits(ready) >> lane) & 1 else doublings[lane]
-            met, todo = met | ready, todo & ~ready
+        if level == 2 and len(kept) > 0:
+            continue  # profiles have no bounds of their own: they keep to the finer mesh
+        largest = extrapolate(table, level, load, length, max(error, coarser), sizes, found[0], found[1])
+        ready = todo & (largest <= accuracy)
+        for k in range(OUTPUTS):
+            put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
+            put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
+        if some(ready):
+            alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
+            alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
+            if len(kept) > 0:
+                keep(bits(ready), count, half_x, half_y, here_x, here_y, kept)
+                for lane in range(WIDTH):
+                    doublings[lane] = level - 1 if (bits(ready) >> lane) & 1 else doublings[lane]
+        met, todo = met | ready, todo & ~ready
     return met, alpha, beta
