@@ -6,9 +6,10 @@ L_y and L_yy are linear in pressure, force and torque: their values at the two e
 from ...jit import kernel
 from .. import lagrangian
 from ..guide import STRAY
-from ..uniform import FIRST_STEP, ITERATIONS, LARGEST_CHANGE, SCAN, between
+from ..uniform import ITERATIONS, LARGEST_CHANGE, SCAN, between
 from .vector import HUGE, get, mask_of, select, some, spread
 
+FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
 SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernels
 
 
