@@ -402,3 +402,17 @@ def test_turning_point_that_no_rough_mesh_finds():
     exact = solve(Tubes(*(np.array([number]) for number in given)), np.array([0.6]))
     assert np.all(np.abs(below.values[1] - exact.values[0]) <= below.bounds[1] + 10 * exact.errors[0])
     assert limit == pytest.approx(3.1081, abs=1e-3)
+
+
+def test_a_tube_that_torque_draws_in_lets_go_at_one_pressure_whatever_the_list():
+    """Its clamped ends let go at 1.555, where the uniform tube still swells slowly: a guide that would lead past the limit."""
+    drawn = tube(53.64526, -43.69847, 3.21144, 0.07825 * 2.07825, 0.253916, "principal", f=1.055777, m=1.048992)
+    lists = ([0.006176, 1.430731, 9.341646], np.linspace(0.006176, 9.341646, 40), np.linspace(0.006176, 3.0, 200))
+    for pressures in lists:
+        for lanes in (True, False):
+            walks = one(drawn, *pressures, lanes=lanes)
+            limit, bound = walks.limits[0]
+            assert abs(limit - 1.5552888) < bound + 1e-7
+            beyond = np.asarray(pressures) > limit
+            assert np.all(walks.status == np.where(beyond, BEYOND_LIMIT, OK))
+            assert np.all(walks.values[~beyond, 4] < 0.3)

@@ -28,10 +28,11 @@ def cell_along(tube, share):
 @kernel
 def follow(tube, u, before, load, ahead):
     """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached."""
-    reached = 1.0
+    places = tube[5]
+    reached, half = 1.0, (1.0 if tube[3] else 0.5) * places[len(places) - 1]
     for k in range(len(u)):
         cell = cell_along(tube, k / max(len(u) - 1, 1))
-        ahead[k], part = uniform.follow(lagrangian.density, u[k], cell, before, load)
+        ahead[k], part = uniform.follow(lagrangian.density, u[k], cell, before, load, half)
         reached = min(reached, part)
     return reached
 

@@ -11,6 +11,7 @@ SMALLEST_STEP = 1e-7  # below it the path is taken to end in a turning point
 LARGEST_CHANGE = 0.15  # relative change of the stretch in one step; a jump to another branch is larger
 ITERATIONS = 12
 SCAN = 0.015  # relative change of the stretch between two looks at the slope
+DRAWN_IN, FAR = 0.05, 8.0  # 1 - u from which, end layers per half tube up to which, clamped ends may turn the tube back
 
 
 @kernel
@@ -28,8 +29,9 @@ def between(start, end, t):
 
 
 @kernel
-def rising(density, u, trial, cell, start, end):
-    """Whether the load rises all the way from ``u`` to ``trial``: no small snap was passed over.
+def rising(density, u, trial, cell, start, end, half):
+    """Whether the load rises all the way from ``u`` to ``trial``: no small snap was passed over. Where half a tube of length
+    ``half`` is drawn in, its clamped end, which is not, may let go before: there the end has to be far.
 
     L_y is linear in pressure, force and torque, so the fraction t of the way at which a stretch is an equilibrium, and its
     slope dt/du, are explicit; a dip of the slope below zero between samples shows in the parabola through three of them.
@@ -42,7 +44,9 @@ def rising(density, u, trial, cell, start, end):
         here = u + (trial - u) * i / count
         before = density(here, 0.0, cell, start)[1]
         drive = density(here, 0.0, cell, end)[1] - before
-        L_yy = density(here, 0.0, cell, between(start, end, -before / drive))[3]
+        _, _, _, L_yy, _, L_vv = density(here, 0.0, cell, between(start, end, -before / drive))
+        if here < 1.0 - DRAWN_IN and not L_yy * half * half < FAR * FAR * L_vv:
+            return False
         slope = -L_yy / drive * (1.0 if trial > u else -1.0)
         if not slope > 0.0:
             return False
@@ -55,7 +59,7 @@ def rising(density, u, trial, cell, start, end):
 
 
 @kernel
-def follow(density, u, cell, start, end):
+def follow(density, u, cell, start, end, half):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the fraction reached (1: all)."""
     t, step = 0.0, FIRST_STEP
     while t < 1.0:
@@ -74,7 +78,7 @@ def follow(density, u, cell, start, end):
                 arrived = True
                 break
             before = abs(change)
-        if arrived and rising(density, u, trial, cell, start, end):
+        if arrived and rising(density, u, trial, cell, start, end, half):
             t, u, step = ahead, trial, 2.0 * step
         else:
             step *= 0.5

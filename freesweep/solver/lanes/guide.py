@@ -6,7 +6,7 @@ L_y and L_yy are linear in pressure, force and torque: their values at the two e
 from ...jit import kernel
 from .. import lagrangian
 from ..guide import STRAY
-from ..uniform import ITERATIONS, LARGEST_CHANGE, SCAN, between
+from ..uniform import DRAWN_IN, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, between
 from .vector import HUGE, get, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
@@ -14,7 +14,7 @@ SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernel
 
 
 @kernel
-def rising(u, trial, cell, start, end, asked):
+def rising(u, trial, cell, start, end, half, asked):
     """Where the load rises all the way from ``u`` to ``trial``: see :func:`uniform.rising`."""
     change = trial - u
     still = (abs(change) < 1e-9 * u) | (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
@@ -28,9 +28,13 @@ def rising(u, trial, cell, start, end, asked):
         if not some(within):
             break
         share = min(i / samples, 1.0)
-        _, L_y, _, L_yy, _, _ = lagrangian.density(u + change * share, 0.0, cell, start)
-        _, end_y, _, end_yy, _, _ = lagrangian.density(u + change * share, 0.0, cell, end)
+        here = u + change * share
+        _, L_y, _, L_yy, _, L_vv = lagrangian.density(here, 0.0, cell, start)
+        _, end_y, _, end_yy, _, end_vv = lagrangian.density(here, 0.0, cell, end)
         drive = end_y - L_y
+        t = -L_y / drive
+        far = (L_yy + t * (end_yy - L_yy)) * half * half < FAR * FAR * (L_vv + t * (end_vv - L_vv))
+        risen = risen & (~within | far | (here > 1.0 - DRAWN_IN))
         slope = -(L_yy - L_y / drive * (end_yy - L_yy)) / drive * ahead
         risen = risen & (~within | (slope > 0.0))
         if i >= 2:
@@ -44,7 +48,7 @@ def rising(u, trial, cell, start, end, asked):
 
 
 @kernel
-def follow(u, cell, start, end, asked):
+def follow(u, cell, start, end, half, asked):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the lanes that arrived."""
     t, step = spread(0.0), spread(FIRST_STEP)
     todo, done = asked, mask_of(0)
@@ -63,7 +67,7 @@ def follow(u, cell, start, end, asked):
             arrived, going, before = arrived | there, going & ~there, size
             if not some(going):
                 break
-        arrived = rising(u, trial, cell, start, end, arrived) & arrived
+        arrived = rising(u, trial, cell, start, end, half, arrived) & arrived
         t, u = select(arrived, ahead, t), select(arrived, trial, u)
         step = select(arrived, 2.0 * step, 0.5 * step)
         done = done | (todo & (t >= 1.0))

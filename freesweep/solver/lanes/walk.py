@@ -70,7 +70,9 @@ def carry_lanes(problems, first, pressures, order, constants, values, bounds, st
             if active == 0:
                 continue
             cell, before, now = loads(columns, constants)
-            ahead, arrived = guide.follow(u, cell, first_leg(before, mask_of(active & ~started)), now, mask_of(active))
+            ahead, arrived = guide.follow(
+                u, cell, first_leg(before, mask_of(active & ~started)), now, get(columns, HALF), mask_of(active)
+            )
             u = select(arrived, ahead, u)
             put(columns, BEFORE, select(arrived, now[3], get(columns, BEFORE)))
             put(found, 0, ahead)
