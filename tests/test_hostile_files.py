@@ -19,7 +19,7 @@ from freesweep.sweep.spec import parse
 SECONDS, MEMORY = 5.0, 600e6  # of one file; of all of them [bytes]
 
 CHILD = """
-import json, resource, sys, time
+import json, os, resource, sys, time
 from freesweep.atlas.store import AtlasError, open_atlas
 from freesweep.verify import faults
 resource.setrlimit(resource.RLIMIT_CPU, (120, 120))
@@ -33,6 +33,9 @@ for path in sys.stdin.read().splitlines():
     said = [refusal(path), "; ".join(faults(path))]
     took = time.process_time() - begun
     memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    if os.path.exists("/proc/self/status"):  # on Linux ru_maxrss counts the parent's before exec
+        with open("/proc/self/status") as file:
+            memory = 1024 * int(next(line.split()[1] for line in file if line.startswith("VmHWM")))
     print(json.dumps([path, *said, took, memory]), flush=True)
 """
 

@@ -227,9 +227,10 @@ def test_one_writer_at_a_time(reference, tmp_path):
 
 
 CHILD = """
-import os, sys, threading, time
+import os, signal, sys, threading, time
 from freesweep.cli import main
 from freesweep.sweep import run
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a shell runs in the background
 run.SHARD_EQUILIBRIA, solve = 6, run.solve_shard
 def slow(job, accuracy):
     if len(job.problems):
