@@ -405,7 +405,7 @@ def test_turning_point_that_no_rough_mesh_finds():
 
 
 def test_a_tube_that_torque_draws_in_lets_go_at_one_pressure_whatever_the_list():
-    """Its clamped ends let go at 1.555, where the uniform tube still swells slowly: a guide that would lead past the limit."""
+    """Its clamped ends let go at 1.555; the uniform tube swells on without a limit, and would lead past it."""
     drawn = tube(53.64526, -43.69847, 3.21144, 0.07825 * 2.07825, 0.253916, "principal", f=1.055777, m=1.048992)
     lists = ([0.006176, 1.430731, 9.341646], np.linspace(0.006176, 9.341646, 40), np.linspace(0.006176, 3.0, 200))
     for pressures in lists:

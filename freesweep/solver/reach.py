@@ -10,6 +10,7 @@ from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK
 COLD_REGRADES, WARM_REGRADES = 3, 1
 WARM, COLD, STEEP, SLOW, LAST_STEP, TRACED = 0, 1, 2, 3, 4, 5
 CAUTION = 10.0  # times the bounds of shapes so steep: their errors fall to fourth order only on finer meshes
+LIMIT_ROUNDING = 4e-9  # of a limit pressure: where a load is flat, many shapes are equilibria to rounding
 TRACED_ERROR = 0.02  # of the way to a turning point that was traced only
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -105,7 +106,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 continue
             if out[0, nested.MULTIPLIER] < 1.0:
                 limit = start[3] + out[0, nested.MULTIPLIER] * direction[3]
-                return BEYOND_LIMIT, 0, limit, out[1, nested.MULTIPLIER] * direction[3]
+                return BEYOND_LIMIT, 0, limit, abs(out[1, nested.MULTIPLIER] * direction[3]) + LIMIT_ROUNDING * limit
             if way == TRACED:
                 return NOT_CONVERGED, 0, limit, limit_bound
             # the turning point lies just beyond: the state asked for is one step away
