@@ -80,6 +80,7 @@ def blocked_torque(
 
 
 def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False):
+    from .interpret import at_once
     from .solver.find import HELD_LENGTH, HELD_ROTATION
     from .solver.hold import hold_many
     from .solver.profile import FIELDS
@@ -114,11 +115,13 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     codes, stable, slack = (np.empty(count, np.int64) for _ in range(3))
     fields = np.empty((count, FIELDS, len(unique)))
     held_is_length = held_name == "deformed_length"
-    hold_many(
+    arguments = (
         row, pressures / c10, others / (np.pi * r ** (3 if held_is_length else 2) * c10),
         targets / r if held_is_length else np.radians(targets), HELD_LENGTH if held_is_length else HELD_ROTATION, buckled,
         course, edges, places, float(accuracy), values, bounds, codes, stable, slack, unique, fields,
     )  # fmt: skip
+    if not at_once(count, hold_many, hold_many, *arguments):
+        hold_many(*arguments)
     scale = np.pi * r ** (2 if held_is_length else 3) * c10
     found = {
         "status": codes.reshape(shape),

@@ -31,14 +31,14 @@ def source_hash(room: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def _cache_folder(room: str) -> str:
+def cache_folder(room: str) -> str:
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return str(Path(base) / "freesweep" / "kernels" / f"{room}-{source_hash(room)}")
 
 
 def is_compiled(room: str) -> bool:
     """Whether machine code of a room's very sources lies on disk."""
-    return any(Path(_cache_folder(room)).rglob("*.nbc"))
+    return any(Path(cache_folder(room)).rglob("*.nbc"))
 
 
 def kernel(function):
@@ -54,7 +54,7 @@ def inlined(function):
 def entry_point(function):
     """Compile a kernel that Python calls, and keep its machine code on disk."""
     before = config.CACHE_DIR
-    config.CACHE_DIR = _cache_folder(function.__module__.split(".")[1])
+    config.CACHE_DIR = cache_folder(function.__module__.split(".")[1])
     try:
         return numba.njit(cache=True, **_POLICY)(function)
     except RuntimeError:  # no folder can be written here: compile anew in each process

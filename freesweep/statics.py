@@ -74,7 +74,7 @@ def _solve(tube, loads, stations, accuracy):
     unique, index = near_stations(tube, stations, tube.varies)
     first = np.arange(count + 1, dtype=np.int64) * steps
     pressures = np.tile(pressure[order] / tube.material.c10, count)
-    walks = walk_all(rows, first, pressures, course, float(accuracy), unique)
+    walks = walk_all(rows, first, pressures, course, float(accuracy), unique, soon=True)
 
     back = np.argsort(order)
 

@@ -86,13 +86,16 @@ def _free(rows, pressure, most, accuracy):
     steps = 1 if most is None else 2
     pressures = pressure if most is None else np.column_stack([pressure, np.maximum(most, pressure)]).ravel()
     first = steps * np.arange(count + 1, dtype=np.int64)
-    walks = walk_all(np.ascontiguousarray(rows), first, np.ascontiguousarray(pressures), uniform(CELLS), accuracy)
+    walks = walk_all(
+        np.ascontiguousarray(rows), first, np.ascontiguousarray(pressures), uniform(CELLS), accuracy, soon=True
+    )
     own = slice(0, None, steps)
     return walks.values[own], walks.bounds[own], walks.status[own], walks.slack[own], walks.limits
 
 
 def _held(kind, rows, own, accuracy):
     """Held states, one design after the other; at zero pressure nothing has to be held."""
+    from ..interpret import at_once
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold import hold_many
     from ..solver.status import HELD_IMPOSSIBLE
@@ -116,11 +119,13 @@ def _held(kind, rows, own, accuracy):
         course[0, 0, :, 0] = rows[k, :3]
         value, bound = np.empty((1, 6)), np.empty((1, 6))
         code, safe, loose = (np.empty(1, np.int64) for _ in range(3))
-        hold_many(
+        arguments = (
             rows[k], np.array([one["pressure"] / c10]), np.array([other]), np.array([target]),
             HELD_LENGTH if length else HELD_ROTATION, False, course, np.array([0, CELLS]),
             np.array([0.0, 0.5 * one["length"] / r]), accuracy, value, bound, code, safe, loose, np.empty(0),
             np.empty((1, 7, 0)),
         )  # fmt: skip
+        if not at_once(1, hold_many, hold_many, *arguments):
+            hold_many(*arguments)
         values[k], bounds[k], codes[k], stable[k] = value[0, 5], bound[0, 5], code[0], safe[0]
     return values, bounds, codes, slack, stable

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import config
 
+from ..interpret import at_once
 from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, walk_many
 from .profile import FIELDS
 from .status import PENDING
@@ -29,20 +30,24 @@ def uniform(cells):
     return np.empty((0, 1, 3, 4)), np.array([0, cells]), np.zeros(2)
 
 
-def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes=True) -> Walks:
+def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes=True, soon=False) -> Walks:
     """Walk each problem along its pressures; arguments as of :func:`branch.walk_many`, ``tube`` its (course, edges, places).
 
     Vectors of designs serve where tubes do not vary. Their numbers do not depend on which
     designs share a vector; those of the scalar kernels alone (``lanes=False``) differ by less than the bounds.
+    ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     uniform_tubes, count, base = len(tube[0]) == 0, len(pressures), int(tube[1][-1])
     found = Walks(
         np.full((count, OUTPUTS), np.nan), np.full((count, OUTPUTS), np.nan), np.full(count, PENDING, np.int64),
         np.zeros(count, np.int64), np.full((len(problems), 2), np.nan), np.full((count, FIELDS, len(stations)), np.nan),
     )  # fmt: skip
+    scalar = (problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles)
     if lanes and uniform_tubes and not config.DISABLE_JIT:
         from .lanes.walk import carry_lanes, solve_lanes
 
+        if soon and at_once(count, solve_lanes, walk_many, *scalar):
+            return found
         # what shares a vector should need much the same work: as many pressures, as steep ends
         steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
         owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
@@ -58,5 +63,6 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
             )  # fmt: skip
         if not np.any(found.status == PENDING):
             return found
-    walk_many(problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles)
+    if not (soon and at_once(count, walk_many, walk_many, *scalar)):
+        walk_many(*scalar)
     return found

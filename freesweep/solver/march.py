@@ -74,7 +74,8 @@ def march(x, y, tube, course, cell, blending, start, end, share, direction, mu, 
         solved = status == newton.CONVERGED and drift < min(most, LARGEST_STEP_CHANGE)
         if solved and (unstable <= allowed or drift < STILL):
             middle, before = 0.5 * (t + ahead), slowness
-            slowness = ((ahead - t) / max(drift, 1e-300)) ** 2
+            slowness = (ahead - t) / max(drift, 1e-300)
+            slowness *= slowness
             if slowness < before:
                 turn = middle + slowness * (middle - at) / (before - slowness)
             t, at, step, kept_mu = ahead, middle, (1.6 if drift < 0.5 * LARGEST_STEP_CHANGE else 1.0) * step, mu

@@ -1,0 +1,98 @@
+"""The first states of a process without machine code: plain Python, the same numbers, nothing compiled."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import freesweep as fs
+from freesweep import interpret, jit
+
+ROOT = Path(__file__).parent.parent
+
+
+def first_states():
+    """A loaded tube, a locked one and a held one: numbers and error bounds."""
+    rubber = fs.MooneyRivlin(c10=3e5, c01=1e5)
+    tube = fs.Actuator(alpha=30, beta=-40, length=0.2, radius=5e-3, wall=1e-3, material=rubber, fiber_extension=1.004)
+    loaded, locked, held = fs.inflate(tube, [5e4, 1e5], 1.0), fs.lock(tube), fs.blocked_force(tube, 1e5)
+    return [
+        [*dataset[name].values.ravel(), *dataset[f"{name}_error"].values.ravel()]
+        for dataset, name in ((loaded, "deformed_length"), (locked, "rotation"), (held, "force"))
+    ]
+
+
+@jit.kernel
+def inverse(number):
+    return 1.0 / number
+
+
+def invert(numbers):
+    for i in range(len(numbers)):
+        numbers[i] = inverse(numbers[i])
+
+
+invert.__module__ = "freesweep.solver.invert"  # kernels live in a room
+
+
+@pytest.fixture
+def entry(monkeypatch, tmp_path):
+    """A fresh installation, and an entry point."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(interpret, "_left", [interpret.FEW])
+    return jit.kernel(invert)
+
+
+def test_first_states_of_a_fresh_installation_need_no_compiler(tmp_path):
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
+    script = (
+        "import json, sys; sys.path.insert(0, 'tests'); import test_interpret;"
+        " print(json.dumps(test_interpret.first_states()))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, env=environment, capture_output=True, text=True, check=True
+    )
+    assert not any(tmp_path.rglob("*.nbc"))
+    assert not done.stderr
+    for plain, compiled in zip(json.loads(done.stdout), first_states()):
+        count = len(plain) // 2
+        np.testing.assert_array_less(np.abs(np.subtract(plain, compiled))[:count], compiled[count:])
+        assert 0.0 < max(plain[count:]) < 1e-5 * max(plain[:count])
+
+
+def test_plain_python_computes_what_the_machine_code_does(entry):
+    numbers = np.array([1.0, 3.0])
+    assert interpret.at_once(2, entry, entry, numbers)
+    assert not entry.signatures
+    np.testing.assert_array_equal(numbers, [1.0, 1.0 / 3.0])
+
+
+def test_an_error_of_plain_python_leaves_everything_as_it_was(entry):
+    def fails(numbers):
+        numbers[0] = 5.0
+        numbers[1] = inverse(float(numbers[1]))
+
+    fails.__module__ = invert.__module__
+    fails = jit.kernel(fails)
+    numbers = np.array([1.0, 0.0])
+    assert not interpret.at_once(2, fails, fails, numbers)
+    np.testing.assert_array_equal(numbers, [1.0, 0.0])
+
+
+def test_many_states_are_worth_the_compiler(entry, capsys):
+    numbers = np.ones(2)
+    for _ in range(interpret.FEW // 2):
+        assert interpret.at_once(2, entry, entry, numbers)
+    assert not interpret.at_once(2, entry, entry, numbers)
+    assert "compiling the kernels" in capsys.readouterr().err
+    assert not interpret.at_once(1, entry, entry, numbers)
+    assert not capsys.readouterr().err  # said once
+
+
+def test_machine_code_is_used_where_it_exists(entry):
+    entry(np.ones(1))
+    assert not interpret.at_once(1, entry, entry, np.ones(1))
