@@ -10,41 +10,56 @@ from ..uniform import DRAWN_IN, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, between
 from .vector import HUGE, get, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
+GLANCE = 0.06  # relative change of the stretch between two looks at the slope, where that is even:
+EVEN = 0.5  # its smallest value is more than this share of the largest
 SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernels
 
 
 @kernel
-def rising(u, trial, cell, start, end, half, asked):
-    """Where the load rises all the way from ``u`` to ``trial``: see :func:`uniform.rising`."""
-    change = trial - u
-    still = (abs(change) < 1e-9 * u) | (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
-    samples = 2.0 + abs(change) / (SCAN * min(u, trial))
-    risen = still | asked
+def scan(u, change, samples, cell, start, end, half, asked):
+    """Where the load rises at all so many ``samples`` of the way, and between them; its smallest and largest slope."""
+    risen, least, most = asked, spread(HUGE), spread(0.0)
     first, second = spread(0.0), spread(0.0)
     ahead = select(change > 0.0, spread(1.0), spread(-1.0))
     i = 0
     while True:
-        within = asked & ~still & (samples + 1.0 > i)
+        within = asked & (samples + 1.0 > i)
         if not some(within):
             break
-        share = min(i / samples, 1.0)
-        here = u + change * share
+        here = u + change * min(i / samples, 1.0)
         _, L_y, _, L_yy, _, L_vv = lagrangian.density(here, 0.0, cell, start)
         _, end_y, _, end_yy, _, end_vv = lagrangian.density(here, 0.0, cell, end)
         drive = end_y - L_y
         t = -L_y / drive
         far = (L_yy + t * (end_yy - L_yy)) * half * half < FAR * FAR * (L_vv + t * (end_vv - L_vv))
-        risen = risen & (~within | far | (here > 1.0 - DRAWN_IN))
         slope = -(L_yy - L_y / drive * (end_yy - L_yy)) / drive * ahead
-        risen = risen & (~within | (slope > 0.0))
+        risen = risen & (~within | ((far | (here > 1.0 - DRAWN_IN)) & (slope > 0.0)))
         if i >= 2:
             dips = within & (second < first) & (second < slope)
             bend = first - 2.0 * second + slope
             low = second - (slope - first) * (slope - first) / (8.0 * bend)
             risen = risen & (~dips | (low > 0.0))
+        least, most = select(within, min(least, slope), least), select(within, max(most, slope), most)
         first, second = second, slope
         i += 1
-    return risen
+    return risen, least, most
+
+
+@kernel
+def rising(u, trial, cell, start, end, half, asked):
+    """Where the load rises all the way from ``u`` to ``trial``: see :func:`uniform.rising`. A few looks tell it where the
+    slope hardly changes, which leaves no room for a dip, and the tube is not drawn in.
+    """
+    change = trial - u
+    still = (abs(change) < 1e-9 * u) | (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
+    asked = asked & ~still
+    size = abs(change) / min(u, trial)
+    risen, least, most = scan(u, change, max(1.0 + size / GLANCE, 2.0), cell, start, end, half, asked)
+    unsure = risen & ((least < EVEN * most) | (min(u, trial) < 1.0 - DRAWN_IN))
+    if some(unsure):
+        risen_all, _, _ = scan(u, change, 2.0 + size / SCAN, cell, start, end, half, unsure)
+        risen = risen & (~unsure | risen_all)
+    return still | risen
 
 
 @kernel
