@@ -7,6 +7,9 @@ from commands import refused, run
 from grids import spec
 
 from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED
+from freesweep.solver import block, branch
+from freesweep.solver.lanes import walk
+from freesweep.sweep import duration
 
 TINY = spec(
     {"alpha": [0.0, 20.0, 40.0], "beta": [-40.0, -20.0, 20.0], "pressure": [0.0, 2e4, 5e4]}, title="A tiny sweep"
@@ -72,6 +75,25 @@ def test_a_dry_run_says_what_would_be_solved_and_makes_nothing(specification, tm
     assert [line.split(":")[0] for line in lines[2:]] == ["memory", "disk", "time"]
     assert re.fullmatch(r"disk: 1\.0 MB at most, 0\.0 MB more while it runs; [\d,]+ MB free", lines[3])
     assert [path.name for path in tmp_path.iterdir()] == ["tiny.toml"]
+
+
+def test_a_dry_run_of_a_large_sweep_samples_the_compiled_kernels(specification, monkeypatch, capsys):
+    """And takes what is typical where nothing is compiled, or the sweep is small."""
+    assert run("sweep", specification, "--quiet") == DONE  # compiled by now
+
+    def says():
+        code = run("sweep", specification, "--dry-run", "--threads", "1")
+        return code, capsys.readouterr().out.splitlines()[-1]
+
+    guess = "time: a few seconds on 1 thread, a guess before anything is solved"
+    assert says() == (DONE, guess)
+    monkeypatch.setattr(duration, "LITTLE", 0.0)
+    kernels = {name for own in duration.KERNELS.values() for name in own}
+    assert all(any(hasattr(room, name) for room in (walk, branch, block)) for name in kernels)
+    monkeypatch.setattr(duration, "KERNELS", {"free": ("solve_lanes",)})  # the scalar walk may not have been needed yet
+    assert says() == (DONE, guess.split(",")[0])
+    monkeypatch.setattr(duration, "KERNELS", {"free": ("none_of_that_name",)})
+    assert says() == (DONE, guess)
 
 
 def test_every_fault_of_a_specification_is_listed(tmp_path, capsys):

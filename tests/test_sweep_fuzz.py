@@ -1,6 +1,8 @@
 """Random specifications through parser and planner, random kills of real sweeps, races for one output."""
 
+import os
 import random
+import re
 import subprocess
 import sys
 import time
@@ -20,13 +22,14 @@ from freesweep.sweep.spec import SpecificationError, parse
 
 USUAL = {
     **{"alpha": (-89, 89), "beta": (-89, 89), "length": (20, 400), "radius": (2, 10), "wall": (0.5, 3)},
-    **{"fiber_radius": (2, 12), "fiber_extension": (1, 1.02), "c10": (50, 500), "c01": (0, 200)},
+    **{"fiber_radius": (2, 12), "fiber_extension": (1, 1.02), "c10": (50, 500)},
+    **{"c01": (0, 200), "c20": (-5, 50), "c30": (-0.1, 5)},
     **{"force": (-5, 20), "torque": (-20, 20), "held_length": (20, 400), "held_length_ratio": (0.7, 1.2)},
     **{"held_rotation": (-90, 90), "pressure": (0, 400)},
 }
 UNITS = {"m": "mm", "Pa": "kPa", "N": "N", "N m": "mN m", "degree": "deg"}
-RARE = [*USUAL][5:7] + [*USUAL][8:14]
-LOADS = [*USUAL][9:]
+RARE = [*USUAL][5:7] + [*USUAL][8:16]
+LOADS = [*USUAL][11:]
 ODD = ["nan", "-1", "true", '"x"', "[]", "{}", '"4 furlong"', '"1e3 Pa"', "[[0, 1], [1, 2]]", "1e400"]
 
 
@@ -118,6 +121,36 @@ def test_random_specifications_are_planned_or_refused():
 @pytest.mark.long
 def test_a_hundred_thousand_specifications_are_planned_or_refused():
     assert plans(2, 100_000) > 1000
+
+
+@pytest.mark.long
+def test_two_hundred_specifications_through_the_command(tmp_path):
+    """Each in a process of its own: planned, or refused in one message; a second of the processor at most, start and all."""
+    author, path, planned_ones = Author(4), tmp_path / "spec.toml", 0
+    for _ in range(200):
+        path.write_text(text := author.text())
+        with open(tmp_path / "out", "w+") as out, open(tmp_path / "err", "w+") as err:
+            child = subprocess.Popen(
+                [sys.executable, "-P", "-m", "freesweep", "sweep", str(path), "--dry-run"],
+                env=CHILD_ENVIRONMENT, cwd=tmp_path, stdout=out, stderr=err,
+            )  # fmt: skip
+            _, child.returncode, used = os.wait4(child.pid, 0)
+            out.seek(0), err.seek(0)
+            said, complained = out.read(), err.read()
+        assert used.ru_utime + used.ru_stime < 1.0, text
+        if child.returncode == DONE:
+            planned_ones += 1
+            assert "grid points, " in said, text
+            assert re.search(r"^time: .* on \d+ threads?", said, re.M), text
+            assert complained == "", text
+        else:
+            assert os.waitstatus_to_exitcode(child.returncode) == BAD_INPUT, (text, complained)
+            assert said == "", text
+            first, *faults = complained.splitlines()
+            assert first.startswith(f"freesweep: {path}: "), (text, complained)
+            assert all(line.startswith("  ") for line in faults), (text, complained)
+        assert sorted(found.name for found in tmp_path.iterdir()) == ["err", "out", "spec.toml"]
+    assert 10 < planned_ones < 190  # both ends are met
 
 
 CHILD = """

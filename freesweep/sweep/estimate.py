@@ -3,13 +3,11 @@
 import math
 import os
 import shutil
-import time
 from pathlib import Path
-
-import numpy as np
 
 from ..atlas.files import EnvironmentFault, space
 from .collect import groups
+from .duration import time_of
 from .plan import FREE, kinds, plan
 from .records import LIMIT, state
 
@@ -20,10 +18,7 @@ MEASURING, POINT_MEMORY = 200_000_000, 110  # [bytes] of its kernels, and of eac
 TWO_TABLES = 5_000_000  # points up to which it makes two at a time
 SHRINKS = 0.9  # of the numbers when they are compressed, at least
 FILE = 1_000_000  # [bytes] of an atlas without its numbers, at most
-MOST_PLANNED = 300_000  # designs that a dry run compares: half a second
-SAMPLE_SECONDS, SAMPLES, TOGETHER = 0.2, 64, 32  # of each kind of state; problems solved at once, as vectors need them
-KERNELS = {FREE: ("walk_lanes", "walk_many"), "blocked_force": ("block_many",), "blocked_torque": ("block_many",)}
-TYPICAL = {FREE: 100e-6, "blocked_force": 4e-3, "blocked_torque": 4e-3}  # [s] of one equilibrium on one core
+MOST_PLANNED = 200_000  # designs that a dry run compares: a third of a second
 
 
 def cores() -> int:
@@ -115,43 +110,6 @@ def dry_run(sweep, out, threads=None) -> str:
     lines += [
         f"memory: {memory(sweep) / 1e6:,.0f} MB at most",
         f"disk: {atlas / 1e6:,.1f} MB at most, {shards / 1e6:,.1f} MB more while it runs; {free}",
-        f"time: {_time(sweep, tables, equilibria, threads or cores())}",
+        f"time: {time_of(sweep, tables, equilibria, threads or cores())}",
     ]
     return "\n".join(lines)
-
-
-def _time(sweep, tables, equilibria, threads):
-    """Time of the solver in words: from a sample of the problems, or what is typical before the kernels are compiled."""
-    measured = bool(tables) and all(_is_compiled(kind) for kind in equilibria)
-    each = {kind: _sampled(tables[kind], sweep.accuracy) if measured else TYPICAL[kind] for kind in equilibria}
-    took = sum(each[kind] * count for kind, count in equilibria.items()) / threads
-    for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)):
-        if took > 2.0 * size:
-            words = f"about {took / size:.0f} {unit}"
-            break
-    else:
-        words = "a few seconds"
-    return f"{words} on {threads} thread{'s' * (threads > 1)}" + (
-        "" if measured else ", a guess before anything is solved"
-    )
-
-
-def _is_compiled(kind):
-    """Whether the kernels of a kind of states lie on disk: a dry run compiles nothing."""
-    from ..jit import _cache_folder
-
-    stored = {path.name.split(".")[1].split("-")[0] for path in Path(_cache_folder("solver")).rglob("*.nbc")}
-    return set(KERNELS[kind]) <= stored
-
-
-def _sampled(table, accuracy):
-    """Seconds of one equilibrium on one core."""
-    from .solve import solve_shard
-
-    solve_shard(table.job(0, 0), accuracy)  # loads the machine code
-    begun, solved = time.perf_counter(), 0
-    for a in np.random.default_rng(0).integers(max(table.count, 1), size=min(SAMPLES, table.count)).tolist():
-        solved += len(solve_shard(table.job(a, min(a + TOGETHER, table.count)), accuracy)[0])
-        if time.perf_counter() - begun > SAMPLE_SECONDS:
-            break
-    return (time.perf_counter() - begun) / max(solved, 1)

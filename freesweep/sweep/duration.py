@@ -1,0 +1,64 @@
+"""How long a sweep will take: from a sample of its problems, or, for a small one, from what is typical.
+
+Sampling needs Numba and machine code, half a second to load: more than a small sweep is worth.
+"""
+
+import time
+from pathlib import Path
+
+import numpy as np
+
+from .plan import FREE
+
+TYPICAL, HELD, VARYING = 5e-6, 4e-3, 8  # [s] of a free state on one core; of a held one; times that where tubes vary
+OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
+LITTLE = 10.0  # [s] up to which it is not worth a sample
+SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
+TOGETHER = 32  # problems of free states that are solved at once, as vectors need them
+KERNELS = {FREE: ("solve_lanes", "walk_many"), "blocked_force": ("block_many",), "blocked_torque": ("block_many",)}
+
+
+def time_of(sweep, tables, equilibria, threads) -> str:
+    """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared."""
+    each = {kind: (TYPICAL if kind == FREE else HELD) * (VARYING if sweep.profiles else 1) for kind in equilibria}
+    sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and all(map(_is_compiled, equilibria))
+    if sampled:
+        each = {
+            kind: _sample(tables[kind], sweep.accuracy, 1 if kind != FREE or sweep.profiles else TOGETHER)
+            for kind in equilibria
+        }
+    took = _seconds(sweep, equilibria, each, threads)
+    for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)):
+        if took > 2.0 * size:
+            words = f"about {took / size:.0f} {unit}"
+            break
+    else:
+        words = "a few seconds"
+    return f"{words} on {threads} thread{'s' * (threads > 1)}" + (
+        "" if sampled else ", a guess before anything is solved"
+    )
+
+
+def _seconds(sweep, equilibria, each, threads):
+    return (sum(each[kind] * count for kind, count in equilibria.items()) + OTHER * sweep.points) / threads
+
+
+def _is_compiled(kind):
+    """Whether the kernels of a kind of states lie on disk: a dry run compiles nothing."""
+    from ..jit import cache_folder
+
+    stored = {path.name.split(".")[1].split("-")[0] for path in Path(cache_folder("solver")).rglob("*.nbc")}
+    return set(KERNELS[kind]) <= stored
+
+
+def _sample(table, accuracy, together):
+    """Seconds of one equilibrium on one core, whatever else the machine does."""
+    from .solve import solve_shard
+
+    solve_shard(table.job(0, min(1, table.count)), accuracy)  # loads the machine code
+    begun, solved = time.thread_time(), 0
+    for a in np.random.default_rng(0).integers(max(table.count, 1), size=min(SAMPLES, table.count)).tolist():
+        solved += len(solve_shard(table.job(a, min(a + together, table.count)), accuracy)[0])
+        if time.thread_time() - begun > SAMPLE_SECONDS:
+            break
+    return (time.thread_time() - begun) / max(solved, 1)
