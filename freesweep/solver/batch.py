@@ -57,12 +57,18 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
                 continue
             carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
             rows = np.flatnonzero(some[owners] & (found.status == PENDING) & np.isfinite(stretches))
+            alike = np.argsort(_steepness(cosines[rows]), kind="stable")
             solve_lanes(
-                problems, owners, pressures, stretches, rows[np.argsort(cosines[rows], kind="stable")], constants, base,
-                accuracy, *found[:4], stations, found.profiles,
+                problems, owners, pressures, stretches, rows[alike], constants, base, accuracy, *found[:4], stations,
+                found.profiles,
             )  # fmt: skip
         if not np.any(found.status == PENDING):
             return found
     if not (soon and at_once(count, walk_many, walk_many, *scalar)):
         walk_many(*scalar)
     return found
+
+
+def _steepness(cosines):
+    """Short integers, which are sorted in no time; finer where the ends are steep."""
+    return (np.sqrt(np.fmin(np.fmax(cosines, 0.0), 1.0)) * np.iinfo(np.uint16).max).astype(np.uint16)
