@@ -60,10 +60,9 @@ def kinematics(y, cell, load):
 
 
 @kernel
-def excess(a, b):
-    """``A + B + 1/(A B) - 3`` for ``A = 1 + a``, ``B = 1 + b``, without cancellation near a = b = 0."""
-    c = a + b + a * b
-    return ((a + b) * c - a * b) / (1.0 + c)
+def excess(a, b, inverse):
+    """``A + B + 1/(A B) - 3`` for ``A = 1 + a``, ``B = 1 + b``, without cancellation near a = b = 0, from 1/(A B)."""
+    return ((a + b) * (a + b + a * b) - a * b) * inverse
 
 
 @kernel
@@ -101,10 +100,10 @@ def strain_energy(y, cell, load):
     q_yy = 2.0 * k * (psi_y * psi_y + psi * psi_yy)
     y2 = y * y
     b = (y - 1.0) * (y + 1.0)
-    first = excess(G_1, b) + y2 * q
+    first = excess(G_1, b, e * z) + y2 * q
     first_y = G_y + 2.0 * y * (1.0 + q) + y2 * q_y + e_y * z - 2.0 * e * z * r
     first_yy = G_yy + 2.0 * (1.0 + q) + 4.0 * y * q_y + y2 * q_yy + e_yy * z - 4.0 * e_y * z * r + 6.0 * e * z * z
-    second = excess(-G_1 * e, -b * z) + q * e
+    second = excess(-G_1 * e, -b * z, G * y2) + q * e
     second_y = G_y * y2 + 2.0 * G * y - 2.0 * z * r + q_y * e + (1.0 + q) * e_y
     second_yy = G_yy * y2 + 4.0 * G_y * y + 2.0 * G + 6.0 * z * z + q_yy * e + 2.0 * q_y * e_y + (1.0 + q) * e_yy
     w, w_y, w_yy = yeoh(rubber, first, first_y, first_yy)
@@ -192,12 +191,13 @@ def fiber_multipliers(y, v, cell, load):
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
     G = 1.0 + G_1
     q = 1.0 + k * psi * psi
-    y2 = y * y
-    slope = yeoh_slope(rubber, excess(G_1, (y - 1.0) * (y + 1.0)) + y2 * k * psi * psi)
-    w_G = slope * (1.0 - 1.0 / (G * G * y2)) + c * (y2 - q / (G * G))
-    w_psi = 2.0 * k * psi * (slope * y2 + c / G)
-    total = (load[3] * y2 + f) / (2.0 * sqrt(max(G - v * v, NO_ROOM))) - a * w_G
-    difference = ((m - a * w_psi) / (2.0 * y2) - total * H * load[0] * load[0] / y2) / D
+    y2, e, r = y * y, 1.0 / G, 1.0 / y
+    z = r * r
+    slope = yeoh_slope(rubber, excess(G_1, (y - 1.0) * (y + 1.0), e * z) + y2 * k * psi * psi)
+    w_G = slope * (1.0 - e * e * z) + c * (y2 - q * e * e)
+    w_psi = 2.0 * k * psi * (slope * y2 + c * e)
+    total = 0.5 * (load[3] * y2 + f) / sqrt(max(G - v * v, NO_ROOM)) - a * w_G
+    difference = (0.5 * (m - a * w_psi) - total * H * load[0] * load[0]) * z / D
     return 0.5 * (total + difference), 0.5 * (total - difference)
 
 
