@@ -13,7 +13,7 @@ WANTED = 1e-6  # the error at which methods are compared: 95 % of the equilibria
 ACCURACIES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 BASE_CELLS = 24
-ROUNDS = 4  # samples for each thread, when threads are compared
+ROUNDS = 16  # samples for each thread, when threads are compared
 SIZES = {  # designs, pressures, designs on which SciPy's tolerance is chosen, repeats
     False: (200, 20, 30, 5),
     True: (12, 5, 3, 1),
@@ -124,14 +124,14 @@ def _threads(chosen, repeats):
     """Rates of 1, 2, 4, ... threads up to one for each core, on equal samples: others are not equally hard."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     counts = sorted({*(2**k for k in range(20) if 2**k < cores), cores})
-    found = []
-    for count in counts:
-        samples = [chosen] * (count * ROUNDS)
-        with ThreadPoolExecutor(count) as pool:
-            run = lambda pool=pool, samples=samples: list(pool.map(lambda one: _solve(one, WANTED), samples))  # noqa: E731
-            seconds, _ = _median(run, repeats, time.perf_counter)
-        found.append({"threads": count, "rate": len(samples) * chosen.size / seconds})
-    return found
+    seconds = {count: [] for count in counts}
+    for _ in range(repeats):  # in turns: a machine's pace drifts
+        for count in counts:
+            with ThreadPoolExecutor(count) as pool:
+                begun = time.perf_counter()
+                list(pool.map(lambda one: _solve(one, WANTED), [chosen] * (count * ROUNDS)))
+                seconds[count].append((time.perf_counter() - begun) / (count * ROUNDS))
+    return [{"threads": count, "rate": chosen.size / float(np.median(seconds[count]))} for count in counts]
 
 
 def _grid(designs, pressures, repeats):
