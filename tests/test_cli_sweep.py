@@ -8,7 +8,7 @@ from grids import spec
 
 from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED
 from freesweep.solver import block, branch
-from freesweep.solver.lanes import walk
+from freesweep.solver.lanes import hold, walk
 from freesweep.sweep import duration
 
 TINY = spec(
@@ -89,7 +89,7 @@ def test_a_dry_run_of_a_large_sweep_samples_the_compiled_kernels(specification, 
     assert says() == (DONE, guess)
     monkeypatch.setattr(duration, "LITTLE", 0.0)
     kernels = {name for own in duration.KERNELS.values() for name in own}
-    assert all(any(hasattr(room, name) for room in (walk, branch, block)) for name in kernels)
+    assert all(any(hasattr(room, name) for room in (walk, branch, hold, block)) for name in kernels)
     monkeypatch.setattr(duration, "KERNELS", {"free": ("solve_lanes",)})  # the scalar walk may not have been needed yet
     assert says() == (DONE, guess.split(",")[0])
     monkeypatch.setattr(duration, "KERNELS", {"free": ("none_of_that_name",)})

@@ -94,38 +94,17 @@ def _free(rows, pressure, most, accuracy):
 
 
 def _held(kind, rows, own, accuracy):
-    """Held states, one design after the other; at zero pressure nothing has to be held."""
-    from ..interpret import at_once
+    """Held states of rows (k, 11), each at its own pressure."""
+    from ..solver.batch import uniform
+    from ..solver.branch import LENGTH
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
-    from ..solver.hold import hold_many
-    from ..solver.status import HELD_IMPOSSIBLE
+    from ..solver.hold_batch import hold_all
 
     count = len(rows)
-    values, bounds = np.full((count, 1), np.nan), np.full((count, 1), np.nan)
-    codes, slack, stable = (np.zeros(count, np.int64) for _ in range(3))
     length = kind == reference.LENGTH_HELD
-    for k in range(count):
-        one = {name: column[k] for name, column in own.items()}
-        r, c10 = one["fiber_radius"], one["c10"]
-        other = one["torque"] / (np.pi * r**3 * c10) if length else one["force"] / (np.pi * r**2 * c10)
-        target = one["held"] * one["length"] / r if length else np.radians(one["held"])
-        if one["pressure"] == 0.0 and other == 0.0 and target == (one["length"] / r if length else 0.0):
-            values[k], bounds[k], stable[k] = 0.0, 0.0, 1
-            continue
-        if not length and rows[k, 0] == 0.0:
-            codes[k] = HELD_IMPOSSIBLE
-            continue
-        course = np.zeros((1, 1, 3, 4))
-        course[0, 0, :, 0] = rows[k, :3]
-        value, bound = np.empty((1, 6)), np.empty((1, 6))
-        code, safe, loose = (np.empty(1, np.int64) for _ in range(3))
-        arguments = (
-            rows[k], np.array([one["pressure"] / c10]), np.array([other]), np.array([target]),
-            HELD_LENGTH if length else HELD_ROTATION, False, course, np.array([0, CELLS]),
-            np.array([0.0, 0.5 * one["length"] / r]), accuracy, value, bound, code, safe, loose, np.empty(0),
-            np.empty((1, 7, 0)),
-        )  # fmt: skip
-        if not at_once(1, hold_many, hold_many, *arguments):
-            hold_many(*arguments)
-        values[k], bounds[k], codes[k], stable[k] = value[0, 5], bound[0, 5], code[0], safe[0]
-    return values, bounds, codes, slack, stable
+    targets = own["held"] * rows[:, LENGTH] if length else np.radians(own["held"])
+    found = hold_all(
+        np.ascontiguousarray(rows), targets, HELD_LENGTH if length else HELD_ROTATION, np.arange(count + 1),
+        own["pressure"] / own["c10"], uniform(CELLS), accuracy, soon=True,
+    )  # fmt: skip
+    return found.values[:, None], found.bounds[:, None], found.status, np.zeros(count, np.int64), found.stable

@@ -7,7 +7,7 @@ from . import guide, lagrangian, nested
 from .branch import FORCE, GAMMA, LENGTH, TORQUE
 from .find import HELD_LENGTH
 from .hold import find_on_some_mesh, workspace
-from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK
+from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
 
 
 @entry_point
@@ -18,7 +18,8 @@ def block_many(
 
     ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of :func:`branch.walk_many`;
     ``targets`` (k,) the deformed lengths in radii or the rotations in radians, of the whole tube. A problem keeps its torque
-    while its length is held, its force while its rotation is. At zero pressure only the undeformed state is held.
+    while its length is held, its force while its rotation is. At zero pressure only the undeformed state is held. Rows whose
+    status is not PENDING are passed over.
     """
     base = edges[len(edges) - 1]
     varying = course.shape[0] > 0
@@ -43,6 +44,8 @@ def block_many(
         other = problems[k, TORQUE] if kind == HELD_LENGTH else problems[k, FORCE]
         undeformed = targets[k] == (problems[k, LENGTH] if kind == HELD_LENGTH else 0.0)
         for row in range(first[k], first[k + 1]):
+            if status[row] != PENDING:
+                continue
             p = pressures[row]
             values[row], bounds[row], status[row], stable[row] = np.nan, np.nan, HELD_IMPOSSIBLE, 0
             if not clamped > 0.0:

@@ -26,6 +26,7 @@ from .stability import unstable_directions
 from .status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
 HELD_LENGTH, HELD_ROTATION = 0, 1
+LONGER = 1e-9  # relative: than all that the fibers allow
 RAISES = 40  # of the pressure by a half, until the wall of the starting cylinder is under tension
 MESH_CHANGE = 0.03  # relative difference of a shape from one mesh to the next
 MIRROR_OFFSET, MIRROR_TOLERANCE = 0.37, 1e-12  # places off jumps; of H, D and the section
@@ -39,6 +40,7 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     base = edges[len(edges) - 1]
     x, y = shapes[0, : base + 1], shapes[1, : base + 1]
     total = places[len(places) - 1]
+    varying = course.shape[0] > 1 or course.shape[1] > 1
     gamma = problem[GAMMA]
     force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
     rubber, shear = rubber_of(problem), problem[SHEAR]
@@ -59,13 +61,14 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     # a straight fiber cannot stretch: whatever the force, the length stays (the pole of Eq. 2.16)
     if course.shape[0] == 1 and lagrangian.conjugate(1.0, 0.0, cell, load, unit)[1] == 0.0:
         return HELD_IMPOSSIBLE, 0, 0, load, 0.0
+    if kind == HELD_LENGTH and not varying and target > (1.0 + LONGER) * total * lagrangian.longest(cell, gamma):
+        return HELD_IMPOSSIBLE, 0, 0, load, 0.0
     if not raised:
         return COMPRESSED, 0, 0, load, 0.0
     scale = max(abs(mu), p)
     direction = tuple_times(unit, scale)
     mu /= scale
     natural, wanted = total * scale if kind == HELD_LENGTH else 0.0, target * scale
-    varying = course.shape[0] > 1 or course.shape[1] > 1
     found, reached, regrades = NOT_CONVERGED, 0.0, 1
     for tries in range(2):  # a buckled shape that no mesh holds is come to from a lower pressure
         if buckled:

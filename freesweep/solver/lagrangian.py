@@ -168,6 +168,13 @@ def locked_stretch(cell, gamma):
 
 
 @kernel
+def longest(cell, gamma):
+    """The largest meridional stretch that the fibers allow, whatever pulls: G at y^2 = gamma^2 |H/D| (Eqs. 2.3, 2.4)."""
+    apart = abs(cell[0]) - abs(cell[1])
+    return gamma * sqrt(1.0 + apart * apart)
+
+
+@kernel
 def conjugate(y, v, cell, load, direction):
     """``(c, c_y, c_v)`` with c = dL/dmu along a change of load: what is held when that load is unknown."""
     psi, psi_y, _, G_1, G_y, _ = kinematics(y, cell, load)

@@ -10,12 +10,14 @@ import numpy as np
 
 from .plan import FREE
 
-TYPICAL, HELD, VARYING = 5e-6, 4e-3, 8  # [s] of a free state on one core; of a held one; times that where tubes vary
+TYPICAL, HELD, VARYING = 5e-6, 3e-4, 8  # [s] of a free state on one core; of a held one; times that where tubes vary
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 10.0  # [s] up to which it is not worth a sample
 SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
-TOGETHER = 32  # problems of free states that are solved at once, as vectors need them
-KERNELS = {FREE: ("solve_lanes", "walk_many"), "blocked_force": ("block_many",), "blocked_torque": ("block_many",)}
+TOGETHER = 32  # problems that are solved at once, as vectors need them
+KERNELS = {FREE: ("solve_lanes", "walk_many")} | dict.fromkeys(
+    ("blocked_force", "blocked_torque"), ("seek_lanes", "solve_lanes", "block_many")
+)
 
 
 def time_of(sweep, tables, equilibria, threads) -> str:
@@ -23,10 +25,8 @@ def time_of(sweep, tables, equilibria, threads) -> str:
     each = {kind: (TYPICAL if kind == FREE else HELD) * (VARYING if sweep.profiles else 1) for kind in equilibria}
     sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and all(map(_is_compiled, equilibria))
     if sampled:
-        each = {
-            kind: _sample(tables[kind], sweep.accuracy, 1 if kind != FREE or sweep.profiles else TOGETHER)
-            for kind in equilibria
-        }
+        together = 1 if sweep.profiles else TOGETHER
+        each = {kind: _sample(tables[kind], sweep.accuracy, together) for kind in equilibria}
     took = _seconds(sweep, equilibria, each, threads)
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)):
         if took > 2.0 * size:

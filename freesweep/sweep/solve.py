@@ -43,16 +43,12 @@ def _solve_free(_, problems, __, first, pressures, tube, accuracy):
 
 
 def _solve_held(kind, problems, targets, first, pressures, tube, accuracy):
-    from ..solver.block import block_many
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
+    from ..solver.hold_batch import hold_all
 
-    count = len(pressures)
-    values, bounds = np.empty(count), np.empty(count)
-    status, stable = np.empty(count, np.int64), np.empty(count, np.int64)
-    block_many(
-        problems, targets, HELD_LENGTH if kind == "blocked_force" else HELD_ROTATION, first, pressures, *tube, accuracy,
-        values, bounds, status, stable,
-    )  # fmt: skip
-    states = np.empty(count, HELD_STATE)
-    states["value"], states["bound"], states["status"], states["stable"] = values, upward(bounds), status, stable
+    held = HELD_LENGTH if kind == "blocked_force" else HELD_ROTATION
+    found = hold_all(problems, targets, held, first, pressures, tube, accuracy)
+    states = np.empty(len(pressures), HELD_STATE)
+    states["value"], states["bound"] = found.values, upward(found.bounds)
+    states["status"], states["stable"] = found.status, found.stable
     return states, np.empty(0, LIMIT)

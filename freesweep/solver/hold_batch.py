@@ -1,0 +1,122 @@
+"""Held states of many designs at once: vectors of designs find most of them, the scalar kernels go on where those end.
+
+A vector solves free states only. A held one is the free one whose force or torque mu gives the length or rotation C that is
+held: the first integral guesses mu to a few digits, secants through solved states do the rest::
+
+    mu = mu_1 + (target - C(mu_1))/sigma,    sigma = dC/dmu
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import config
+
+from ..interpret import at_once
+from .block import block_many
+from .branch import FORCE, MOONEY_RIVLIN, SECOND, THIRD, TORQUE, YEOH
+from .find import HELD_LENGTH
+from .lagrangian import ROUNDING
+from .status import OK, PENDING
+
+TURNS = 5  # solutions of one state, at most; two do nearly always
+CLEAR = 20.0  # times its bounds: a difference of C from which a secant is good
+DOUBT, BLIND = 0.02, 0.2  # share of the last correction that a secant, or the guess of sigma, may miss, at least
+TWIST = 2  # column of a free state's values
+LEAST_ACCURACY = 1e-11  # asked of free states
+
+
+class Holds(NamedTuple):
+    """Held states (n,): the force or torque, its bound, status, whether it is stable."""
+
+    values: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    stable: np.ndarray
+
+
+def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=True, soon=False) -> Holds:
+    """Hold each problem at its target under each of its pressures; arguments as of :func:`block.block_many`, ``tube`` its
+    (course, edges, places).
+
+    Vectors of designs serve where tubes do not vary. Their numbers do not depend on which designs share a vector; those
+    of the scalar kernels alone (``lanes=False``) differ by less than the bounds. ``soon``: a few states need not wait for
+    the compiler (:mod:`freesweep.interpret`).
+    """
+    count = len(pressures)
+    found = Holds(
+        np.full(count, np.nan), np.full(count, np.nan), np.full(count, PENDING, np.int64), np.zeros(count, np.int64)
+    )
+    scalar = (problems, targets, kind, first, pressures, *tube, accuracy, *found)
+    if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
+        from .lanes.hold import seek_lanes
+
+        if soon and at_once(count, seek_lanes, block_many, *scalar):
+            return found
+        owners = np.repeat(np.arange(len(problems)), np.diff(first))
+        yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)[owners]
+        for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
+            rows = np.flatnonzero(some & (pressures > 0.0))
+            if len(rows):
+                _hold(
+                    problems, 0.5 * targets, kind == HELD_LENGTH, owners, pressures, rows, constants, int(tube[1][-1]),
+                    accuracy, found,
+                )  # fmt: skip
+        if not np.any(found.status == PENDING):
+            return found
+    if not (soon and at_once(count, block_many, block_many, *scalar)):
+        block_many(*scalar)
+    return found
+
+
+def _hold(problems, targets, length_held, owners, pressures, rows, constants, base, accuracy, found):
+    """The states of ``rows`` that vectors find; ``targets`` (k,) are of half the tube."""
+    from .lanes.hold import seek_lanes
+    from .lanes.walk import solve_lanes
+
+    guesses = np.full((4, len(pressures)), np.nan)
+    seek_lanes(problems, targets, owners, pressures, rows, length_held, constants, *found, *guesses)
+    rows = rows[np.isfinite(guesses[0, rows])]
+    rows = rows[np.argsort(guesses[1, rows], kind="stable")]  # what shares a vector should need much the same work
+    stretches, _, mu, sigma = guesses[:, rows]
+    own, p, target = problems[owners[rows]], pressures[rows], targets[owners[rows]]
+    unknown, given, column = (FORCE, TORQUE, 0) if length_held else (TORQUE, FORCE, TWIST)
+    fine, todo = np.full(len(rows), accuracy), np.arange(len(rows))
+    before = np.full((3, len(rows)), np.nan)  # mu, C and its bound
+    for _ in range(TURNS):
+        own[:, unknown] = mu
+        c, bound = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
+        for asked in np.unique(fine[todo]):
+            part = todo[fine[todo] == asked]
+            size = len(part)
+            free = np.full((2, size, 5), np.nan)
+            status, slack, none = np.full(size, PENDING), np.zeros(size, np.int64), np.empty(0)
+            solve_lanes(
+                own, part, p[part], stretches[part], np.arange(size), constants, base, asked, free[0], free[1], status,
+                slack, none, np.empty((size, 7, 0)),
+            )  # fmt: skip
+            c[part], bound[part] = np.where(status == OK, free[:, :, column], np.nan)
+        with np.errstate(all="ignore"):
+            gain = c - before[1]
+            clear = np.abs(gain) > CLEAR * (bound + before[2])
+            secant = gain / (mu - before[0])
+            doubt = np.where(clear, np.abs(1.0 - sigma / secant) + DOUBT, BLIND)
+            sigma = np.where(clear, secant, sigma)
+            miss = target - c
+            ahead, unsure = mu + miss / sigma, doubt * np.abs(miss)
+            size = np.maximum(np.maximum(p, np.abs(ahead)), np.abs(own[:, given]))
+            most = accuracy * size * sigma  # of C
+            own_bound = (bound + unsure) / sigma + ROUNDING * size
+            sound = (sigma > 0.0) & ((p + ahead > 0.0) | (not length_held))
+            done = sound & (unsure <= bound) & (own_bound <= accuracy * size)
+            finer = 10.0 ** -np.ceil(np.log10(np.maximum(2.0 * bound / most, 1.0)))
+        done = done[todo]
+        ready = todo[done]
+        found.values[rows[ready]], found.bounds[rows[ready]] = ahead[ready], own_bound[ready]
+        found.status[rows[ready]], found.stable[rows[ready]] = OK, 1
+        todo = todo[~done & sound[todo]]
+        fine[todo] = fine[todo] * finer[todo]
+        todo = todo[fine[todo] >= LEAST_ACCURACY]
+        if len(todo) == 0:
+            return
+        before[:] = mu, c, bound
+        mu = ahead
