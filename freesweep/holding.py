@@ -14,6 +14,7 @@ from .scaling import problem_rows
 from .statics import inflate, read_course
 
 HALF_CELLS = 48  # of half a tube that is the same all along
+MANY = 200  # states among which it is worth to look first for those that nothing holds
 CORRECTION_STATIONS = 2001
 
 
@@ -83,7 +84,9 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     from .interpret import at_once
     from .solver.find import HELD_LENGTH, HELD_ROTATION
     from .solver.hold import hold_many
+    from .solver.hold_batch import refuse
     from .solver.profile import FIELDS
+    from .solver.status import PENDING
 
     faults = []
     units = {"deformed_length": "m", "rotation": "degree", "force": "N", "torque": "N m", "pressure": "Pa"}
@@ -112,13 +115,17 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
     unique, index = near_stations(tube, stations, whole)
     values, bounds = np.empty((count, 6)), np.empty((count, 6))
-    codes, stable, slack = (np.empty(count, np.int64) for _ in range(3))
+    codes, stable, slack = np.full(count, PENDING), np.empty(count, np.int64), np.empty(count, np.int64)
     fields = np.empty((count, FIELDS, len(unique)))
     held_is_length = held_name == "deformed_length"
+    states = (
+        pressures / c10, others / (np.pi * r ** (3 if held_is_length else 2) * c10),
+        targets / r if held_is_length else np.radians(targets), HELD_LENGTH if held_is_length else HELD_ROTATION,
+    )  # fmt: skip
+    if count >= MANY and not whole:
+        refuse(row, *states, codes)
     arguments = (
-        row, pressures / c10, others / (np.pi * r ** (3 if held_is_length else 2) * c10),
-        targets / r if held_is_length else np.radians(targets), HELD_LENGTH if held_is_length else HELD_ROTATION, buckled,
-        course, edges, places, float(accuracy), values, bounds, codes, stable, slack, unique, fields,
+        row, *states, buckled, course, edges, places, float(accuracy), values, bounds, codes, stable, slack, unique, fields
     )  # fmt: skip
     if not at_once(count, hold_many, hold_many, *arguments):
         hold_many(*arguments)

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import freesweep as fs
+from freesweep import holding
 from freesweep.first_integral import held as quadrature
 from freesweep.first_integral.uniform import Tubes
 from freesweep.solver import batch, hold_batch
@@ -130,3 +132,17 @@ def test_a_cylinder_that_is_not_extended_is_held_by_the_closed_form(kind):
     expected = (pressures * ideal[:, None]).ravel()
     assert np.all(found.status == OK)
     assert np.all(np.abs(found.values - expected) <= found.bounds)
+
+
+def test_a_force_stroke_curve_of_many_states_refuses_what_few_states_refuse():
+    """Vectors look through many states first; a few are left to the scalar kernels."""
+    rubber = fs.MooneyRivlin(0.11e6, 0.06e6)
+    muscle = fs.Actuator(
+        alpha=30, beta=-30, length=0.1, radius=5e-3, wall=1.5e-3, material=rubber, fiber_extension=1.004
+    )
+    lengths, pressures = 0.1 * np.linspace(0.8, 1.2, 21), np.array([1e4, 5e4, 2e5])
+    few = [fs.blocked_force(muscle, p, lengths, x=0.0)["status"].values for p in pressures]
+    many = fs.blocked_force(muscle, pressures, lengths, [-0.01, 0.0, 0.01, 0.02], x=0.0)
+    assert many["status"].size >= holding.MANY
+    assert np.array_equal(many["status"].sel(torque=0.0), np.array(few).T)
+    assert {*np.unique(few)} == {OK, COMPRESSED, HELD_IMPOSSIBLE}

@@ -9,7 +9,7 @@ from .find import HELD_LENGTH, find
 from .march import cylinder_multiplier
 from .profile import FIELDS, at_stations
 from .slack import slack_fibers
-from .status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
+from .status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK, PENDING
 
 FINER, FINEST = 4, 6144  # times the cells of the base mesh, up to so many: some layers are thin
 CONFIRMED = 0.01  # relative difference of a limit's place from one mesh to the next
@@ -89,9 +89,10 @@ def hold_many(
 ):  # fmt: skip
     """Held states of one design, for arrays of pressure, of the load that is not unknown, and of the held quantity.
 
-    The n-th entries belong together. ``targets`` are in radii (deformed length) or radians, of the whole tube; a tube that
-    is the same all along is solved by half (``edges`` and ``places`` of one segment), unless ``buckled``. ``values`` and
-    ``bounds`` are (n, 6): length, volume, twist, energy of half the tube, stretch in the middle, multiplier.
+    The n-th entries belong together; those whose status is not PENDING are passed over. ``targets`` are in radii (deformed
+    length) or radians, of the whole tube; a tube that is the same all along is solved by half (``edges`` and ``places`` of
+    one segment), unless ``buckled``. ``values`` and ``bounds`` are (n, 6): length, volume, twist, energy of half the tube,
+    stretch in the middle, multiplier.
     """
     base = edges[len(edges) - 1]
     half = len(places) == 2
@@ -107,6 +108,8 @@ def hold_many(
             for k in range(FIELDS):
                 profiles[i, k, j] = np.nan
         slack[i], stable[i] = 0, 0
+        if status[i] != PENDING:
+            continue
         target = 0.5 * targets[i] if half else targets[i]
         status[i], unstable, doublings, now, tube, space = find_on_some_mesh(
             problem, pressures[i], others[i], target, kind, buckled, course, first_tube, accuracy, first_space, out

@@ -16,7 +16,7 @@ from .block import block_many
 from .branch import FORCE, MOONEY_RIVLIN, SECOND, THIRD, TORQUE, YEOH
 from .find import HELD_LENGTH
 from .lagrangian import ROUNDING
-from .status import OK, PENDING
+from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 5  # solutions of one state, at most; two do nearly always
 CLEAR = 20.0  # times its bounds: a difference of C from which a secant is good
@@ -34,6 +34,12 @@ class Holds(NamedTuple):
     stable: np.ndarray
 
 
+def _pending(count):
+    return Holds(
+        np.full(count, np.nan), np.full(count, np.nan), np.full(count, PENDING, np.int64), np.zeros(count, np.int64)
+    )
+
+
 def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=True, soon=False) -> Holds:
     """Hold each problem at its target under each of its pressures; arguments as of :func:`block.block_many`, ``tube`` its
     (course, edges, places).
@@ -42,10 +48,7 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
     of the scalar kernels alone (``lanes=False``) differ by less than the bounds. ``soon``: a few states need not wait for
     the compiler (:mod:`freesweep.interpret`).
     """
-    count = len(pressures)
-    found = Holds(
-        np.full(count, np.nan), np.full(count, np.nan), np.full(count, PENDING, np.int64), np.zeros(count, np.int64)
-    )
+    count, found = len(pressures), _pending(len(pressures))
     scalar = (problems, targets, kind, first, pressures, *tube, accuracy, *found)
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
         from .lanes.hold import seek_lanes
@@ -66,6 +69,26 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
     if not (soon and at_once(count, block_many, block_many, *scalar)):
         block_many(*scalar)
     return found
+
+
+def refuse(problem, pressures, others, targets, kind, status):
+    """Mark in ``status`` what nothing can hold, of a design that is the same all along; arguments as of
+    :func:`hold.hold_many`. To the scalar kernels such a state is the dearest, as they look for it on several meshes.
+    """
+    if config.DISABLE_JIT:
+        return
+    from .lanes.hold import seek_lanes
+
+    count = len(pressures)
+    problems = np.repeat(problem[None], count, axis=0)
+    problems[:, TORQUE if kind == HELD_LENGTH else FORCE] = others
+    constants = YEOH if np.any(problem[[SECOND, THIRD]] != 0.0) else MOONEY_RIVLIN
+    found, each = _pending(count), np.arange(count)
+    seek_lanes(
+        problems, 0.5 * targets, each, pressures, each, kind == HELD_LENGTH, constants, *found, *np.empty((4, count))
+    )
+    none = (found.status == COMPRESSED) | (found.status == HELD_IMPOSSIBLE)
+    status[none] = found.status[none]
 
 
 def _hold(problems, targets, length_held, owners, pressures, rows, constants, base, accuracy, found):
