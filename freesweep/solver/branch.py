@@ -31,6 +31,17 @@ def rubber_of(problem):
     return problem[RATIO], problem[SECOND], problem[THIRD]
 
 
+@kernel
+def workspace(base, varying):
+    """Scratch of :func:`walk` for a base mesh of ``base`` cells, and the cells of a tube that varies."""
+    size = (base << nested.MAX_DOUBLINGS) + 2
+    space = (
+        np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
+        np.zeros((5, size)), np.zeros((6, base + 1)), np.zeros((4, guide.PLACES)),
+    )  # fmt: skip
+    return space, np.zeros((size if varying else 1, 3))
+
+
 @inlined
 def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slack, limit, stations, profiles):
     """Equilibria of one design at rising ``pressures``, on the branch that the module describes.
@@ -170,15 +181,9 @@ def walk_many(
     half of each solved. ``edges`` (segments + 1,) are the nodes of the base mesh at those places. A walk that
     does not converge there, where cells may be longer than an end layer, is walked again on a finer one.
     """
-    base = FINER * edges[len(edges) - 1]
-    size = (base << nested.MAX_DOUBLINGS) + 2
-    table = np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
     varying = course.shape[0] > 0
-    cells = np.zeros((size if varying else 1, 3))
-    space = (
-        np.zeros((5, size)), np.zeros((13, size)), table, np.zeros((5, size)), np.zeros((6, base + 1)),
-        np.zeros((4, guide.PLACES)),
-    )  # fmt: skip
+    space, cells = workspace(edges[len(edges) - 1], varying)
+    finer_space, finer_cells, has_finer = space, cells, False  # large: made where it is needed
     own_course = course if varying else np.zeros((1, 1, 3, 4))
     own_places = places.copy() if varying else np.zeros(2)
     middle = edges[len(edges) - 1]
@@ -198,9 +203,13 @@ def walk_many(
             limits[k] = np.nan
             continue
         for factor in (1, FINER):
-            tube = (own_course, factor * edges, cells, not varying, factor * middle, own_places)
+            if factor == FINER and not has_finer:
+                finer_space, finer_cells = workspace(FINER * edges[len(edges) - 1], varying)
+                has_finer = True
+            own_space, own_cells = (space, cells) if factor == 1 else (finer_space, finer_cells)
+            tube = (own_course, factor * edges, own_cells, not varying, factor * middle, own_places)
             walk(
-                problems[k], tube, pressures[own], accuracy, space, values[own], bounds[own], status[own], slack[own],
+                problems[k], tube, pressures[own], accuracy, own_space, values[own], bounds[own], status[own], slack[own],
                 limits[k], stations, profiles[own],
             )  # fmt: skip
             if factor == FINER or not np.any((status[own] == NOT_CONVERGED) | (status[own] == INACCURATE)):
