@@ -121,6 +121,23 @@ def garbage_behind_the_signature(path):
     path.write_bytes(path.read_bytes()[:8] + np.random.default_rng(1).bytes(5000))
 
 
+@hostile("texts and references are damaged")
+def heap_that_never_ends(path):
+    """The HDF5 library takes a free space of no size for ever."""
+    content = bytearray(path.read_bytes())
+    at = content.index(b"GCOL\x01") + 16
+    content[at : at + 16] = bytes(16)
+    path.write_bytes(content)
+
+
+@hostile("texts and references are damaged")
+def heap_larger_than_the_file(path):
+    content = bytearray(path.read_bytes())
+    at = content.index(b"GCOL\x01") + 8
+    content[at : at + 8] = (1 << 40).to_bytes(8, "little")
+    path.write_bytes(content)
+
+
 # --- other files
 
 

@@ -60,7 +60,7 @@ def test_every_flipped_bit_and_every_truncation_is_found(atlas, tmp_path):
 
 
 READER = """
-import random, sys
+import faulthandler, random, sys
 from pathlib import Path
 from freesweep.atlas.store import AtlasError, open_atlas
 from freesweep.verify import faults
@@ -79,6 +79,7 @@ for _ in range(int(sys.argv[3])):
         changed[place : place + 64] = content[other : other + 64]
     path.write_bytes(changed)
     print(kind, place, flush=True)
+    faulthandler.dump_traceback_later(60, exit=True)  # the HDF5 library may not end
     tally[2] += not faults(path) and changed != content
     try:
         with open_atlas(path) as opened:

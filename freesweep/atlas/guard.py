@@ -10,6 +10,8 @@ import stat
 import zlib
 from pathlib import Path
 
+from .heaps import damaged_heap
+
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 LARGEST_FILE = 1 << 40  # [bytes]: more than an atlas of spec.MAX_POINTS
 MOST_OBJECTS = 512  # in the file, and attributes of one object
@@ -92,6 +94,9 @@ class _Guard:
                 f"it would unpack from {self.size:,} to {self.declared:,} bytes, more than {BOMB} times its size: a bomb,"
                 " or an atlas without results"
             )
+        skipped = [(offset, length) for _, _, offset, length in self.packed]
+        if (place := damaged_heap(self.path, self.size, skipped)) is not None:
+            raise Unsafe(f"its texts and references are damaged at byte {place:,}")
         self._unpack()
 
     def _unpack(self):
