@@ -42,6 +42,7 @@ def test_every_state_is_counted_once(small):
     assert small.broken == 0
     for ratios in small.ratios.values():
         assert np.median(np.concatenate(ratios)) > 1.0
+    assert np.median(np.concatenate([ratio for ratios in small.ratios.values() for ratio in ratios])) < 10.0
 
 
 def test_threads_change_nothing(small):

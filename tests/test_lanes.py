@@ -8,6 +8,7 @@ import numba
 import numpy as np
 import pytest
 
+from freesweep.census.designs import quadrature
 from freesweep.solver import batch, lagrangian
 from freesweep.solver.lanes import vector
 from freesweep.solver.lanes.vector import WIDTH, bits, get, mask_of, put, select, some, spread
@@ -150,6 +151,21 @@ def test_lanes_agree_with_the_scalar_kernels_within_the_bounds(sample, together)
     assert np.all(np.isnan(together.values[~solved]))
     assert np.array_equal(np.isnan(together.limits), np.isnan(alone.limits))
     assert np.nanmax(np.abs(together.limits / alone.limits - 1)[:, 0]) < 1e-6
+
+
+@pytest.mark.parametrize("lanes", [True, False])
+def test_the_middle_of_a_long_tube_is_told_by_its_ends(lanes):
+    """Meshes that are far too coarse for its last layers: the bound is sharp, and holds against quadrature."""
+    columns = [[30, -50, 10**e, 0.3, 1.005, 0.5, 0, 0, p, 1] for e in (0.5, 1, 1.3, 1.6, 2) for p in (1.0, np.inf)]
+    tubes, (alpha, beta, length, wall, gamma, ratio, *_, pressures, full) = np.array(columns), np.transpose(columns)
+    a, b, zero = np.tan(np.radians(alpha)), np.tan(np.radians(beta)), 0.0 * alpha
+    problems = np.column_stack(
+        [0.5 * (a + b), 0.5 * (a - b), wall * (2 + wall), gamma, ratio, full, zero, zero, length, zero, zero]
+    )
+    found = walked(problems, np.arange(len(tubes) + 1), pressures, lanes=lanes)
+    exact, errors = quadrature(tubes, found.values[:, 4])
+    assert np.all(np.abs(found.values - exact) <= found.bounds + errors)
+    assert np.all(found.bounds[length > 15, 4] < 1e-10)
 
 
 def test_yeoh_rubbers_in_lanes_agree_with_the_scalar_kernels_whoever_else_is_there():

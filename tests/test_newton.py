@@ -51,7 +51,7 @@ def integrands(y, v, cell, load):
 
 
 @numba.njit
-def scales(outputs, load, length, tolerance):
+def scales(outputs, cell, load, length, tolerance):
     floor = 2e-13 + 10.0 * tolerance
     return (1.0, 1.0, 1.0, 1.0, 1.0, 1.0), (floor, floor, floor, floor, floor, floor)
 

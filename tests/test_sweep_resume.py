@@ -91,7 +91,8 @@ def test_a_killed_sweep_goes_on_to_the_same_bits(moment, reference, tmp_path, mo
     assert child.returncode == -signal.SIGKILL, child.stderr
     assert out.exists() == (moment == 0)
     if moment > 2:
-        assert len(list(Path(f"{out}.parts").glob("free-*.bin"))) == moment - 2
+        there = len(list(Path(f"{out}.parts").glob("free-*.bin")))
+        assert there in (moment - 2, moment - 3)  # the other thread may have been about to put its own in place
         solved, solve = [], run.solve_shard
         monkeypatch.setattr(run, "solve_shard", lambda *job: solved.append(len(job[0].problems)) or solve(*job))
         same_bits(reference, make(out, SWEEP))

@@ -8,7 +8,7 @@ from .count import FINER, Census
 from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures
 
 HELD_EVERY = 16  # one design in that many is also held at its length and at its rotation
-ACCURACY, AUDIT_ACCURACY = 1e-6, 1e-8
+ACCURACY, AUDIT_ACCURACY = 1e-6, 1e-10
 
 
 def census(count, seed=0, *, audit=1000, threads=None, progress=True) -> Census:

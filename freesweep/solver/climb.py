@@ -129,7 +129,7 @@ def climb(x, y, tube, start, end, flat, work):
         own = fill(course, edges, x, n, n, cells)
         if by_load:
             now = loaded(start, direction, mu)
-            status, unstable, _ = newton.solve(
+            status, unstable, _, _ = newton.solve(
                 lagrangian.density, x, y, n, free, own, now, newton.UNKNOWN, TOLERANCE, work
             )
             target = hold(lagrangian.conjugate, x, y, n, own, now, direction, work[8])
@@ -219,7 +219,7 @@ def creep(x, y, tube, start, end, work):
             kept_y[i] = y[i]
         ahead = min(1.0, t + step)
         now = uniform.between(start, end, ahead)
-        status, unstable, _ = newton.solve(
+        status, unstable, _, _ = newton.solve(
             lagrangian.density, x, y, n, free, fill(course, edges, x, n, n, cells), now, newton.UNKNOWN, TOLERANCE, work
         )
         drift = largest_drift(y, kept_y)

@@ -36,6 +36,7 @@ NO_ROOM = 1e-30  # stands for G - v^2 where that is negative: the state is refus
 LAST_STEP = 10.0  # share of Newton's tolerance in every error bound
 ROUNDING = 2e-13  # relative floor of every error bound
 ENERGY_ROUNDING = 4e-15  # the energy's, times the work of the loads
+WORK_STEP = 4.0  # share of Newton's tolerance in that: the volume changes twice as much as y, and the length with it
 
 
 @kernel
@@ -209,24 +210,31 @@ def fiber_multipliers(y, v, cell, load):
 
 
 @kernel
-def scales(outputs, load, length, tolerance):
+def scales(outputs, cell, load, length, tolerance):
     """By what each output's error is measured, and the error that rounding and Newton's last step (relative
     ``tolerance``) make: two tuples (length, volume, twist, energy, middle stretch, multiplier).
 
     Lengths count per undeformed length, stretch per radius, rotation per radian or relative to itself, the rest
-    relative to itself. The energy of a hardly strained wall carries the rounding of y - 1, as work of the loads.
+    relative to itself. The energy of a hardly strained wall carries the rounding of y - 1, as work of the loads. Fibers
+    far from the axis (large H and D in ``cell``) make much rotation and length of a little change of y.
     """
     share = ROUNDING + LAST_STEP * tolerance
     volume, turn, energy = outputs[1], outputs[2], outputs[3]
     work = abs(load[3] * volume) + abs(load[4] * outputs[0]) + abs(load[5] * turn)
+    gg, wrong = load[0] * load[0], length * tolerance
+    turned = 2.0 * abs(cell[0]) * gg * wrong  # psi_y at y = 1
+    longer = abs(gg * gg * cell[0] * cell[0] - cell[1] * cell[1]) * wrong  # G_y/2 there
+    larger = longer * volume / length
     by_turn = max(0.5, abs(turn))  # half a tube: half a radian
     by_energy = max(energy, 1e-9 * work)
     by_load = max(abs(load[3]), max(abs(load[4]), abs(load[5])))
     return (length, volume, by_turn, by_energy, 1.0, by_load), (
-        share * length,
-        share * volume,
-        share * by_turn,
-        share * by_energy + (ENERGY_ROUNDING + tolerance) * work,
+        share * length + longer,
+        share * volume + larger,
+        share * by_turn + turned,
+        share * by_energy
+        + (ENERGY_ROUNDING + WORK_STEP * tolerance) * work
+        + (abs(load[3]) * larger + abs(load[4]) * longer + abs(load[5]) * turned),
         share + ROUNDING * outputs[4],
         share * by_load,
     )

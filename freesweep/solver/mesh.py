@@ -27,6 +27,15 @@ def cell_at(cells, j):
 
 
 @kernel
+def largest(cells):
+    """The largest sizes of what varies along the tube."""
+    a, b, c = abs(cells[0, 0]), abs(cells[0, 1]), abs(cells[0, 2])
+    for j in range(1, len(cells)):
+        a, b, c = max(a, abs(cells[j, 0])), max(b, abs(cells[j, 1])), max(c, abs(cells[j, 2]))
+    return a, b, c
+
+
+@kernel
 def layer_mesh(length, rate, n, x):
     """First guess: n cells on 0..length, graded by an end layer exp(-rate x)."""
     k = FIRST_GRADING * rate

@@ -2,15 +2,16 @@
 
 A midpoint cell errs by even powers of its size, so results A on meshes of n/2, n, 2n, 4n cells extrapolate to fourth
 order, ``E = (4 A_2n - A_n)/3``. The difference of two successive E, divided by the 15 that the order allows, estimates the
-error of the second; the difference before it, divided by 225, guards against its passing through zero, and so does what
-the two orders are to each other over all outputs. The bound is ``SAFETY`` times that, plus a floor for rounding.
+error of the second; the difference before it, divided by 225, guards against its passing through zero. So does the
+largest share that such an estimate has in the last change of any output, A_2n - A_n: no other has a smaller one. The bound
+is ``SAFETY`` times the estimate, plus a floor for rounding and for what Newton's last steps left.
 
 The rows of ``table`` belong to the meshes, coarsest first; its columns are the outputs: the four integrals, y in the
 middle, and the multiplier of a held integral.
 """
 
 from ..jit import kernel
-from . import held, mesh, newton
+from . import held, mesh, middle, newton
 from .course import fill
 from .held import loaded
 
@@ -20,7 +21,8 @@ MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or mor
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.3
-LIKELY = 0.4  # times what the step to second order was, times the ratio of the two orders over all outputs
+FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
+TINY = 1e-300
 
 PLAIN, HELD, TURNING_POINT = 0, 1, 2
 UNREACHED = 3  # the accuracy was not met on the finest mesh
@@ -45,20 +47,23 @@ def integrate(integrands, x, y, n, cells, load, row):
 
 
 @kernel
-def extrapolate(table, level, scales, floors, values, bounds):
-    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound."""
-    largest, fourth, second_order = 0.0, 0.0, 1e-300
+def extrapolate(table, level, scales, floors, missed, values, bounds):
+    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound. ``missed`` is the error of
+    the stretch in the middle that no mesh shows.
+    """
+    largest, share, change = 0.0, 0.0, TINY
+    for k in range(OUTPUTS):
+        change += FAINT / OUTPUTS * abs(table[level, k] - table[level - 1, k]) / scales[k]
     for k in range(OUTPUTS):
         a, b, c, d = table[level - 3, k], table[level - 2, k], table[level - 1, k], table[level, k]
         first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
         estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
         values[k] = third
         bounds[k] = SAFETY * estimate
-        fourth += estimate / scales[k]
-        second_order += abs(d - c) / scales[k]
+        share = max(share, estimate / scales[k] / (abs(d - c) / scales[k] + change))
     for k in range(OUTPUTS):
-        likely = fourth / second_order * abs(table[level, k] - table[level - 1, k])
-        bounds[k] = max(bounds[k], LIKELY * likely)
+        bounds[k] = max(bounds[k], share * abs(table[level, k] - table[level - 1, k]))
+        bounds[k] += missed if k == MIDDLE else 0.0
         largest = max(largest, bounds[k] / scales[k])
         bounds[k] += floors[k]
     return largest
@@ -144,8 +149,9 @@ def solve(
     Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
     """
     n = len(x) - 1
-    course, edges, cells, free, middle, _ = tube
+    course, edges, cells, free, center, _ = tube
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
+    error, coarser, where, far = tolerance, tolerance, middle.NOT_LONG, 1.0
     passes, level, count, on_base, first_mu = 0, 1, n, mu, mu
     unstable, rate, shrunk = 0, newton.UNKNOWN, False
     xs, ys = x, y
@@ -153,8 +159,9 @@ def solve(
         own = fill(course, edges, xs, count, n, cells)
         if goal == TURNING_POINT:
             mu = first_mu
+        coarser = error
         if goal == PLAIN:
-            status, unstable, rate = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
+            status, unstable, rate, error = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
         else:
             turning = goal == TURNING_POINT
             status, unstable, mu = held.solve(
@@ -180,14 +187,18 @@ def solve(
 
         row = table[level]
         integrate(integrands, xs, ys, count, own, now, row)
-        row[MIDDLE], row[MULTIPLIER] = ys[middle * count // n], mu
+        row[MIDDLE], row[MULTIPLIER], missed = ys[center * count // n], mu, 0.0
+        if free:
+            if level == 1:
+                where, far = middle.node(density, xs, ys, n, mesh.cell_at(own, 0), now, accuracy)
+            row[MIDDLE], missed = middle.stretch(density, xs, ys, count, where, n, far, mesh.cell_at(own, 0), now)
         if level >= 3:
-            out[2], out[3] = scales(row, now, x[n] - x[0], tolerance)
+            out[2], out[3] = scales(row, mesh.largest(own), now, x[n] - x[0], max(error, coarser))
             if goal == HELD:  # the multiplier counts in units of its direction
                 unit = max(abs(direction[3]), max(abs(direction[4]), abs(direction[5])))
                 out[2, MULTIPLIER] /= max(unit, 1.0)
                 out[3, MULTIPLIER] /= unit
-            if extrapolate(table, level, out[2], out[3], out[0], out[1]) <= accuracy:
+            if extrapolate(table, level, out[2], out[3], missed, out[0], out[1]) <= accuracy:
                 return newton.CONVERGED, unstable, level - 1, on_base
             if level == MAX_DOUBLINGS + 1:
                 return UNREACHED, unstable, MAX_DOUBLINGS, on_base

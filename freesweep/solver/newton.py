@@ -116,8 +116,8 @@ def new_rate(rate, size, before):
 def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
     """Damped Newton from ``y`` (changed in place), to a relative error of ``tolerance``.
 
-    Returns ``(status, negative pivots, rate)``; the rate of convergence seen on one mesh serves the next. ``work`` is
-    scratch of shape (13, > n).
+    Returns ``(status, negative pivots, rate, error)``; the rate of convergence seen on one mesh serves the next; the last
+    step may have left the relative ``error``. ``work`` is scratch of shape (13, > n).
     """
     g, d, e, inverse, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
     first, last = 1, n if free else n - 1
@@ -128,7 +128,7 @@ def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
     while iterations < MAX_ITERATIONS and halvings < MAX_HALVINGS:
         admitted = assemble(density, x, trial, n, cells, load, convex, least, room, g, d, e)
         if iterations == 0 and not admitted:
-            return INFEASIBLE, 0, rate
+            return INFEASIBLE, 0, rate, tolerance
         if iterations > 0 and not convex:
             # shorten a long step until its slope says that the valley's floor was not overshot by much
             after = -1.0
@@ -167,6 +167,6 @@ def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
         if negative == 0 and settled(size, before, rate, tolerance):
             for i in range(n + 1):
                 y[i] = trial[i]
-            return CONVERGED, 0, rate
+            return CONVERGED, 0, rate, min(CAUTION * rate * size * size, size)
         fraction, convex, halvings, iterations = 1.0, False, 0, iterations + 1
-    return STALLED, 1, rate
+    return STALLED, 1, rate, tolerance

@@ -1,15 +1,15 @@
 """Nested meshes of :mod:`freesweep.solver.nested` for a vector of designs: the same values, the same bounds.
 
-Three meshes suffice where a generous bound meets the accuracy: the change between two extrapolations, times EARLY. A lane
-whose bounds meet the accuracy keeps its numbers; the others go on to finer meshes. A lane that needs more than
-``LANE_DOUBLINGS``, or fails, is left to the scalar kernels.
+Three meshes suffice where bounds that are more generous by EARLY meet the accuracy. A lane whose bounds meet the accuracy
+keeps its numbers; the others go on to finer meshes. A lane that needs more than ``LANE_DOUBLINGS``, or fails, is left to
+the scalar kernels.
 """
 
 from ...jit import kernel
 from .. import lagrangian
-from ..nested import LIKELY, SAFETY, SMALLEST_TOLERANCE
+from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..newton import SMALL_STEP
-from . import mesh, newton
+from . import mesh, middle, newton
 from .slack import pushing
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
@@ -17,7 +17,7 @@ OUTPUTS = 5  # length, volume, twist, energy, middle stretch
 MIDDLE = 4
 LANE_DOUBLINGS = 6  # of the base mesh
 LARGEST_TOLERANCE = 1e-7  # of Newton's last step; what it leaves is in the bounds
-EARLY = 2.0  # of the change between two extrapolations: a bound of the second one, generous as no third one confirms it
+EARLY = 2.2  # of bounds that no third extrapolation confirms
 
 
 @kernel
@@ -42,35 +42,37 @@ def integrate(x, y, n, cell, load, row):
 
 
 @kernel
-def extrapolate(table, level, load, length, error, sizes, values, bounds):
+def extrapolate(table, level, cell, load, length, error, missed, sizes, values, bounds):
     """Fourth-order values and bounds from the last four rows, or the first three; returns the largest scaled bound,
     rounding left out.
     """
     row = table[level]
     outputs = (get(row, 0), get(row, 1), get(row, 2), get(row, 3), get(row, 4))
-    scale, floor = lagrangian.scales(outputs, load, length, error)
+    scale, floor = lagrangian.scales(outputs, cell, load, length, error)
     put(sizes, 0, scale[0])
     put(sizes, 1, scale[1])
     put(sizes, 2, scale[2])
     put(sizes, 3, scale[3])
     put(sizes, 4, scale[4])
-    fourth, second_order, largest = spread(0.0), spread(1e-300), spread(0.0)
+    change, share, largest = spread(TINY), spread(0.0), spread(0.0)
+    for k in range(OUTPUTS):
+        change = change + FAINT / OUTPUTS * abs(get(row, k) - get(table[level - 1], k)) / get(sizes, k)
     for k in range(OUTPUTS):
         b, c, d = get(table[level - 2], k), get(table[level - 1], k), get(row, k)
         second, third = (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-        estimate = abs(third - second) * (EARLY / SAFETY if level == 2 else 1.0 / 15.0)
+        estimate = abs(third - second) / 15.0
         if level > 2:
             first = (4.0 * b - get(table[level - 3], k)) / 3.0
             estimate = max(estimate, abs(second - first) / 225.0)
-        elif k == MIDDLE:
-            estimate = max(estimate, abs(d - c) / SAFETY)
         put(values, k, third)
-        put(bounds, k, SAFETY * estimate)
-        fourth = fourth + estimate / get(sizes, k)
-        second_order = second_order + abs(d - c) / get(sizes, k)
+        put(bounds, k, estimate)
+        share = max(share, estimate / (abs(d - c) + get(sizes, k) * change))
+    caution = EARLY if level == 2 else 1.0
     for k in range(OUTPUTS):
-        likely = fourth / second_order * abs(get(row, k) - get(table[level - 1], k))
-        bound = max(get(bounds, k), LIKELY * likely)
+        second_order = share * abs(get(row, k) - get(table[level - 1], k))
+        bound = caution * max(SAFETY * get(bounds, k), second_order)
+        if k == MIDDLE:
+            bound = bound + missed
         largest = max(largest, bound / get(sizes, k))
         put(bounds, k, bound)
     put(bounds, 0, get(bounds, 0) + floor[0])
@@ -114,9 +116,9 @@ def keep(ready, count, coarse_x, coarse_y, x, y, kept):
 
 
 @kernel
-def solve(x, y, n, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out, kept, doublings):
-    """Solve the ``active`` lanes; ``x`` and ``y`` (n + 1, WIDTH) are the graded base mesh and a first guess, replaced by its
-    solution.
+def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out, kept, doublings):
+    """Solve the ``active`` lanes, whose uniform tubes have stretch ``u``; ``x`` and ``y`` (n + 1, WIDTH) are the graded base
+    mesh and a first guess, replaced by its solution.
 
     ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
     values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH or 0, 5, ...), if asked for,
@@ -130,6 +132,9 @@ def solve(x, y, n, cell, load, length, active, accuracy, meshes, work, table, si
     converged, error = newton.solve(density, x, y, n, True, cell, load, todo, y, True, SMALL_STEP, tolerance, work)
     todo = todo & converged
     integrate(x, y, n, cell, load, table[1])
+    room = sizes[OUTPUTS:]
+    long, share, missed, resolved = middle.node(x, y, n, u, cell, load, accuracy, room)
+    put(table[1], MIDDLE, middle.stretch(y, n, n, u, long, share, room))
     half_x, half_y, here_x, here_y, fine_x, fine_y = meshes[0], meshes[1], meshes[2], meshes[3], meshes[4], meshes[5]
     for i in range(n // 2 + 1):
         put(half_x, i, get(x, 2 * i))
@@ -151,6 +156,7 @@ def solve(x, y, n, cell, load, length, active, accuracy, meshes, work, table, si
         converged = converged | again
     todo = todo & converged
     integrate(half_x, half_y, n // 2, cell, load, table[0])
+    put(table[0], MIDDLE, middle.stretch(half_y, n // 2, n, u, long, share, room))
     met, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
     level, count = 1, n
     while some(todo) and level <= LANE_DOUBLINGS:
@@ -174,10 +180,13 @@ def solve(x, y, n, cell, load, length, active, accuracy, meshes, work, table, si
             converged, error = converged | again, select(again, last, error)
         todo = todo & converged
         integrate(here_x, here_y, count, cell, load, table[level])
+        put(table[level], MIDDLE, middle.stretch(here_y, count, n, u, long, share, room))
         if level == 2 and len(kept) > 0:
             continue  # profiles have no bounds of their own: they keep to the finer mesh
-        largest = extrapolate(table, level, load, length, max(error, coarser), sizes, found[0], found[1])
+        largest = extrapolate(table, level, cell, load, length, max(error, coarser), missed, sizes, found[0], found[1])
         ready = todo & (largest <= accuracy)
+        if level == 2:
+            ready = ready & resolved
         for k in range(OUTPUTS):
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))

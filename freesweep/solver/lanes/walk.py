@@ -118,8 +118,8 @@ def solve_lanes(
         u, half = get(start, 0), get(columns, HALF)
         layer.begin(u, cell, load, half, base, work, meshes, x, y)
         met, alpha, beta = nested.solve(
-            x, y, base, cell, load, half, mask_of((1 << count) - 1), accuracy, meshes, work, table, sizes, found, out, kept,
-            doublings,
+            x, y, base, u, cell, load, half, mask_of((1 << count) - 1), accuracy, meshes, work, table, sizes, found, out,
+            kept, doublings,
         )  # fmt: skip
         met = met & guide.within(y, base, u)
         record(bits(met), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
