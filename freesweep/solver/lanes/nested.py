@@ -18,6 +18,7 @@ MIDDLE = 4
 LANE_DOUBLINGS = 6  # of the base mesh
 LARGEST_TOLERANCE = 1e-7  # of Newton's last step; what it leaves is in the bounds
 EARLY = 2.2  # of bounds that no third extrapolation confirms
+STILL = 1e-3  # radii: if the last node moves more, the layer is not resolved there, and all outputs err the more
 
 
 @kernel
@@ -186,7 +187,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
         largest = extrapolate(table, level, cell, load, length, max(error, coarser), missed, sizes, found[0], found[1])
         ready = todo & (largest <= accuracy)
         if level == 2:
-            ready = ready & resolved
+            ready = ready & resolved & (abs(get(here_y, count) - get(half_y, count // 2)) < STILL)
         for k in range(OUTPUTS):
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
