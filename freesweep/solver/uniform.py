@@ -29,6 +29,12 @@ def between(start, end, t):
 
 
 @kernel
+def may_let_go(u, L_yy, L_vv, half):
+    """Whether half a tube of length ``half`` is drawn in so much, its clamped end so near, that this may turn it back."""
+    return u < 1.0 - DRAWN_IN and not L_yy * half * half < FAR * FAR * L_vv
+
+
+@kernel
 def rising(density, u, trial, cell, start, end, half):
     """Whether the load rises all the way from ``u`` to ``trial``: no small snap was passed over. Where half a tube of length
     ``half`` is drawn in, its clamped end, which is not, may let go before: there the end has to be far.
@@ -45,7 +51,7 @@ def rising(density, u, trial, cell, start, end, half):
         before = density(here, 0.0, cell, start)[1]
         drive = density(here, 0.0, cell, end)[1] - before
         _, _, _, L_yy, _, L_vv = density(here, 0.0, cell, between(start, end, -before / drive))
-        if here < 1.0 - DRAWN_IN and not L_yy * half * half < FAR * FAR * L_vv:
+        if may_let_go(here, L_yy, L_vv, half):
             return False
         slope = -L_yy / drive * (1.0 if trial > u else -1.0)
         if not slope > 0.0:
@@ -62,12 +68,13 @@ def rising(density, u, trial, cell, start, end, half):
 def follow(density, u, cell, start, end, half):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the fraction reached (1: all)."""
     t, step = 0.0, FIRST_STEP
+    by_load = start[0] == end[0]
     while t < 1.0:
         ahead = min(1.0, t + step)
         load = between(start, end, ahead)
         trial, before, arrived = u, 1e300, False
         for _ in range(ITERATIONS):
-            room, L_y, _, L_yy, _, _ = density(trial, 0.0, cell, load)
+            room, L_y, _, L_yy, _, L_vv = density(trial, 0.0, cell, load)
             if not (room > 0.0 and L_yy < 0.0):
                 break
             change = -L_y / L_yy
@@ -78,6 +85,8 @@ def follow(density, u, cell, start, end, half):
                 arrived = True
                 break
             before = abs(change)
+        if by_load and arrived and ahead - t < FIRST_STEP and may_let_go(trial, L_yy, L_vv, half):
+            break  # a smaller step would only creep on to here
         if arrived and rising(density, u, trial, cell, start, end, half):
             t, u, step = ahead, trial, 2.0 * step
         else:
