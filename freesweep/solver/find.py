@@ -107,7 +107,7 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
         return COMPRESSED, 0, 0, load, 1.0
     size = (2.0 if tube[3] else 1.0) * max(abs(wanted), abs(natural))
     unstable, rounding = unstable_directions(
-        fine[0], fine[1], base << doublings, base, tube, now, direction, size, space[5], work
+        fine[0], fine[1], base << doublings, base, tube, now, direction, size, work
     )
     out[1, nested.MULTIPLIER] += rounding
     out[0, nested.MULTIPLIER] *= scale

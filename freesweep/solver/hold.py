@@ -22,8 +22,8 @@ def workspace(base, varying):
     """Scratch for a base mesh of ``base`` cells: see :func:`nested.solve`; and the cells of a tube that varies."""
     size = (base << nested.MAX_DOUBLINGS) + 2
     space = (
-        np.zeros((5, size)), np.zeros((13, 2 * size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
-        np.zeros((5, size)), np.zeros((2, base + 1)), np.zeros((3, 2 * size)),
+        np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
+        np.zeros((5, size)), np.zeros((2, base + 1)),
     )  # fmt: skip
     return space, np.zeros((size if varying else 1, 3))
 

@@ -14,7 +14,7 @@ from .uniform import between
 STEP, SMALLEST_STEP = 0.1, 1e-6  # of a march, as share of the way that is behind where it begins at a share of the load
 LARGEST_STEP_CHANGE = 0.05  # relative change of y in one step of a march
 TOLERANCE, NEWTON_ITERATIONS = 1e-10, 25  # of states on the way
-MARCH_STEPS = 600
+MARCH_STEPS, MARCH_WORK = 600, 1_500_000  # steps of a march at least; as many more as that work allows, in cells
 NO_SNAP, FASTER = (
     1e-4,
     4.0,
@@ -58,7 +58,7 @@ def march(x, y, tube, course, cell, blending, start, end, share, direction, mu, 
     kept_x, kept_y, kept_mu = np.empty(n + 1), np.empty(n + 1), mu
     t, step = share, share if share > 0.0 else STEP
     at, slowness, turn = share, 0.0, 1e300  # middle of the last step, 1/speed^2 there, turning point foretold
-    for _ in range(MARCH_STEPS):
+    for _ in range(max(MARCH_STEPS, MARCH_WORK // n)):
         for i in range(n + 1):
             kept_x[i], kept_y[i] = x[i], y[i]
         ahead = min(1.0, t + step)

@@ -19,7 +19,7 @@ from .guide import cell_along
 
 NODES = 160  # along the curve: a guess need be good to a hundredth only
 DEEPEST = 20.0  # e-folds from end to middle; beyond them the middle is the uniform stretch
-CROWDING = 0.01  # of an e-fold: the distances at the clamped end
+CROWDING = 0.01  # of an e-fold: the distances at the clamped end, if not less
 ROOT_STEPS = 60
 HALF_FITS = 1e-5  # relative
 STEEP = 0.5  # cosine of the meridian's angle
@@ -27,25 +27,25 @@ MOST_SHIFT = 0.1  # of what is left of the tube
 
 
 @kernel
-def trace(cell, load, top, gap, scale, curve):
-    """Half a tube whose middle lies ``gap`` short of ``top``: rows of ``curve`` (4, > NODES) take x, y at the nodes from the
-    clamped end on, sine and cosine of the meridian's angle in the cells between. Returns x of the middle, NaN where no
-    such shape is an equilibrium.
+def trace(cell, load, top, gap, scale, nodes, crowding, curve):
+    """Half a tube whose middle lies ``gap`` short of ``top``: rows of ``curve`` (5, > nodes) take x, y at the ``nodes`` from
+    the clamped end on, sine and cosine of the meridian's angle in the cells between, and y there. Returns x of the middle,
+    NaN where no such shape is an equilibrium.
     """
-    x, y, sine, cosine = curve[0], curve[1], curve[2], curve[3]
+    x, y, sine, cosine, between = curve[0], curve[1], curve[2], curve[3], curve[4]
     sign = 1.0 if top >= 1.0 else -1.0
     reach = abs(top - 1.0) - gap
     end = acosh(1.0 + reach / scale)
-    crowd = end + log((1.0 + CROWDING - exp(-end)) / CROWDING)
+    crowd = end + log((1.0 + crowding - exp(-end)) / crowding)
     theta, z, drive, R = 0.0, 0.0, 0.0, 0.0
-    for k in range(NODES, -1, -1):
+    for k in range(nodes, -1, -1):
         before, z_before, drive_before = theta, z, drive
-        from_end = log1p(CROWDING * (exp(crowd * k / NODES) - 1.0) / (1.0 + CROWDING))
-        theta = end - from_end if k < NODES else 0.0
+        from_end = log1p(crowding * (exp(crowd * k / nodes) - 1.0) / (1.0 + crowding))
+        theta = end - from_end if k < nodes else 0.0
         z = scale * 2.0 * sinh(0.5 * theta) ** 2
         y[k] = top - sign * (gap + z)
         drive = sign * lagrangian.density(y[k], 0.0, cell, load)[1]
-        if k == NODES:
+        if k == nodes:
             continue
         middle = 0.5 * (theta + before)
         z_middle = scale * 2.0 * sinh(0.5 * middle) ** 2
@@ -53,6 +53,7 @@ def trace(cell, load, top, gap, scale, curve):
         R_middle = R + (z_middle - z_before) * (drive_before + 0.5 * share * (drive - drive_before))
         R += 0.5 * (z - z_before) * (drive_before + drive)
         at = top - sign * (gap + z_middle)
+        between[k] = at
         room = 1.0 + lagrangian.kinematics(at, cell, load)[3]
         T = load[3] * at * at + load[4]
         if not (R_middle > 0.0 and room > 0.0 and T > 0.0 and at > 0.0):
@@ -62,11 +63,11 @@ def trace(cell, load, top, gap, scale, curve):
         sine[k] = sign * sqrt(R_middle * (2.0 * F + R_middle)) / (F + R_middle)
         x[k] = (theta - before) * scale * sinh(middle) / (sqrt(room) * abs(sine[k]))  # length of the cell, for now
     total = 0.0
-    for k in range(NODES):
+    for k in range(nodes):
         h = x[k]
         x[k] = total
         total += h
-    x[NODES], y[0] = total, 1.0
+    x[nodes], y[0] = total, 1.0
     return total
 
 
@@ -90,32 +91,41 @@ def lengthened(curve, half):
 
 
 @kernel
-def fit(cell, load, u, half, curve):
-    """The curve with ``half`` as x of the middle, toward the uniform stretch ``u``; its number of cells, 0 if there is none.
+def meet(cell, load, u, half, deep, tolerance, nodes, crowding, curve):
+    """Trace the tube whose middle lies at ``half``, toward the uniform stretch ``u``; x of that middle, less than half where
+    more than ``deep`` e-folds lie before it, NaN where there is none.
 
     ``|u - y| = gap cosh(theta)``: x of the middle grows with the e-folds.
     """
     reach = abs(u - 1.0)
-    low, high = 0.0, DEEPEST
+    low, high = 0.0, deep
     gap = reach / cosh(high)
-    total = trace(cell, load, u, gap, gap, curve)
-    if not total > 0.0:
-        return 0
-    if total <= half:
-        return lengthened(curve, half)
+    total = trace(cell, load, u, gap, gap, nodes, crowding, curve)
+    if not total > half:
+        return total
     miss_low, miss_high = -half, total - half
+    folds = 0.0
     for _ in range(ROOT_STEPS):
         folds = (low * miss_high - high * miss_low) / (miss_high - miss_low)
         gap = reach / cosh(folds)
-        total = trace(cell, load, u, gap, gap, curve)
+        total = trace(cell, load, u, gap, gap, nodes, crowding, curve)
         miss = total - half
-        if not abs(miss) > HALF_FITS * half:
+        if not abs(miss) > tolerance * half:
             break
         if miss > 0.0:
             high, miss_high, miss_low = folds, miss, 0.5 * miss_low
         else:
             low, miss_low, miss_high = folds, miss, 0.5 * miss_high
-    return scaled(curve, half) if total > 0.0 else 0
+    return total
+
+
+@kernel
+def fit(cell, load, u, half, curve):
+    """The curve with ``half`` as x of the middle, toward the uniform stretch ``u``; its number of cells, 0 for none."""
+    total = meet(cell, load, u, half, DEEPEST, HALF_FITS, NODES, CROWDING, curve)
+    if not total > 0.0:
+        return 0
+    return lengthened(curve, half) if total <= half else scaled(curve, half)
 
 
 @kernel

@@ -93,6 +93,20 @@ def ease(integrands, x, y, n, cosine, cells, load):
 
 
 @kernel
+def least_between(x, values, n, new_x, out):
+    """Least of the ``values`` (n,) of all cells that each cell of another mesh of n cells shares some length with."""
+    first = 0
+    for i in range(n):
+        while first < n - 1 and x[first + 1] <= new_x[i]:
+            first += 1
+        least, j = values[first], first
+        while j < n - 1 and x[j + 1] < new_x[i + 1]:
+            j += 1
+            least = min(least, values[j])
+        out[i] = least
+
+
+@kernel
 def node_density(x, n, rate, out):
     """Nodes per length from the turning ``rate`` of each cell."""
     largest = 1e-300

@@ -92,12 +92,12 @@ def ease(density, integrands, x, y, n, new_x, new_y, count, cells, load, work):
 
 @kernel
 def adapt(density, integrands, x, y, n, tube, load, work):
-    """Move the nodes of the base mesh to where the solution bends, and carry the solution over; returns whether it is
-    admissible there.
+    """Move the nodes of the base mesh to where the solution bends, and carry the solution over, eased where that leaves a
+    cell no room; returns whether it is admissible there.
     """
     course, edges, cells, free, _, _ = tube
     own = fill(course, edges, x, n, n, cells)
-    rate, nodes, new_x, new_y = work[2], work[3], work[4], work[5]
+    cosine, rate, nodes, new_x, new_y, least = work[1], work[2], work[3], work[4], work[5], work[7]
     for s in range(len(edges) - 1):  # each segment keeps its nodes: the jumps between them stay on the mesh
         a, b = edges[s], edges[s + 1]
         here = own[a:b] if len(own) > 1 else own
@@ -105,9 +105,15 @@ def adapt(density, integrands, x, y, n, tube, load, work):
         mesh.turning(integrands, x[a : b + 1], y[a : b + 1], b - a, symmetric, here, load, work, rate)
         mesh.node_density(x[a : b + 1], b - a, rate, nodes)
         mesh.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
+    own = fill(course, edges, new_x, n, n, cells)
+    fits = newton.admissible(density, new_x, new_y, n, own, load)
+    if free and not fits:
+        mesh.least_between(x, cosine, n, new_x, least)
+        mesh.ease(integrands, new_x, new_y, n, least, own, load)
+        fits = newton.admissible(density, new_x, new_y, n, own, load)
     for i in range(n + 1):
         x[i], y[i] = new_x[i], new_y[i]
-    return newton.admissible(density, x, y, n, fill(course, edges, x, n, n, cells), load)
+    return fits
 
 
 @kernel

@@ -1,18 +1,30 @@
 """From one state of a branch to the next: the quick ways first, then the slow one."""
 
+from math import sqrt
+
 import numpy as np
 
-from ..jit import inlined
-from . import guide, lagrangian, meridian, nested, newton, trail, uniform
+from ..jit import inlined, kernel
+from . import guide, lagrangian, meridian, nested, newton, quadrature, trail, uniform
 from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep, graded_for_turning
+from .guide import cell_along
 from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK
 
 COLD_REGRADES, WARM_REGRADES = 3, 1
-WARM, COLD, STEEP, SLOW, LAST_STEP, TRACED = 0, 1, 2, 3, 4, 5
+WARM, COLD, STEEP, INTEGRATED, SLOW, LAST_STEP, TRACED = 0, 1, 2, 3, 4, 5, 6
 CAUTION = 10.0  # times the bounds of shapes so steep: their errors fall to fourth order only on finer meshes
+UPRIGHT = 0.1  # cosine of the meridian's angle in the first cell: below it errors know no order on the first meshes
 LIMIT_ROUNDING = 4e-9  # of a limit pressure: where a load is flat, many shapes are equilibria to rounding
 TRACED_ERROR = 0.02  # of the way to a turning point that was traced only
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel
+def end_cosine(x, y, tube, load):
+    """Cosine of the meridian's angle in the first cell."""
+    v = (y[1] - y[0]) / (x[1] - x[0])
+    s = lagrangian.integrands(0.5 * (y[0] + y[1]), v, cell_along(tube, 0.0), load)[0]
+    return s / sqrt(s * s + v * v)
 
 
 @inlined
@@ -25,7 +37,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
     start, way, goal, mu = before, WARM, nested.PLAIN, 0.0
     direction = FLAT
     limit, limit_bound = np.nan, np.nan
-    flat, shapes = NEARLY_FLAT, space[4]
+    flat, shapes, lost = NEARLY_FLAT, space[4], NOT_CONVERGED
     for i in range(len(x)):
         shapes[4, i], shapes[5, i] = last_x[i], last_y[i]
     alike = len(u) == 1  # all along
@@ -41,7 +53,14 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
         elif way == STEEP:
             regrades = 0  # its mesh is that of the shape itself
             if not meridian.start(tube, u, load, x, y, space[3], work):
-                way = SLOW
+                way = INTEGRATED
+        if way == INTEGRATED:
+            status, doublings = quadrature.solve(
+                tube, u[0], u[0], load, len(x) - 1, accuracy, fine, space[3], table, out
+            )
+            if status != NOT_CONVERGED:
+                return status, doublings, limit, limit_bound
+            way = SLOW
         if way == SLOW:
             start = before
             status, mu = OK, 1.0
@@ -54,8 +73,10 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 status = OK if part > 0.0 else NOT_CONVERGED
             if status == OK and start[0] != load[0]:
                 status, _ = creep(x, y, tube, start, load, work)
-                if status == BEYOND_LIMIT:
+                if status == BEYOND_LIMIT and not alike:
                     return status, 0, limit, limit_bound
+                if status == BEYOND_LIMIT:  # steps may die out for another reason: the tracer decides, if it can
+                    lost, status = BEYOND_LIMIT, NOT_CONVERGED
             elif status == OK:
                 status, mu = climb(x, y, tube, start, load, flat, work)
             if status == BEYOND_LIMIT:
@@ -73,7 +94,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
             start, regrades = before, 0
             what, mu, middle = trail.trail(tube, before, load, middle, x, y, space[3], work)
             if what == trail.LOST:
-                return NOT_CONVERGED, 0, limit, limit_bound
+                return lost, 0, limit, limit_bound
             if what == trail.TURNED and start[0] != load[0]:
                 return BEYOND_LIMIT, 0, limit, limit_bound
             goal, direction = nested.PLAIN, FLAT
@@ -123,7 +144,22 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
             else:
                 found = abs(y[tube[4]] / last_y[tube[4]] - 1.0) < 3.0 * CLIMB_CHANGE
             if found:
-                return (OK if status == newton.CONVERGED else INACCURATE), doublings, limit, limit_bound
-        if way == TRACED or (way >= SLOW and not alike):
+                status = OK if status == newton.CONVERGED else INACCURATE
+                if alike and way >= STEEP and end_cosine(x, y, tube, load) < UPRIGHT:
+                    toward = u[0] if guided else np.nan
+                    better, levels = quadrature.solve(
+                        tube, toward, out[0, nested.MIDDLE], load, len(x) - 1, accuracy, fine, space[3], table, out
+                    )
+                    status, doublings = (better, levels) if better != NOT_CONVERGED else (status, doublings)
+                return status, doublings, limit, limit_bound
+        if way == TRACED:
+            status, doublings = quadrature.solve(
+                tube, np.nan, middle, load, len(x) - 1, accuracy, fine, space[3], table, out
+            )
+            return status, doublings, limit, limit_bound
+        if way >= SLOW and not alike:
             return NOT_CONVERGED, 0, limit, limit_bound
-        way = COLD if way == WARM else STEEP if way == COLD and alike else TRACED if way >= SLOW else SLOW
+        if way == WARM or way == COLD:
+            way = COLD if way == WARM else STEEP if alike else SLOW
+        else:
+            way = INTEGRATED if way == STEEP else TRACED

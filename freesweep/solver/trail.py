@@ -9,7 +9,7 @@ from math import exp, log
 import numpy as np
 
 from ..jit import kernel
-from . import lagrangian, meridian, mesh, newton
+from . import beside, lagrangian, meridian, mesh
 from .course import fill
 from .guide import cell_along
 from .uniform import between
@@ -19,6 +19,9 @@ FIRST_FOLDS, LONG = 3.0, 3.5  # e-folds of the drive: first step; up to which th
 PROBE = 1e-3  # of the way
 FARTHEST = 10.0  # ways beyond the load asked for
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 1e-3, 0.01, 1e-7  # relative changes of the middle
+TURNING_STEP = 1e-4  # with which a turning point is looked at: behind it the load may soon rise again
+SLOWER = 0.5  # times the gain per step before: less needs smaller steps
+LOOKS, FRONT = 400, 1e-3  # places along the meridian; share of what R was nearer to the middle
 MOST_STEPS = 2000
 LARGEST_GAIN = 0.25  # of the way in one step
 ARRIVES = 1e-6
@@ -63,7 +66,9 @@ def middle_at(cell, middle, start, end, t, half, curve):
             load = between(start, end, part)
             bend = -lagrangian.density(middle, 0.0, cell, load)[3]
             scale = min(drive / bend, reach) if bend > 0.0 else reach
-            total = meridian.trace(cell, load, middle, 0.0, max(scale, 1e-12 * reach), curve)
+            total = meridian.trace(
+                cell, load, middle, 0.0, max(scale, 1e-12 * reach), meridian.NODES, meridian.CROWDING, curve
+            )
         if total <= half and at < first + LONG:  # so long a tube that its middle is a uniform one's
             return part, meridian.lengthened(curve, half)
         miss = total / half - 1.0 if total == total else FARTHEST
@@ -83,6 +88,70 @@ def middle_at(cell, middle, start, end, t, half, curve):
 
 
 @kernel
+def fronted(cell, middle, load):
+    """Whether R of :mod:`meridian` all but vanishes on the way from the middle to the end, where it rises again or ends.
+
+    Another stretch balances that of the middle there. Between the two lies a front that a long tube holds anywhere: its
+    branch turns back.
+    """
+    at_middle, most = lagrangian.uniform_tube(middle, cell, load)[2], 0.0
+    for k in range(1, LOOKS + 1):
+        R = at_middle - lagrangian.uniform_tube(middle + (1.0 - middle) * k / LOOKS, cell, load)[2]
+        if R < FRONT * most:
+            return True
+        most = max(most, R)
+    return False
+
+
+@kernel
+def top(cell, low, best, high, t_best, start, end, half, curve):
+    """The middle between ``low`` and ``high``, about ``best``, to which the largest part of the way belongs, and that part;
+    or the first one seen beyond the end.
+    """
+    for _ in range(GOLDEN_STEPS):
+        at = best + GOLDEN * ((high - best) if abs(high - best) > abs(low - best) else (low - best))
+        t, _ = middle_at(cell, at, start, end, t_best, half, curve)
+        upward = (at - best) * (high - low) > 0.0
+        if t > t_best:
+            low, high = (best, high) if upward else (low, best)
+            best, t_best = at, t
+        elif upward:
+            high = at
+        else:
+            low = at
+        if t_best >= 1.0:
+            break
+    return best, t_best
+
+
+@kernel
+def by_load(cell, start, end, near, t, half, curve):
+    """As :func:`follow`, from a part ``t`` of the way on in steps of the load: where the middle stands still, or turns."""
+    step = FIRST_STEP
+    for _ in range(MOST_STEPS):
+        ahead = min(1.0, t + step)
+        load = between(start, end, ahead)
+        u, middle, count = beside.stationary(cell, load, near), np.nan, 0
+        if u == u:
+            count = meridian.fit(cell, load, u, half, curve)
+            middle = curve[1, count] if count > 0 else np.nan
+        else:
+            middle = beside.fit_near(
+                cell, load, near, half, meridian.HALF_FITS, meridian.NODES, meridian.CROWDING, curve
+            )
+            count = meridian.NODES
+        if beside.is_near(middle, near):
+            near, t, step = middle, ahead, 2.0 * step
+            if t == 1.0:
+                return ARRIVED, 1.0, count
+        else:
+            step *= 0.5
+            if step < SMALLEST_STEP:
+                break
+    return LOST, t, 0
+
+
+@kernel
 def follow(cell, start, end, origin, half, curve):
     """The branch from a tube whose middle is ``origin`` at load ``start`` toward ``end``, in steps of its middle: these rise
     through a turning point of the load.
@@ -95,50 +164,44 @@ def follow(cell, start, end, origin, half, curve):
     ahead = 1.0 if drive > 0.0 else -1.0
     last, near, far = origin, origin, origin
     t_near, t_far = 0.0, 0.0
-    step = FIRST_STEP
+    step, rate = FIRST_STEP, 0.0
     for _ in range(MOST_STEPS):
         far = near + ahead * step * near
         t_far, count = middle_at(cell, far, start, end, t_near, half, curve)
         if not abs(t_far - t_near) < LARGEST_GAIN:
             step *= 0.25
             if step < SMALLEST_STEP:
-                return LOST, t_near, 0
+                if near != origin and fronted(cell, near, between(start, end, t_near)):
+                    t_near, count = middle_at(cell, near, start, end, t_near, half, curve)
+                    return (TURNED if count > 0 else LOST), t_near, count
+                return by_load(cell, start, end, near, t_near, half, curve)
+            continue
+        if t_far - t_near < SLOWER * rate * step and step > TURNING_STEP:
+            step *= 0.5
             continue
         if t_far >= 1.0 or t_far <= t_near:
             break
-        last, near, t_near = near, far, t_far
+        last, near, rate, t_near = near, far, (t_far - t_near) / step, t_far
         step = min(1.5 * step, LARGEST_STEP)
     if not (t_far >= 1.0 or t_far <= t_near):
         return LOST, t_near, 0
-    if t_far >= 1.0:
-        low, high, miss_low, miss_high = near, far, t_near - 1.0, t_far - 1.0
-        for _ in range(meridian.ROOT_STEPS):
-            at = (low * miss_high - high * miss_low) / (miss_high - miss_low)
-            t, count = middle_at(cell, at, start, end, 1.0, half, curve)
-            if not abs(t - 1.0) > ARRIVES:
-                break
-            if t > 1.0:
-                high, miss_high, miss_low = at, t - 1.0, 0.5 * miss_low
-            else:
-                low, miss_low, miss_high = at, t - 1.0, 0.5 * miss_high
-        return (ARRIVED if count > 0 else LOST), 1.0, count
-    low, high = last, far
-    best, t_best = near, t_near
-    for _ in range(GOLDEN_STEPS):
-        at = best + GOLDEN * ((high - best) if abs(high - best) > abs(low - best) else (low - best))
-        t, count = middle_at(cell, at, start, end, t_best, half, curve)
-        if t > t_best:
-            if (at - best) * ahead > 0.0:
-                low = best
-            else:
-                high = best
-            best, t_best = at, t
-        elif (at - best) * ahead > 0.0:
-            high = at
+    best, t_best = far, t_far
+    if t_far < 1.0:
+        best, t_best = top(cell, last, near, far, t_near, start, end, half, curve)
+        if t_best < 1.0:
+            t_best, count = middle_at(cell, best, start, end, t_best, half, curve)
+            return (TURNED if count > 0 else LOST), t_best, count
+    low, high, miss_low, miss_high = near, best, t_near - 1.0, t_best - 1.0
+    for _ in range(meridian.ROOT_STEPS):
+        at = (low * miss_high - high * miss_low) / (miss_high - miss_low)
+        t, count = middle_at(cell, at, start, end, 1.0, half, curve)
+        if not abs(t - 1.0) > ARRIVES:
+            break
+        if t > 1.0:
+            high, miss_high, miss_low = at, t - 1.0, 0.5 * miss_low
         else:
-            low = at
-    t_best, count = middle_at(cell, best, start, end, t_best, half, curve)
-    return (TURNED if count > 0 else LOST), t_best, count
+            low, miss_low, miss_high = at, t - 1.0, 0.5 * miss_high
+    return (ARRIVED if count > 0 else LOST), 1.0, count
 
 
 @kernel
@@ -153,6 +216,4 @@ def trail(tube, before, load, origin, x, y, curve, work):
         own = fill(tube[0], tube[1], x, n, n, tube[2])
         meridian.spread(curve, count, cell, now, n, x, y, work)
         mesh.ease(lagrangian.integrands, x, y, n, work[0], own, now)
-        if not newton.admissible(lagrangian.density, x, y, n, own, now):
-            what = LOST
     return what, part, middle

@@ -1,0 +1,84 @@
+"""The last resort for a tube that is the same all along: the integrals along its meridian itself, by quadrature.
+
+Where the fibers' extension, a force or a torque leave the clamped end hardly any meridional stretch, the tube stands there
+so upright that a difference of node values, divided by the size of a cell, has no digit to spare for the axial stretch s.
+The first integral gives s without any difference (:mod:`meridian`). Nodes are doubled as the meshes of :mod:`nested` are.
+"""
+
+from math import exp, sqrt
+
+from ..jit import kernel
+from . import beside, lagrangian, meridian, nested, uniform
+from .guide import cell_along
+from .status import INACCURATE, NOT_CONVERGED, OK
+
+DEEP = 17.0  # e-folds from end to middle: from there on integrals are those of a tube without end, to exp(-34)
+MEETS_HALF = 1e-13  # relative
+STILL = 1e-12  # |y - 1| of the middle: nothing moves
+ROWS = 4  # quadratures, each with twice the nodes of the one before
+END_SHARE = 0.1  # of the distance from the end over which the meridional stretch there doubles
+CAUTION = 2.0  # times the bounds: their third order is not quite nothing
+ROUNDING = 2e-10  # scaled: what the uniform stretch's last digit makes near the middle
+
+
+@kernel
+def integrate(cell, load, u, rate, half, total, nodes, curve, row):
+    """Integrals along the ``curve``, and from its end at ``total`` on along the uniform tube, which the middle approaches as
+    exp(-rate x).
+    """
+    length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
+    for k in range(nodes):
+        h = curve[0, k + 1] - curve[0, k]
+        s, v, t, w = lagrangian.integrands(curve[4, k], 0.0, cell, load)
+        length += h * s * curve[3, k]
+        volume += h * v * curve[3, k]
+        twist += h * t
+        energy += h * w
+    s, v, t, w = lagrangian.integrands(u, 0.0, cell, load)
+    rest = half - total
+    row[0], row[1], row[2], row[3] = length + rest * s, volume + rest * v, twist + rest * t, energy + rest * w
+    row[nested.MIDDLE], row[nested.MULTIPLIER] = u + (curve[1, nodes] - u) * exp(-rate * rest), 0.0
+
+
+@kernel
+def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
+    """The state between the clamped end and the uniform stretch ``u`` or, where that is NaN, the one whose middle is about
+    ``near``, as :func:`nested.solve` leaves it: ``(status, doublings)`` of ``base`` cells. NOT_CONVERGED where there is
+    none, or where a tube drawn in may have let go.
+    """
+    cell, half = cell_along(tube, 0.0), tube[5][1]
+    traced = u != u
+    if traced:
+        u = beside.stationary(cell, load, near)
+    layered, top, rate = u == u, near, 0.0
+    if layered:
+        _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
+        top, rate = u, sqrt(L_yy / L_vv)
+        if not traced and uniform.may_let_go(u, L_yy, L_vv, half):
+            return NOT_CONVERGED, 0
+    if not abs(top - 1.0) > STILL:
+        return NOT_CONVERGED, 0
+    _, _, _, G_1, G_y, _ = lagrangian.kinematics(1.0, cell, load)
+    crowding = min(meridian.CROWDING, END_SHARE * (1.0 + G_1) / (abs(G_y) * abs(top - 1.0)))
+    nodes, total = base << nested.MAX_DOUBLINGS, half
+    for k in range(ROWS):
+        count, row = nodes >> (ROWS - 1 - k), table[k]
+        if layered:
+            total = meridian.meet(cell, load, u, half, DEEP, MEETS_HALF, count, crowding, curve)
+        else:
+            u = beside.fit_near(cell, load, near, half, MEETS_HALF, count, crowding, curve)
+        if not total > 0.0 or not u > 0.0:
+            return NOT_CONVERGED, 0
+        integrate(cell, load, u, rate, half, min(total, half), count, curve, row)
+        if traced and not beside.is_near(row[nested.MIDDLE], near):
+            return NOT_CONVERGED, 0
+    out[2], out[3] = lagrangian.scales(table[ROWS - 1], cell, load, half, nested.SMALLEST_TOLERANCE)
+    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], 0.0, out[0], out[1])
+    for k in range(nested.OUTPUTS):
+        out[1, k] = CAUTION * out[1, k] + ROUNDING * out[2, k]
+    curve[0, nodes] = half
+    for k in range(nodes + 1):
+        fine[0, k], fine[1, k] = curve[0, k], curve[1, k]
+        if k % 2 == 0:
+            fine[2, k // 2], fine[4, k // 2] = curve[0, k], curve[1, k]
+    return (OK if largest <= accuracy else INACCURATE), nested.MAX_DOUBLINGS
