@@ -125,7 +125,7 @@ def _threads(chosen, repeats):
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     counts = sorted({*(2**k for k in range(20) if 2**k < cores), cores})
     seconds = {count: [] for count in counts}
-    for _ in range(repeats):  # in turns: a machine's pace drifts
+    for _ in range(3 * repeats):  # in turns: a machine's pace drifts
         for count in counts:
             with ThreadPoolExecutor(count) as pool:
                 begun = time.perf_counter()
