@@ -1,4 +1,4 @@
-"""Kernels in plain Python, for the first few states of a process that finds no machine code.
+"""Kernels in plain Python, for the first few states of a process.
 
 The compiler takes twenty seconds, a state in plain Python a tenth of one: who asks for one state need not wait. Every
 kernel has its twin: the same code object, with the twins of all that it calls. Same formulas in the same order; as
@@ -15,24 +15,28 @@ from numba.core.dispatcher import Dispatcher
 from .jit import cache_folder
 
 FEW = 32  # states in one process: from here on the compiler's time is well spent
-_left = [FEW]
+FEWER = 4  # and that of loading its work
+NEVER = 1 << 40  # again
+_spent = [0]
 _twins = {}
 
 
 def at_once(states, awaited, entry, *arguments) -> bool:
     """Whether the call ``entry(*arguments)`` of an entry point, for so many states, was done in plain Python.
 
-    False, with all arguments as they were, where the ``awaited`` entry point has machine code, where many states are asked
-    for, and where plain Python raises an error at a number that kernels take for infinite.
+    False, with all arguments as they were, where the ``awaited`` entry point's machine code is at hand, where many states
+    are asked for, fewer if that code need only be loaded, and where plain Python raises an error at a number that kernels
+    take for infinite.
     """
-    if not isinstance(awaited, Dispatcher) or _has_machine_code(awaited):
+    if not isinstance(awaited, Dispatcher) or awaited.signatures:
         return False
-    if states > _left[0]:
-        if _left[0] >= 0:
+    on_disk = _on_disk(awaited)
+    _spent[0] += states
+    if _spent[0] > (FEWER if on_disk else FEW):
+        if not on_disk and _spent[0] < NEVER:
             print("freesweep: compiling the kernels, once for each version: half a minute", file=sys.stderr)
-        _left[0] = -1
+        _spent[0] = NEVER
         return False
-    _left[0] -= states
     copies = [argument.copy() if isinstance(argument, np.ndarray) else argument for argument in arguments]
     try:
         with np.errstate(all="ignore"):
@@ -45,13 +49,11 @@ def at_once(states, awaited, entry, *arguments) -> bool:
     return True
 
 
-def _has_machine_code(entry):
-    """In this process, or on disk."""
+def _on_disk(entry):
+    """Whether machine code of an entry point need only be loaded."""
     function = entry.py_func
     room = Path(cache_folder(function.__module__.split(".")[1]))
-    return bool(entry.signatures) or any(
-        room.rglob(f"{function.__module__.rpartition('.')[2]}.{function.__name__}-*.nbc")
-    )
+    return any(room.rglob(f"{function.__module__.rpartition('.')[2]}.{function.__name__}-*.nbc"))
 
 
 def _twin(function):

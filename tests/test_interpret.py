@@ -43,7 +43,7 @@ invert.__module__ = "freesweep.solver.invert"  # kernels live in a room
 def entry(monkeypatch, tmp_path):
     """A fresh installation, and an entry point."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(interpret, "_left", [interpret.FEW])
+    monkeypatch.setattr(interpret, "_spent", [0])
     return jit.kernel(invert)
 
 
