@@ -161,6 +161,8 @@ def test_command(data, tmp_path, capsys):
     capsys.readouterr()
     assert "NAME=VALUE" in refused(capsys, "plot", "curve", str(atlas), "--at", "alpha", "-o", str(out))
     assert "an angle" in refused(capsys, "plot", "curve", str(atlas), "--at", "alpha=3 mm", "-o", str(out))
+    # a second --at adds to the first
+    assert "an angle" in refused(capsys, "plot", "curve", str(atlas), "--at", "alpha=3 mm", "--at", "alpha=20")
     assert "must be one of .png" in refused(capsys, "plot", "curve", str(atlas), "-o", "curve.bmp")
     assert "no freesweep atlas" in refused(capsys, "plot", "curve", _foreign(tmp_path))
 

@@ -24,12 +24,14 @@ def add_calibrate(commands):
     command.add_argument(
         "--fit",
         nargs="+",
+        action="extend",
         metavar="NAME",
         help="what to fit (default: all: c10 c01, or c1 c2 c3 of a Yeoh rubber, and fiber_extension)",
     )
     command.add_argument(
         "--measured",
         nargs="+",
+        action="extend",
         default=[],
         metavar="NAME",
         help="which columns were measured, in files that have them; the bench imposed the others",

@@ -38,7 +38,12 @@ def fineness(options) -> dict:
 
 def _at(command):
     command.add_argument(
-        "--at", nargs="+", default=[], metavar="NAME=VALUE", help='where in the other axes, such as pressure="0.1 MPa"'
+        "--at",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME=VALUE",
+        help='where in the other axes, such as pressure="0.1 MPa"',
     )
 
 
@@ -56,7 +61,11 @@ def _map(kinds):
     command.add_argument("--variable", default="rotation", help="what to draw (default: rotation)")
     _axes(command)
     command.add_argument(
-        "--over", nargs="+", metavar="AXIS", help="small multiples along one or two more axes, such as pressure length"
+        "--over",
+        nargs="+",
+        action="extend",
+        metavar="AXIS",
+        help="small multiples along one or two more axes, such as pressure length",
     )
     _at(command)
     _out(command, "named after ATLAS, here")

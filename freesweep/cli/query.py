@@ -19,7 +19,7 @@ def add_query(commands):
     command.add_argument(
         "--points", metavar="FILE.csv", help='many points: a header such as "alpha [deg], pressure [kPa]"'
     )
-    command.add_argument("--variable", nargs="+", metavar="NAME", help="which (default: all)")
+    command.add_argument("--variable", nargs="+", action="extend", metavar="NAME", help="which (default: all)")
     command.add_argument("--method", default="cubic", choices=("cubic", "linear"), help="default: cubic")
     command.add_argument("--refine", action="store_true", help="solve exactly what the atlas cannot answer")
     command.add_argument("--format", choices=FORMATS, default="table", help="default: table")
