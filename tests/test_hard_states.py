@@ -7,7 +7,7 @@ from freesweep.census.designs import Drawn, quadrature, with_pressures
 from freesweep.first_integral.folded import solve_near
 from freesweep.first_integral.uniform import Tubes
 from freesweep.solver import batch, lagrangian, uniform
-from freesweep.status import BEYOND_LIMIT, OK
+from freesweep.status import BEYOND_LIMIT, COMPRESSED, OK
 from freesweep.sweep import solve
 
 # alpha, beta, length, wall, fiber extension, C01/C10, force, torque, energy
@@ -122,3 +122,69 @@ def test_rotation_of_nearly_straight_fibers_is_held_by_a_narrow_neck_and_a_wide_
     assert one["stable"] == other["stable"]
     assert abs(one["value"] - other["value"]) <= one["bound"] + other["bound"]
     assert one["bound"] < 1e-5 * abs(one["value"])
+
+
+DRAWN_IN = [
+    -47.35004990998980,
+    54.96819362394741,
+    5.405955898672588,
+    0.04341255,
+    1.01417247,
+    1.1425841,
+    1.17399,
+    1.2436586,
+    0,
+]
+
+
+@pytest.mark.parametrize("lanes", [True, False])
+def test_walk_stays_with_the_drawn_in_tube_where_another_shape_is_stable_too(lanes):
+    """From 2.2 to 2.478 the tube may be drawn in to 0.165, or hardly at all: the branch from P = 0 has one of the two, until
+    it ends.
+    """
+    pressures = np.concatenate([[0.008, 0.18], np.linspace(2.2, 4.2, 41)])
+    problem = Drawn(np.array([DRAWN_IN]), None).problems()
+    walk = batch.walk_all(problem, np.array([0, len(pressures)]), pressures, batch.uniform(24), 1e-6, lanes=lanes)
+    end = np.count_nonzero(pressures < 2.478)
+    assert walk.status.tolist() == [OK] * end + [BEYOND_LIMIT] * (len(pressures) - end)
+    middle = walk.values[:end, 4]
+    assert np.all(np.diff(middle) > 0.0)
+    assert middle[-1] < 0.1651
+    np.testing.assert_allclose(walk.limits[0, 0], 2.4781921, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("design", "pressures", "limit"), [
+    (DRAWN_IN, [0.00835639, 0.01211426, 0.18188333, 6.69107055], 2.4781921),
+    ([-53.13639022389276, 69.56923577031455, 176.4797611, 0.03801205, 1.007998898, 1.53562397, 2.50068836, 1.08801758, 0],
+     [0.07421381, 0.16033788, 2.97631278, 3.6691723], 3.665342),
+    ([-51.37504832486609, 45.10533441908118, 3.777033086, 0.03401795, 1.013391523, 0.80311649, 0, -0.87866469, 0],
+     [0.00355010416, 0.289979147, 0.706728938], 0.7038525),
+    ([45.125085486725105, -40.02539375281235, 35.75187843, 0.03028057, 1.019797923, 0.22608917, 0, 1.37863644, 1],
+     [0.05630412, 0.63456986, 2.25971523, 4.31166259], 4.2759),
+])  # fmt: skip
+def test_limit_pressures_a_hundredth_below_the_pressure_asked_for(design, pressures, limit):
+    """The branch of a tube drawn in ends so close before the last pressure, or at so sharp a front, that only traces of
+    many nodes tell: the same limit from the pressures of a census as from close ones.
+    """
+    walk = walked(design, pressures)
+    before = np.count_nonzero(np.array(pressures) < limit)
+    assert walk.status.tolist() == [OK] * before + [BEYOND_LIMIT] * (len(pressures) - before)
+    (found, bound), close = walk.limits[0], np.append(np.linspace(pressures[before - 1], limit, 9), pressures[before])
+    again = walked(design, np.append(pressures[: before - 1], close)).limits[0]
+    assert abs(found - again[0]) <= bound + again[1]
+    assert abs(found - limit) <= bound + 1e-4 * limit
+    assert bound < 4e-3 * limit
+
+
+@pytest.mark.parametrize(("design", "pressures"), [
+    ([3.5997409953131982, -68.94055041532766, 3.28251, 0.0893347, 1.0, 1.0196544, -0.00287541164302, -1.4377177, 1],
+     [0.00446352, 0.00824967]),
+    ([19.037598450111926, 54.833691070417224, 43.343455, 0.0591159, 1.0, 1.0439081, -0.00204738847043, 1.4216720, 0],
+     [0.00369226572, 0.00637907]),
+])  # fmt: skip
+def test_tube_drawn_in_under_a_force_that_pushes_lets_its_wall_go_in_the_middle(design, pressures):
+    """There p y^2 + f is least: it vanishes before the middle is as far from the end as the tube is long."""
+    walk = walked(design, pressures)
+    assert walk.status.tolist() == [COMPRESSED, OK]
+    force, middle = design[6], walk.values[1, 4]
+    assert pressures[0] * middle**2 + force < 0.0 < pressures[1] * middle**2 + force

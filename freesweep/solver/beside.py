@@ -3,6 +3,8 @@
 At a given load each middle belongs to one half length x; a stable tube's grows with its middle.
 """
 
+from math import sqrt
+
 import numpy as np
 
 from ..jit import kernel
@@ -10,6 +12,7 @@ from . import lagrangian, meridian
 
 LEAST_SCALE = 1e-12  # of the way from end to middle
 NEAREST, FARTHEST, WIDER = 1e-12, 2e-3, 10.0  # relative: how far from a middle another one is looked for
+LOOKS, JUST_INSIDE = 32, 1e-9  # middles that are looked at; relative
 STATIONARY_STEPS, SETTLED = 20, 1e-13
 
 
@@ -45,6 +48,21 @@ def beyond(cell, load, middle, half, nodes, crowding, curve):
     scale = max(min(drive / -L_yy, reach) if L_yy < 0.0 else reach, LEAST_SCALE * reach)
     total = meridian.trace(cell, load, middle, 0.0, scale, nodes, crowding, curve)
     return total / half - 1.0 if total > 0.0 else np.inf
+
+
+@kernel
+def gives_way(cell, load, half, nodes, curve):
+    """Whether the wall would have to be pushed in the middle: a compressive force and a tube drawn in let p y^2 + f vanish
+    before any middle lies as far from the end as ``half``.
+    """
+    p, f = load[3], load[4]
+    if not 0.0 < -f < p:
+        return False
+    least = sqrt(-f / p) * (1.0 + JUST_INSIDE)
+    for k in range(LOOKS):
+        if beyond(cell, load, least + (1.0 - least) * k / LOOKS, half, nodes, meridian.CROWDING, curve) >= 0.0:
+            return False
+    return True
 
 
 @kernel

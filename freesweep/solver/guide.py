@@ -11,6 +11,7 @@ from .course import at_point
 
 PLACES = 33  # along a tube that varies
 STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u
+FAR_FROM = 0.25  # share of 1 - u by which the middle of a tube drawn in may miss u, whose end is far
 FIRST_STRAIN = 0.02  # |u - 1| at which a climb starts
 
 
@@ -96,10 +97,16 @@ def carry(u, ahead, total, x, y):
 
 
 @kernel
-def strays(y, u):
-    """Whether the shape leaves the interval from 1 to the uniform stretch: another branch."""
+def strays(y, u, middle, tube, load):
+    """Whether the shape leaves the interval from 1 to the uniform stretch, or its middle is not near one that draws the tube
+    in, though the end is far: another branch.
+    """
     if len(u) > 1:
         return False  # neighbouring places pull a shape beyond what each would do alone
+    if u[0] < 1.0 - uniform.DRAWN_IN and middle - u[0] > FAR_FROM * (1.0 - u[0]):
+        _, _, _, L_yy, _, L_vv = lagrangian.density(u[0], 0.0, cell_along(tube, 0.5), load)
+        if not uniform.may_let_go(u[0], L_yy, L_vv, (1.0 if tube[3] else 0.5) * tube[5][len(tube[5]) - 1]):
+            return True
     slack = STRAY * abs(u[0] - 1.0) + 1e-6
     low, high = min(1.0, u[0]) - slack, max(1.0, u[0]) + slack
     for i in range(len(y)):

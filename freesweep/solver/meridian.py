@@ -72,22 +72,22 @@ def trace(cell, load, top, gap, scale, nodes, crowding, curve):
 
 
 @kernel
-def scaled(curve, half):
+def scaled(curve, half, nodes):
     """Let x of the middle, which is close to it, be ``half``; the number of cells."""
-    share = half / curve[0, NODES]
-    for k in range(NODES + 1):
+    share = half / curve[0, nodes]
+    for k in range(nodes + 1):
         curve[0, k] *= share
-    return NODES
+    return nodes
 
 
 @kernel
-def lengthened(curve, half):
+def lengthened(curve, half, nodes):
     """Go on as the uniform tube to ``half``; the number of cells."""
-    if not half > curve[0, NODES] * (1.0 + HALF_FITS):
-        return scaled(curve, half)
-    curve[0, NODES + 1], curve[1, NODES + 1] = half, curve[1, NODES]
-    curve[2, NODES], curve[3, NODES] = 0.0, 1.0
-    return NODES + 1
+    if not half > curve[0, nodes] * (1.0 + HALF_FITS):
+        return scaled(curve, half, nodes)
+    curve[0, nodes + 1], curve[1, nodes + 1] = half, curve[1, nodes]
+    curve[2, nodes], curve[3, nodes] = 0.0, 1.0
+    return nodes + 1
 
 
 @kernel
@@ -120,12 +120,12 @@ def meet(cell, load, u, half, deep, tolerance, nodes, crowding, curve):
 
 
 @kernel
-def fit(cell, load, u, half, curve):
+def fit(cell, load, u, half, nodes, curve):
     """The curve with ``half`` as x of the middle, toward the uniform stretch ``u``; its number of cells, 0 for none."""
-    total = meet(cell, load, u, half, DEEPEST, HALF_FITS, NODES, CROWDING, curve)
+    total = meet(cell, load, u, half, DEEPEST, HALF_FITS, nodes, CROWDING, curve)
     if not total > 0.0:
         return 0
-    return lengthened(curve, half) if total <= half else scaled(curve, half)
+    return lengthened(curve, half, nodes) if total <= half else scaled(curve, half, nodes)
 
 
 @kernel
@@ -163,7 +163,7 @@ def start(tube, u, load, x, y, curve, work):
     n = len(x) - 1
     if not abs(u[0] - 1.0) > 1e-12:
         return False
-    count = fit(cell, load, u[0], tube[5][1], curve)
+    count = fit(cell, load, u[0], tube[5][1], NODES, curve)
     if count == 0:
         return False
     own = fill(tube[0], tube[1], x, n, n, tube[2])

@@ -17,6 +17,7 @@ MEETS_HALF = 1e-13  # relative
 STILL = 1e-12  # |y - 1| of the middle: nothing moves
 ROWS = 4  # quadratures, each with twice the nodes of the one before
 END_SHARE = 0.1  # of the distance from the end over which the meridional stretch there doubles
+UPRIGHT = 0.1  # cosine of the meridian's angle in the first cell: below it meshes' errors know no order
 CAUTION = 2.0  # times the bounds: their third order is not quite nothing
 ROUNDING = 2e-10  # scaled: what the uniform stretch's last digit makes near the middle
 
@@ -82,3 +83,23 @@ def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
         if k % 2 == 0:
             fine[2, k // 2], fine[4, k // 2] = curve[0, k], curve[1, k]
     return (OK if largest <= accuracy else INACCURATE), nested.MAX_DOUBLINGS
+
+
+@kernel
+def end_cosine(x, y, tube, load):
+    """Cosine of the meridian's angle in the first cell."""
+    v = (y[1] - y[0]) / (x[1] - x[0])
+    s = lagrangian.integrands(0.5 * (y[0] + y[1]), v, cell_along(tube, 0.0), load)[0]
+    return s / sqrt(s * s + v * v)
+
+
+@kernel
+def sharpen(x, y, tube, toward, load, accuracy, fine, curve, table, out, status, doublings):
+    """``(status, doublings)`` of a state that meshes have solved, or of its quadrature where its ends are too upright for
+    them; ``toward`` is the uniform stretch that its middle approaches, NaN where there is none.
+    """
+    if end_cosine(x, y, tube, load) < UPRIGHT:
+        better, levels = solve(tube, toward, out[0, nested.MIDDLE], load, len(x) - 1, accuracy, fine, curve, table, out)
+        if better != NOT_CONVERGED:
+            return better, levels
+    return status, doublings

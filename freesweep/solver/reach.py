@@ -1,30 +1,14 @@
 """From one state of a branch to the next: the quick ways first, then the slow one."""
 
-from math import sqrt
-
 import numpy as np
 
-from ..jit import inlined, kernel
-from . import guide, lagrangian, meridian, nested, newton, quadrature, trail, uniform
+from ..jit import inlined
+from . import guide, lagrangian, meridian, nested, newton, quadrature, retrace, uniform
 from .climb import CLIMB_CHANGE, NEARLY_FLAT, climb, creep, graded_for_turning
-from .guide import cell_along
 from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK
 
 COLD_REGRADES, WARM_REGRADES = 3, 1
-WARM, COLD, STEEP, INTEGRATED, SLOW, LAST_STEP, TRACED = 0, 1, 2, 3, 4, 5, 6
-CAUTION = 10.0  # times the bounds of shapes so steep: their errors fall to fourth order only on finer meshes
-UPRIGHT = 0.1  # cosine of the meridian's angle in the first cell: below it errors know no order on the first meshes
-LIMIT_ROUNDING = 4e-9  # of a limit pressure: where a load is flat, many shapes are equilibria to rounding
-TRACED_ERROR = 0.02  # of the way to a turning point that was traced only
-FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-@kernel
-def end_cosine(x, y, tube, load):
-    """Cosine of the meridian's angle in the first cell."""
-    v = (y[1] - y[0]) / (x[1] - x[0])
-    s = lagrangian.integrands(0.5 * (y[0] + y[1]), v, cell_along(tube, 0.0), load)[0]
-    return s / sqrt(s * s + v * v)
+WARM, COLD, STEEP, INTEGRATED, SLOW, LAST_STEP = 0, 1, 2, 3, 4, 5
 
 
 @inlined
@@ -35,7 +19,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
     """
     fine, work, table = space[0], space[1], space[2]
     start, way, goal, mu = before, WARM, nested.PLAIN, 0.0
-    direction = FLAT
+    direction = retrace.FLAT
     limit, limit_bound = np.nan, np.nan
     flat, shapes, lost = NEARLY_FLAT, space[4], NOT_CONVERGED
     for i in range(len(x)):
@@ -85,23 +69,12 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 direction = (0.0, 0.0, 0.0, load[3] - start[3], load[4] - start[4], load[5] - start[5], 0.0)
                 graded_for_turning(x, y, len(x) - 1, tube, start, direction, mu, work)
             elif status == NOT_CONVERGED and alike:
-                way = TRACED
+                break
             elif status != OK:
                 return status, 0, limit, limit_bound
             for i in range(len(x)):
                 last_x[i], last_y[i] = x[i], y[i]
-        if way == TRACED:
-            start, regrades = before, 0
-            what, mu, middle = trail.trail(tube, before, load, middle, x, y, space[3], work)
-            if what == trail.LOST:
-                return lost, 0, limit, limit_bound
-            if what == trail.TURNED and start[0] != load[0]:
-                return BEYOND_LIMIT, 0, limit, limit_bound
-            goal, direction = nested.PLAIN, FLAT
-            if what == trail.TURNED:
-                goal = nested.TURNING_POINT
-                direction = (0.0, 0.0, 0.0, load[3] - start[3], load[4] - start[4], load[5] - start[5], 0.0)
-        caution = CAUTION if way == STEEP or way == TRACED else 1.0
+        caution = retrace.CAUTION if way == STEEP else 1.0
         from_load = load if goal == nested.PLAIN else start
         status, unstable, doublings, _ = nested.solve(
             lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube,
@@ -116,50 +89,49 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
             continue
         if goal == nested.TURNING_POINT:
             if not solved:
-                if (
-                    way == TRACED and TRACED_ERROR < mu < 1.0 - TRACED_ERROR
-                ):  # no mesh holds it, but that it is there is certain
-                    return BEYOND_LIMIT, 0, start[3] + mu * direction[3], TRACED_ERROR * abs(mu * direction[3])
-                if way == TRACED or (flat == 0.0 and not alike):
-                    return NOT_CONVERGED, 0, limit, limit_bound
-                # hardly rising, but no turning point: go on
-                goal, direction, way, flat = nested.PLAIN, FLAT, TRACED if flat == 0.0 else SLOW, 0.0
+                if flat == 0.0:
+                    break
+                goal, direction, way, flat = (
+                    nested.PLAIN,
+                    retrace.FLAT,
+                    SLOW,
+                    0.0,
+                )  # hardly rising, but no turning point: go on
                 continue
             if out[0, nested.MULTIPLIER] < 1.0:
                 limit = start[3] + out[0, nested.MULTIPLIER] * direction[3]
-                return BEYOND_LIMIT, 0, limit, abs(out[1, nested.MULTIPLIER] * direction[3]) + LIMIT_ROUNDING * limit
-            if way == TRACED:
-                return NOT_CONVERGED, 0, limit, limit_bound
+                return (
+                    BEYOND_LIMIT,
+                    0,
+                    limit,
+                    abs(out[1, nested.MULTIPLIER] * direction[3]) + retrace.LIMIT_ROUNDING * limit,
+                )
             # the turning point lies just beyond: the state asked for is one step away
-            goal, direction, way = nested.PLAIN, FLAT, LAST_STEP
+            goal, direction, way = nested.PLAIN, retrace.FLAT, LAST_STEP
             for i in range(len(x)):
                 x[i], y[i] = last_x[i], last_y[i]
             continue
         if solved and unstable == 0:
             guided = way <= STEEP
-            if way == TRACED:
-                found = abs(out[0, nested.MIDDLE] - middle) < guide.STRAY * abs(middle - 1.0) + 1e-6
-            elif guided:
-                found = not guide.strays(fine[1, : ((len(x) - 1) << doublings) + 1], u)
+            if guided:
+                shape = fine[1, : ((len(x) - 1) << doublings) + 1]
+                found = not guide.strays(shape, u, out[0, nested.MIDDLE], tube, load)
             else:
                 found = abs(y[tube[4]] / last_y[tube[4]] - 1.0) < 3.0 * CLIMB_CHANGE
             if found:
                 status = OK if status == newton.CONVERGED else INACCURATE
-                if alike and way >= STEEP and end_cosine(x, y, tube, load) < UPRIGHT:
-                    toward = u[0] if guided else np.nan
-                    better, levels = quadrature.solve(
-                        tube, toward, out[0, nested.MIDDLE], load, len(x) - 1, accuracy, fine, space[3], table, out
-                    )
-                    status, doublings = (better, levels) if better != NOT_CONVERGED else (status, doublings)
+                if alike and way >= STEEP:
+                    status, doublings = quadrature.sharpen(
+                        x, y, tube, u[0] if guided else np.nan, load, accuracy, fine, space[3], table, out, status,
+                        doublings,
+                    )  # fmt: skip
                 return status, doublings, limit, limit_bound
-        if way == TRACED:
-            status, doublings = quadrature.solve(
-                tube, np.nan, middle, load, len(x) - 1, accuracy, fine, space[3], table, out
-            )
-            return status, doublings, limit, limit_bound
-        if way >= SLOW and not alike:
-            return NOT_CONVERGED, 0, limit, limit_bound
-        if way == WARM or way == COLD:
-            way = COLD if way == WARM else STEEP if alike else SLOW
+        if way >= SLOW:
+            break
+        if way == STEEP:
+            way = INTEGRATED
         else:
-            way = INTEGRATED if way == STEEP else TRACED
+            way = COLD if way == WARM else STEEP if alike else SLOW
+    if not alike:
+        return NOT_CONVERGED, 0, limit, limit_bound
+    return retrace.retrace(x, y, middle, lost, tube, before, load, accuracy, space, out)

@@ -45,7 +45,7 @@ def load_for(cell, y, sign, drive, start, end, t):
 
 
 @kernel
-def middle_at(cell, middle, start, end, t, half, curve):
+def middle_at(cell, middle, start, end, t, half, nodes, curve):
     """The part of the way, near ``t``, at which the ``middle`` of a tube of that ``half`` length is reached, and the number
     of cells of its ``curve``; NaN and 0 where none was found.
 
@@ -66,14 +66,12 @@ def middle_at(cell, middle, start, end, t, half, curve):
             load = between(start, end, part)
             bend = -lagrangian.density(middle, 0.0, cell, load)[3]
             scale = min(drive / bend, reach) if bend > 0.0 else reach
-            total = meridian.trace(
-                cell, load, middle, 0.0, max(scale, 1e-12 * reach), meridian.NODES, meridian.CROWDING, curve
-            )
+            total = meridian.trace(cell, load, middle, 0.0, max(scale, 1e-12 * reach), nodes, meridian.CROWDING, curve)
         if total <= half and at < first + LONG:  # so long a tube that its middle is a uniform one's
-            return part, meridian.lengthened(curve, half)
+            return part, meridian.lengthened(curve, half, nodes)
         miss = total / half - 1.0 if total == total else FARTHEST
         if abs(miss) < meridian.HALF_FITS:
-            return part, meridian.scaled(curve, half)
+            return part, meridian.scaled(curve, half, nodes)
         if miss > 0.0:
             low, miss_low, miss_high = at, min(miss, FARTHEST), 0.5 * miss_high
         else:
@@ -104,13 +102,13 @@ def fronted(cell, middle, load):
 
 
 @kernel
-def top(cell, low, best, high, t_best, start, end, half, curve):
+def top(cell, low, best, high, t_best, start, end, half, nodes, curve):
     """The middle between ``low`` and ``high``, about ``best``, to which the largest part of the way belongs, and that part;
     or the first one seen beyond the end.
     """
     for _ in range(GOLDEN_STEPS):
         at = best + GOLDEN * ((high - best) if abs(high - best) > abs(low - best) else (low - best))
-        t, _ = middle_at(cell, at, start, end, t_best, half, curve)
+        t, _ = middle_at(cell, at, start, end, t_best, half, nodes, curve)
         upward = (at - best) * (high - low) > 0.0
         if t > t_best:
             low, high = (best, high) if upward else (low, best)
@@ -125,7 +123,7 @@ def top(cell, low, best, high, t_best, start, end, half, curve):
 
 
 @kernel
-def by_load(cell, start, end, near, t, half, curve):
+def by_load(cell, start, end, near, t, half, nodes, curve):
     """As :func:`follow`, from a part ``t`` of the way on in steps of the load: where the middle stands still, or turns."""
     step = FIRST_STEP
     for _ in range(MOST_STEPS):
@@ -133,13 +131,11 @@ def by_load(cell, start, end, near, t, half, curve):
         load = between(start, end, ahead)
         u, middle, count = beside.stationary(cell, load, near), np.nan, 0
         if u == u:
-            count = meridian.fit(cell, load, u, half, curve)
+            count = meridian.fit(cell, load, u, half, nodes, curve)
             middle = curve[1, count] if count > 0 else np.nan
         else:
-            middle = beside.fit_near(
-                cell, load, near, half, meridian.HALF_FITS, meridian.NODES, meridian.CROWDING, curve
-            )
-            count = meridian.NODES
+            middle = beside.fit_near(cell, load, near, half, meridian.HALF_FITS, nodes, meridian.CROWDING, curve)
+            count = nodes
         if beside.is_near(middle, near):
             near, t, step = middle, ahead, 2.0 * step
             if t == 1.0:
@@ -148,11 +144,16 @@ def by_load(cell, start, end, near, t, half, curve):
             step *= 0.5
             if step < SMALLEST_STEP:
                 break
+    load = between(start, end, t)
+    u = beside.stationary(cell, load, near)
+    if u == u and fronted(cell, near, load):
+        count = meridian.fit(cell, load, u, half, nodes, curve)
+        return (TURNED if count > 0 else LOST), t, count
     return LOST, t, 0
 
 
 @kernel
-def follow(cell, start, end, origin, half, curve):
+def follow(cell, start, end, origin, half, nodes, curve):
     """The branch from a tube whose middle is ``origin`` at load ``start`` toward ``end``, in steps of its middle: these rise
     through a turning point of the load.
 
@@ -167,14 +168,14 @@ def follow(cell, start, end, origin, half, curve):
     step, rate = FIRST_STEP, 0.0
     for _ in range(MOST_STEPS):
         far = near + ahead * step * near
-        t_far, count = middle_at(cell, far, start, end, t_near, half, curve)
+        t_far, count = middle_at(cell, far, start, end, t_near, half, nodes, curve)
         if not abs(t_far - t_near) < LARGEST_GAIN:
             step *= 0.25
             if step < SMALLEST_STEP:
                 if near != origin and fronted(cell, near, between(start, end, t_near)):
-                    t_near, count = middle_at(cell, near, start, end, t_near, half, curve)
+                    t_near, count = middle_at(cell, near, start, end, t_near, half, nodes, curve)
                     return (TURNED if count > 0 else LOST), t_near, count
-                return by_load(cell, start, end, near, t_near, half, curve)
+                return by_load(cell, start, end, near, t_near, half, nodes, curve)
             continue
         if t_far - t_near < SLOWER * rate * step and step > TURNING_STEP:
             step *= 0.5
@@ -187,14 +188,14 @@ def follow(cell, start, end, origin, half, curve):
         return LOST, t_near, 0
     best, t_best = far, t_far
     if t_far < 1.0:
-        best, t_best = top(cell, last, near, far, t_near, start, end, half, curve)
+        best, t_best = top(cell, last, near, far, t_near, start, end, half, nodes, curve)
         if t_best < 1.0:
-            t_best, count = middle_at(cell, best, start, end, t_best, half, curve)
+            t_best, count = middle_at(cell, best, start, end, t_best, half, nodes, curve)
             return (TURNED if count > 0 else LOST), t_best, count
     low, high, miss_low, miss_high = near, best, t_near - 1.0, t_best - 1.0
     for _ in range(meridian.ROOT_STEPS):
         at = (low * miss_high - high * miss_low) / (miss_high - miss_low)
-        t, count = middle_at(cell, at, start, end, 1.0, half, curve)
+        t, count = middle_at(cell, at, start, end, 1.0, half, nodes, curve)
         if not abs(t - 1.0) > ARRIVES:
             break
         if t > 1.0:
@@ -205,11 +206,13 @@ def follow(cell, start, end, origin, half, curve):
 
 
 @kernel
-def trail(tube, before, load, origin, x, y, curve, work):
-    """Mesh and shape at ``load``, or at the turning point on the way there: ``(what, part of the way, middle)``."""
+def trail(tube, before, load, origin, nodes, x, y, curve, work):
+    """Mesh and shape at ``load``, or at the turning point on the way there: ``(what, part of the way, middle)``; by so many
+    ``nodes`` along the meridian.
+    """
     cell = cell_along(tube, 0.0)
     n = len(x) - 1
-    what, part, count = follow(cell, before, load, origin, tube[5][1], curve)
+    what, part, count = follow(cell, before, load, origin, tube[5][1], nodes, curve)
     middle = origin
     if what != LOST:
         middle, now = curve[1, count], between(before, load, part)

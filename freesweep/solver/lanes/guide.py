@@ -5,7 +5,7 @@ L_y and L_yy are linear in pressure, force and torque: their values at the two e
 
 from ...jit import kernel
 from .. import lagrangian
-from ..guide import STRAY
+from ..guide import FAR_FROM, STRAY
 from ..uniform import DRAWN_IN, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, between
 from .vector import HUGE, get, mask_of, select, some, spread
 
@@ -91,10 +91,17 @@ def follow(u, cell, start, end, half, asked):
 
 
 @kernel
-def within(y, n, u):
-    """Where the shape lies between 1 and the uniform stretch; elsewhere it is another branch."""
+def within(y, n, u, cell, load, half):
+    """Where the shape lies between 1 and the uniform stretch, and its middle near one that draws the tube in while the end
+    is far; elsewhere it is another branch.
+    """
     slack = STRAY * abs(u - 1.0) + 1e-6
     low, high = spread(HUGE), spread(-HUGE)
     for i in range(n + 1):
         low, high = min(low, get(y, i)), max(high, get(y, i))
-    return (min(u, 1.0) - slack <= low) & (high <= max(u, 1.0) + slack)
+    kept = (min(u, 1.0) - slack <= low) & (high <= max(u, 1.0) + slack)
+    missed = kept & (u < 1.0 - DRAWN_IN) & (get(y, n) - u > FAR_FROM * (1.0 - u))
+    if some(missed):
+        _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
+        kept = kept & ~(missed & (L_yy * half * half < FAR * FAR * L_vv))
+    return kept

@@ -121,7 +121,7 @@ def solve_lanes(
             x, y, base, u, cell, load, half, mask_of((1 << count) - 1), accuracy, meshes, work, table, sizes, found, out,
             kept, doublings,
         )  # fmt: skip
-        met = met & guide.within(y, base, u)
+        met = met & guide.within(y, base, u, cell, load, half)
         record(bits(met), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
         if drawn:
             draw_profiles(bits(met), rows, columns, base, doublings, kept, stations, tube, nodes, profiles)
