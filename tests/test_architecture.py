@@ -1,5 +1,6 @@
 """The rules that keep the rooms of the package apart, run as tests."""
 
+import ast
 import shutil
 import subprocess
 import sys
@@ -78,14 +79,14 @@ def test_every_public_name_is_there_and_documented():
 
 def test_what_is_imported_at_run_time_is_declared():
     """Third-party modules that the package names in its import statements."""
-    code = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "freesweep").rglob("*.py"))
-    words = (line.split() for line in code.splitlines())
-    named = {
-        line[1].split(".")[0] for line in words if len(line) > 1 and line[0] in ("import", "from") and line[1][0] != "."
-    }
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in (ROOT / "freesweep").rglob("*.py")]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    modules = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    modules += [node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.level == 0]
+    named = {name.split(".")[0] for name in modules}
     extra = PROJECT["project"]["optional-dependencies"]["dask"]
     declared = {text.split(">")[0] for text in [*PROJECT["project"]["dependencies"], *extra]}
-    ours = {name for name in named if name.isidentifier() and name not in sys.stdlib_module_names} - {"freesweep"}
+    ours = {name for name in named if name not in sys.stdlib_module_names} - {"freesweep"}
     ours = {{"PIL": "pillow"}.get(name, name) for name in ours}
     assert ours <= declared
     assert {"numpy", "numba", "xarray"} <= ours

@@ -17,7 +17,7 @@ from freesweep.atlas import files
 from freesweep.atlas.files import EnvironmentFault
 from freesweep.atlas.seal import seal_fault
 from freesweep.atlas.write import chunks_of, packed, parts
-from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED, main
+from freesweep.cli import DONE, ENVIRONMENT, main
 from freesweep.sweep import estimate, run
 from freesweep.sweep.plan import plan
 from freesweep.sweep.records import FREE_STATE, LIMIT
@@ -223,47 +223,6 @@ def test_one_writer_at_a_time(reference, tmp_path):
         make(out, SWEEP)
     assert (tmp_path / "atlas.nc.parts").exists()
     other.release()
-    same_bits(reference, make(out, SWEEP))
-
-
-CHILD = """
-import os, signal, sys, threading, time
-from freesweep.cli import main
-from freesweep.sweep import run
-signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a shell runs in the background
-run.SHARD_EQUILIBRIA, solve = 6, run.solve_shard
-def slow(job, accuracy):
-    if len(job.problems):
-        print("solving", flush=True)
-        time.sleep(0.2)
-    return solve(job, accuracy)
-run.solve_shard = slow
-sys.exit(main(["sweep", sys.argv[1], "-o", sys.argv[2], "--quiet", "--threads", "1"]))
-"""
-
-
-@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
-def test_a_stopped_sweep_says_so_and_goes_on(sent, reference, tmp_path):
-    (tmp_path / "spec.toml").write_text(SWEEP.text)
-    out = tmp_path / "atlas.nc"
-    child = subprocess.Popen(
-        [sys.executable, "-P", "-c", CHILD, str(tmp_path / "spec.toml"), str(out)],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=CHILD_ENVIRONMENT,
-    )  # fmt: skip
-    try:
-        child.stdout.readline()
-        child.stdout.readline()  # the first shard is stored
-        child.send_signal(sent)
-        _, error = child.communicate(timeout=60)
-    finally:
-        child.kill()
-    if sent == signal.SIGKILL:
-        assert child.returncode == -sent
-    else:
-        assert child.returncode == INTERRUPTED
-        assert error == "interrupted; what was finished is kept, the same command goes on from there\n"
-    assert not out.exists()
-    assert list((tmp_path / "atlas.nc.parts").glob("free-*.bin"))
     same_bits(reference, make(out, SWEEP))
 
 

@@ -5,17 +5,17 @@ Exit codes: 0 done, 2 bad input, 3 the environment (disk, memory, permissions), 
 
 import argparse
 import contextlib
-import signal
 import sys
 
 from .calibrate import add_calibrate
 from .draw import add_plot, check_map, draw_map
+from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
 from .judge import add_judging
 from .query import add_query
 from .single import add_single
 from .thesis import add_thesis
 
-DONE, BAD_INPUT, ENVIRONMENT, INTERRUPTED = 0, 2, 3, 130
+DONE, BAD_INPUT, ENVIRONMENT = 0, 2, 3
 
 
 def main(arguments=None) -> int:
@@ -25,9 +25,10 @@ def main(arguments=None) -> int:
     warnings.showwarning = lambda message, *_: print(f"freesweep: warning: {message}", file=sys.stderr)
     options = parser().parse_args(_joined(sys.argv[1:] if arguments is None else arguments))
     try:
-        return options.run(options) or DONE
+        with ends_in_time():
+            return options.run(options) or DONE
     except KeyboardInterrupt:
-        print("interrupted; what was finished is kept, the same command goes on from there", file=sys.stderr)
+        print(SENTENCE, file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:
         sys.stderr.close()
@@ -119,7 +120,7 @@ def _run_sweep(options):
 
     if options.map:
         check_map(sweep, options.map)
-    with _terminated_as_interrupted(), _executor(options) as executor:
+    with _executor(options) as executor:
         atlas = run_sweep(
             sweep,
             out,
@@ -140,19 +141,6 @@ def _executor(options):
     from ..sweep.estimate import cores
 
     return executor_of(options.dask, options.threads or cores(), lambda text: options.quiet or print(text))
-
-
-@contextlib.contextmanager
-def _terminated_as_interrupted():
-    """Let SIGTERM, with which a cluster stops a job, do what Ctrl-C does."""
-    before = None
-    with contextlib.suppress(ValueError):  # signals belong to the main thread
-        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        if before is not None:
-            signal.signal(signal.SIGTERM, before)
 
 
 def _info(commands):

@@ -11,7 +11,7 @@ import numpy as np
 from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
 from ..status import STATUSES
-from . import estimate
+from . import estimate, kernels
 from .collect import groups
 from .grade import graded
 from .grid import coordinates
@@ -66,7 +66,7 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
         done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, overwrite)
         needed = estimate.check_disk(sweep, {kind: table.equilibria for kind, table in tables.items()}, out, done)
         threads = threads or estimate.cores()
-        records = _solve_all(tables, split_up, done, shards, sweep.accuracy, threads, executor, progress)
+        records = _solve_all(sweep, tables, split_up, done, shards, threads, executor, progress)
         solved = time.perf_counter()
         lost = _lost(tables, split_up, done)
         attrs = _provenance(sweep, tables, identity, shards.started) | ({"not_solved": lost} if lost else {})
@@ -141,15 +141,16 @@ def _provenance(sweep, tables, identity, started):
     }
 
 
-def _solve_all(tables, split_up, done, shards, accuracy, threads, executor, progress):
+def _solve_all(sweep, tables, split_up, done, shards, threads, executor, progress):
     """Records of all shards, those found on disk among them: kind -> Records; ``done`` gets the file of each, or None."""
     todo = [(kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done]
     total = sum(table.equilibria for table in tables.values())
     left = sum(int(tables[kind].first[b] - tables[kind].first[a]) for kind, _, a, b in todo)
     if executor is None:
-        solved = _solve_here(tables, todo, shards, accuracy, threads, progress)
+        kernels.load(dict.fromkeys(kind for kind, *_ in todo), sweep, progress)
+        solved = _solve_here(tables, todo, shards, sweep.accuracy, threads)
     else:
-        solved = solve_remotely(executor, tables, todo, shards, accuracy)
+        solved = solve_remotely(executor, tables, todo, shards, sweep.accuracy)
     with bar(total, total - left, " equilibria", progress) as shown, contextlib.closing(solved):
         for key, path, count in solved:
             done[key] = path
@@ -160,14 +161,8 @@ def _solve_all(tables, split_up, done, shards, accuracy, threads, executor, prog
     }
 
 
-def _solve_here(tables, todo, shards, accuracy, threads, progress):
+def _solve_here(tables, todo, shards, accuracy, threads):
     """Solve shards on threads: (kind, index), file, states, as they are done."""
-    from ..jit import is_compiled
-
-    if progress and not is_compiled("solver"):
-        print("compiling the kernels: up to a minute, once for each version")
-    for table in tables.values():
-        solve_shard(table.job(0, 0), accuracy)  # compiles, or loads what is compiled
 
     def run(kind, index, a, b):
         states, limits = solve_shard(tables[kind].job(a, b), accuracy)

@@ -9,11 +9,14 @@ BASE_CELLS = 24
 UNIFORM = np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2)
 
 
-def solve_shard(job, accuracy):
-    """Records of a job's states, and of its problems' limits (none of held states)."""
+def solve_shard(job, accuracy, lanes=True):
+    """Records of a job's states, and of its problems' limits (none of held states).
+
+    ``lanes=False``: by the scalar kernels alone, which else go on where vectors of designs end.
+    """
     solve = _solve_free if job.kind == "free" else _solve_held
     if not job.courses:
-        return solve(job.kind, job.problems, job.targets, job.first, job.pressures, UNIFORM, accuracy)
+        return solve(job.kind, job.problems, job.targets, job.first, job.pressures, UNIFORM, accuracy, lanes)
     states = np.zeros(len(job.pressures), state(job.kind))
     limits = np.full(len(job.problems) if job.kind == "free" else 0, np.nan, LIMIT)
     for k, tube in enumerate(job.courses):
@@ -23,17 +26,17 @@ def solve_shard(job, accuracy):
             states[rows] = unsolved(states.dtype, INVALID)
             continue
         first = np.concatenate([[0], np.cumsum(np.diff(job.first)[own])])
-        found = solve(job.kind, job.problems[own], job.targets[own], first, job.pressures[rows], tube, accuracy)
+        found = solve(job.kind, job.problems[own], job.targets[own], first, job.pressures[rows], tube, accuracy, lanes)
         states[rows] = found[0]
         if len(limits):
             limits[own] = found[1]
     return states, limits
 
 
-def _solve_free(_, problems, __, first, pressures, tube, accuracy):
+def _solve_free(_, problems, __, first, pressures, tube, accuracy, lanes=True):
     from ..solver.batch import walk_all
 
-    walks = walk_all(problems, first, pressures, tube, accuracy)
+    walks = walk_all(problems, first, pressures, tube, accuracy, lanes=lanes)
     states = np.empty(len(pressures), FREE_STATE)
     states["values"], states["bounds"] = walks.values, upward(walks.bounds)
     states["status"], states["slack"] = walks.status, walks.slack
@@ -42,12 +45,12 @@ def _solve_free(_, problems, __, first, pressures, tube, accuracy):
     return states, found
 
 
-def _solve_held(kind, problems, targets, first, pressures, tube, accuracy):
+def _solve_held(kind, problems, targets, first, pressures, tube, accuracy, lanes=True):
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold_batch import hold_all
 
     held = HELD_LENGTH if kind == "blocked_force" else HELD_ROTATION
-    found = hold_all(problems, targets, held, first, pressures, tube, accuracy)
+    found = hold_all(problems, targets, held, first, pressures, tube, accuracy, lanes)
     states = np.empty(len(pressures), HELD_STATE)
     states["value"], states["bound"] = found.values, upward(found.bounds)
     states["status"], states["stable"] = found.status, found.stable

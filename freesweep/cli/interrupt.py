@@ -1,0 +1,58 @@
+"""Ctrl-C and SIGTERM end a command within seconds, whatever it is at.
+
+Python tells a command of a signal between two of its own steps. The compiler, or a kernel at work on a shard, may not come
+back for half a minute: then the process ends without them. Files are whole or absent at any moment, so nothing is lost.
+"""
+
+import contextlib
+import os
+import signal
+import socket
+import threading
+
+PATIENCE = 3.5  # [s] for a command to end by itself, of the five that it may take
+INTERRUPTED = 130  # exit code
+SENTENCE = "interrupted; what was finished is kept, the same command goes on from there"
+
+
+@contextlib.contextmanager
+def ends_in_time():
+    """Within, SIGTERM, with which a cluster stops a job, does what Ctrl-C does; either is heard of at once."""
+    if threading.current_thread() is not threading.main_thread():  # to which signals belong
+        yield
+        return
+    heard, told = socket.socketpair()
+    told.setblocking(False)
+    ended = threading.Event()
+    watch = threading.Thread(target=_watch, args=(heard, ended), daemon=True)
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    for number, handler in handlers.items():
+        if handler in (signal.default_int_handler, signal.SIG_DFL):  # not in what is to ignore it
+            signal.signal(number, _interrupt)
+    before = signal.set_wakeup_fd(told.fileno(), warn_on_full_buffer=False)
+    watch.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        signal.set_wakeup_fd(before)
+        for number, handler in handlers.items():
+            if handler is not None:
+                signal.signal(number, handler)
+        told.close()
+        watch.join()
+        heard.close()
+
+
+def _interrupt(_, frame):
+    """Raise KeyboardInterrupt, but in no callback of LLVM's, which would print it and go on."""
+    if frame is None or "llvmlite" not in frame.f_code.co_filename:
+        raise KeyboardInterrupt
+
+
+def _watch(heard, ended):
+    """End the process if the command has not, some time after a signal."""
+    while signals := heard.recv(1):  # nothing: closed
+        if signals[0] in (signal.SIGINT, signal.SIGTERM) and not ended.wait(PATIENCE):
+            os.write(2, f"{SENTENCE}\n".encode())  # no lock that another thread may hold
+            os._exit(INTERRUPTED)

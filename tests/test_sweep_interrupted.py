@@ -1,0 +1,90 @@
+"""Ctrl-C and SIGTERM: a sweep ends within seconds, says so and goes on from there, even where nothing hears a signal."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from grids import CHILD_ENVIRONMENT, make, spec
+from test_sweep_resume import same_bits
+
+from freesweep.cli import INTERRUPTED
+from freesweep.cli.interrupt import SENTENCE
+from freesweep.sweep import run
+from freesweep.sweep.spec import parse
+
+AXES = {"alpha": [-20.0, 40.0], "beta": [-50.0, 20.0, 70.0], "pressure": [0.0, 1e5]}
+SWEEP = parse(spec(AXES))
+
+CHILD = """
+import ctypes, signal, sys, threading, time
+from freesweep.cli import interrupt, main
+from freesweep.sweep import kernels, run
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a shell runs in the background
+where, library = sys.argv[3], ctypes.CDLL(None)
+run.SHARD_EQUILIBRIA, solve, load = 6, run.solve_shard, kernels.load
+interrupt.PATIENCE = 60.0 if where == "between shards" else 0.5
+def deaf():
+    "As the compiler or a long kernel: no signal is heard, and it does not end."
+    mutex = ctypes.create_string_buffer(256)
+    library.pthread_mutex_init(mutex, None)
+    library.pthread_mutex_lock(mutex)
+    print("at work", flush=True)
+    library.pthread_mutex_lock(mutex)
+def slow(*job):
+    if where == "between shards":
+        print("at work", flush=True)
+        time.sleep(0.2)
+    elif run.Shards.stored:
+        deaf()
+    return solve(*job)
+def save(self, *shard, save=run.Shards.save):
+    run.Shards.stored = True
+    return save(self, *shard)
+run.Shards.stored, run.Shards.save, run.solve_shard = False, save, slow
+if where == "in the main thread":
+    kernels.load = lambda *_: deaf()
+sys.exit(main(["sweep", sys.argv[1], "-o", sys.argv[2], "--quiet", "--threads", "1"]))
+"""
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    return make(tmp_path_factory.mktemp("reference") / "atlas.nc", SWEEP)
+
+
+@pytest.mark.parametrize(
+    ("sent", "where"),
+    [
+        (signal.SIGTERM, "between shards"),
+        (signal.SIGINT, "between shards"),
+        (signal.SIGKILL, "between shards"),
+        (signal.SIGTERM, "in a shard"),
+        (signal.SIGINT, "in the main thread"),
+    ],
+)
+def test_a_stopped_sweep_says_so_and_goes_on(sent, where, reference, tmp_path, monkeypatch):
+    monkeypatch.setattr(run, "SHARD_EQUILIBRIA", 6)
+    (tmp_path / "spec.toml").write_text(SWEEP.text)
+    out = tmp_path / "atlas.nc"
+    child = subprocess.Popen(
+        [sys.executable, "-P", "-c", CHILD, str(tmp_path / "spec.toml"), str(out), where],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=CHILD_ENVIRONMENT,
+    )  # fmt: skip
+    try:
+        child.stdout.readline()
+        if where == "between shards":
+            child.stdout.readline()  # the first shard is stored
+        child.send_signal(sent)
+        _, error = child.communicate(timeout=60)
+    finally:
+        child.kill()
+    if sent == signal.SIGKILL:
+        assert child.returncode == -sent
+    else:
+        assert child.returncode == INTERRUPTED
+        assert error == f"{SENTENCE}\n"
+    assert not out.exists()
+    assert bool(list(Path(f"{out}.parts").glob("free-*.bin"))) == (where != "in the main thread")
+    same_bits(reference, make(out, SWEEP))
