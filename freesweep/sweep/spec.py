@@ -31,21 +31,18 @@ from pathlib import Path
 
 import numpy as np
 
-from ..actuator import SMALLEST_DIFFERENCE
-from ..atlas.schema import HELD, HELD_LENGTHS, PARAMETERS, YEOH
+from ..actuator import ENERGIES, SMALLEST_DIFFERENCE
+from ..atlas.schema import HELD, PARAMETERS, YEOH
 from ..profiles import as_profile, together
-from ..scaling import ACCURACIES
-from ..units import quantity, shown
+from ..units import shown
 from . import axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError
 from .rubber import SYNONYMS, check_rubber, read_material
+from .solver_table import BUDGET, MAX_POINTS, read_accuracy, read_blocked, read_tolerance
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
-MAX_POINTS = 2_000_000_000  # 16 GB for each variable of the atlas
-ENERGIES = ("full", "principal")
-TOLERANCES = (1e-7, 0.1)  # of answers between nodes, relative
 VARYING = ("alpha", "beta", "wall")  # may be profiles along the tube
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
 
@@ -70,7 +67,7 @@ class Sweep:
     blocked: tuple[str, ...] = ()  # which of blocked_force, blocked_torque are solved
     profiles: dict[str, tuple] = field(default_factory=dict)
     interpolation_tolerance: float | None = None
-    budget: int = 5_000_000  # points to which axes may grow for the tolerance
+    budget: int = BUDGET  # points to which axes may grow for the tolerance
     material: str = ""  # name of its rubber, if it came from the library
 
     @property
@@ -109,8 +106,8 @@ def parse(text: str, name: str = "specification") -> Sweep:
     tables = {key: _table(faults, document, key) for key in ("actuator", "load", "axes", "solver")}
     title = faults.line("title", document.get("title", ""))
     energy = _energy(faults, tables["actuator"])
-    accuracy = _accuracy(faults, tables["solver"])
-    tolerance, budget = _tolerance(faults, tables["solver"])
+    accuracy = read_accuracy(faults, tables["solver"])
+    tolerance, budget = read_tolerance(faults, tables["solver"])
     given = {}  # parameter: where it is given, faulty or not
     fixed, profiles = _fixed(faults, tables, given)
     axes = _axes(faults, tables["axes"], given)
@@ -118,12 +115,9 @@ def parse(text: str, name: str = "specification") -> Sweep:
     _check_profiles(faults, profiles, fixed, given)
     for parameter in REQUIRED:
         if parameter not in given:
-            homes = f"[{HOME[parameter]}] or [axes]"
-            faults.add(
-                parameter,
-                f"is missing; give it in {homes}" + (", or in every design" if designs and parameter in OWN else ""),
-            )
-    blocked, at_rest = _blocked(faults, tables["solver"], given)
+            others = ", or in every design" if designs and parameter in OWN else ""
+            faults.add(parameter, f"is missing; give it in [{HOME[parameter]}] or [axes]{others}")
+    blocked, at_rest = read_blocked(faults, tables["solver"], given)
     absent = set(AT_REST) - set(at_rest) | set(YEOH)
     defaults = {key: number for key, number in DEFAULTS.items() if key not in absent}
     fixed = {key: defaults.get(key) if key not in given else fixed.get(key) for key in PARAMETERS}
@@ -160,58 +154,6 @@ def _energy(faults, actuator):
     if energy not in ENERGIES:
         faults.add("actuator.energy", f"found {shown(energy)}, allowed: {', '.join(ENERGIES)}")
     return energy
-
-
-def _blocked(faults, solver, given):
-    """Which held states are solved, and which held quantities are those of the undeformed tube."""
-    asked = {"blocked_force": [name for name in HELD_LENGTHS if name in given]}
-    asked["blocked_torque"] = [name for name in HELD if name in given and name not in HELD_LENGTHS]
-    if len(asked["blocked_force"]) > 1:
-        first, second = (given[name] for name in asked["blocked_force"])
-        faults.add(first, f"the held length is given twice, also as {second}; remove one")
-    blocked = solver.get("blocked")
-    if blocked is not None and not isinstance(blocked, bool):
-        faults.add("solver.blocked", f"found {shown(blocked)}; write true or false")
-    if blocked is False and any(asked.values()):
-        held = given[next(name for names in asked.values() for name in names)]
-        faults.add("solver.blocked", f"found false, but {held} is given; remove one of the two")
-    kinds = tuple(kind for kind, names in asked.items() if names or blocked is True)
-    rest = dict(zip(asked, AT_REST))
-    return kinds, tuple(rest[kind] for kind in kinds if not asked[kind])
-
-
-def _accuracy(faults, solver):
-    faults.unknown_keys(solver, ("accuracy", "blocked", "interpolation_tolerance", "budget"), "solver")
-    low, high = ACCURACIES
-    try:
-        accuracy = quantity(solver.get("accuracy", 1e-6), "1")
-    except ValueError as error:
-        faults.add("solver.accuracy", str(error))
-        return None
-    if not low <= accuracy <= high:
-        faults.add("solver.accuracy", f"found {accuracy:g}, allowed is {low:g} to {high:g}; 1e-6 suits most sweeps")
-    return accuracy
-
-
-def _tolerance(faults, solver):
-    """Tolerance of answers between the nodes, None without, and the points to which axes may grow for it."""
-    tolerance, budget = solver.get("interpolation_tolerance"), solver.get("budget", Sweep.budget)
-    if tolerance is None and "budget" in solver:
-        faults.add("solver.budget", "is for axes that grow; give interpolation_tolerance, too")
-    if isinstance(budget, bool) or not isinstance(budget, int) or not 1 <= budget <= MAX_POINTS:
-        faults.add("solver.budget", f"found {shown(budget)}, allowed is a whole number from 1 to {MAX_POINTS:,}")
-        budget = Sweep.budget
-    if tolerance is None:
-        return None, budget
-    low, high = TOLERANCES
-    try:
-        number = quantity(tolerance, "1")
-    except ValueError as error:
-        faults.add("solver.interpolation_tolerance", str(error))
-        return None, budget
-    if not low <= number <= high:
-        faults.add("solver.interpolation_tolerance", f"found {number:g}, allowed is {low:g} to {high:g}")
-    return number, budget
 
 
 def _fixed(faults, tables, given):
