@@ -10,38 +10,18 @@ from concurrent.futures.process import BrokenProcessPool
 import numpy as np
 import pytest
 from commands import refused
-from grids import CHILD_ENVIRONMENT, make, only, spec
-from test_sweep_resume import same_bits
+from grids import CHILD_ENVIRONMENT, make, only
+from shards import SHARD, SWEEP, same_bits
 
 from freesweep import open_atlas
 from freesweep.atlas.files import EnvironmentFault
 from freesweep.cli import BAD_INPUT, DONE, ENVIRONMENT, main
 from freesweep.status import NOT_CONVERGED
-from freesweep.sweep import cluster, remote, run
+from freesweep.sweep import cluster, remote
 from freesweep.sweep.shards import SweepError
-from freesweep.sweep.spec import parse
 
 needs_dask = pytest.mark.skipif(importlib.util.find_spec("distributed") is None, reason="Dask is not installed")
-SHARD = 12
-AXES = {
-    "alpha": [-20.0, 5.0, 40.0],
-    "beta": [-50.0, -30.0, 20.0, 70.0],
-    "length": [0.05, 0.1],
-    "pressure": [0.0, 2e4, 1e5],
-}
-SWEEP = parse(spec(AXES))
-
-
-@pytest.fixture(autouse=True)
-def _small_shards(monkeypatch):
-    monkeypatch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
-
-
-@pytest.fixture(scope="module")
-def reference(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
-        return make(tmp_path_factory.mktemp("reference") / "atlas.nc", SWEEP)
+pytestmark = pytest.mark.usefixtures("small_shards")
 
 
 class Answering:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from commands import refused
 from grids import CHILD_ENVIRONMENT, make, spec
-from test_sweep_resume import same_bits
+from shards import same_bits
 
 from freesweep.atlas import files
 from freesweep.atlas.files import EnvironmentFault
@@ -120,7 +120,7 @@ from freesweep.atlas import files
 from freesweep.sweep import run
 from grids import make
 from test_sweep_faults import CALLS, Disk, SWEEP, moments
-from test_sweep_resume import same_bits
+from shards import same_bits
 run.SHARD_EQUILIBRIA = 6
 folder = Path(sys.argv[1])
 reference = make(folder / "whole.nc", SWEEP)

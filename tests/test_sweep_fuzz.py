@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 from grids import CHILD_ENVIRONMENT, spec
-from test_sweep_resume import same_bits
+from shards import same_bits
 
 from freesweep import open_atlas
 from freesweep.atlas.schema import PARAMETERS

@@ -6,16 +6,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from grids import CHILD_ENVIRONMENT, make, spec
-from test_sweep_resume import same_bits
+from grids import CHILD_ENVIRONMENT, make
+from shards import SHARD, SWEEP, same_bits
 
 from freesweep.cli import INTERRUPTED
 from freesweep.cli.interrupt import SENTENCE
-from freesweep.sweep import run
-from freesweep.sweep.spec import parse
-
-AXES = {"alpha": [-20.0, 40.0], "beta": [-50.0, 20.0, 70.0], "pressure": [0.0, 1e5]}
-SWEEP = parse(spec(AXES))
 
 CHILD = """
 import ctypes, signal, sys, threading, time
@@ -23,7 +18,7 @@ from freesweep.cli import interrupt, main
 from freesweep.sweep import kernels, run
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a shell runs in the background
 where, library = sys.argv[3], ctypes.CDLL(None)
-run.SHARD_EQUILIBRIA, solve, load = 6, run.solve_shard, kernels.load
+run.SHARD_EQUILIBRIA, solve = int(sys.argv[4]), run.solve_shard
 interrupt.PATIENCE = 60.0 if where == "between shards" else 0.5
 def deaf():
     "As the compiler or a long kernel: no signal is heard, and it does not end."
@@ -49,11 +44,7 @@ sys.exit(main(["sweep", sys.argv[1], "-o", sys.argv[2], "--quiet", "--threads", 
 """
 
 
-@pytest.fixture(scope="module")
-def reference(tmp_path_factory):
-    return make(tmp_path_factory.mktemp("reference") / "atlas.nc", SWEEP)
-
-
+@pytest.mark.usefixtures("small_shards")
 @pytest.mark.parametrize(
     ("sent", "where"),
     [
@@ -64,12 +55,11 @@ def reference(tmp_path_factory):
         (signal.SIGINT, "in the main thread"),
     ],
 )
-def test_a_stopped_sweep_says_so_and_goes_on(sent, where, reference, tmp_path, monkeypatch):
-    monkeypatch.setattr(run, "SHARD_EQUILIBRIA", 6)
+def test_a_stopped_sweep_says_so_and_goes_on(sent, where, reference, tmp_path):
     (tmp_path / "spec.toml").write_text(SWEEP.text)
     out = tmp_path / "atlas.nc"
     child = subprocess.Popen(
-        [sys.executable, "-P", "-c", CHILD, str(tmp_path / "spec.toml"), str(out), where],
+        [sys.executable, "-P", "-c", CHILD, str(tmp_path / "spec.toml"), str(out), where, str(SHARD)],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=CHILD_ENVIRONMENT,
     )  # fmt: skip
     try:

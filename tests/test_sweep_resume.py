@@ -8,20 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from grids import CHILD_ENVIRONMENT, SMALL, make, only, spec
+from shards import SHARD, SWEEP, same_bits
 
 from freesweep import Atlas, run_sweep
 from freesweep.sweep import run
 from freesweep.sweep.shards import SweepError
 from freesweep.sweep.spec import parse
 
-SHARD = 12  # equilibria: a small grid makes a score of shards
-AXES = {
-    "alpha": [-20.0, 5.0, 40.0],
-    "beta": [-50.0, -30.0, 20.0, 70.0],
-    "length": [0.05, 0.1],
-    "pressure": [0.0, 2e4, 1e5],
-}
-SWEEP = parse(spec(AXES))
+pytestmark = pytest.mark.usefixtures("small_shards")
 
 CHILD = """
 import os, signal, sys
@@ -41,27 +35,6 @@ if moment == 0:
 run.SHARD_EQUILIBRIA = int(sys.argv[3])
 run.run_sweep(parse(sys.stdin.read()), out, threads=2, progress=False)
 """
-
-
-@pytest.fixture(autouse=True)
-def _small_shards(monkeypatch):
-    monkeypatch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
-
-
-@pytest.fixture(scope="module")
-def reference(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
-        return make(tmp_path_factory.mktemp("reference") / "atlas.nc", SWEEP, threads=1)
-
-
-def same_bits(first, second):
-    first, second = (data.assign_attrs(started=None) for data in (first, second))
-    assert first.identical(second)
-    assert list(first.variables) == list(second.variables)
-    for name, variable in first.variables.items():
-        assert variable.dtype == second[name].dtype, name
-        assert variable.values.tobytes() == second[name].values.tobytes(), name
 
 
 def test_the_number_of_threads_does_not_change_a_bit(reference, tmp_path):
