@@ -12,6 +12,7 @@ from shards import SHARD, SWEEP, same_bits
 
 from freesweep import Atlas, run_sweep
 from freesweep.sweep import run
+from freesweep.sweep.changes import changes
 from freesweep.sweep.shards import SweepError
 from freesweep.sweep.spec import parse
 
@@ -128,15 +129,38 @@ def test_shards_of_another_size_are_not_mixed_in(reference, tmp_path, monkeypatc
 def test_shards_of_another_specification_are_refused_by_name(tmp_path, monkeypatch):
     out = tmp_path / "atlas.nc"
     before = interrupted(out, SWEEP, 1, monkeypatch)
-    with pytest.raises(
-        SweepError, match=r"atlas\.nc\.parts holds an unfinished sweep whose specification_sha256 differs"
-    ):
+    says = r"atlas\.nc\.parts holds an unfinished sweep whose specification_sha256 differs: .* now \(changed: axes\."
+    with pytest.raises(SweepError, match=says):
         make(out, parse(spec(SMALL)))
     assert sorted(Path(f"{out}.parts").glob("free-*.bin")) == before
     other = run.identify(SWEEP) | {"code_sha256": "other"}
     monkeypatch.setattr(run, "identify", lambda sweep: other)
     with pytest.raises(SweepError, match=r"whose code_sha256 differs: .* there, 'other' now"):
         make(out, SWEEP)
+
+
+def test_an_unfinished_sweep_without_a_shard_stands_in_nobodys_way(reference, tmp_path):
+    """As one leaves it that is killed while kernels are compiled."""
+    left = run.Shards(tmp_path / "atlas.nc")
+    left.hold()
+    left.open({"plan_sha256": "other", "specification_sha256": "other"}, "title = 'other'")
+    left._let_go()
+    same_bits(reference, make(tmp_path / "atlas.nc", SWEEP))
+    only(tmp_path, "atlas.nc")
+
+
+@pytest.mark.parametrize(
+    ("before", "says"),
+    [
+        ('[axes]\nalpha = [1, 2]\n"odd key" = 1', " (changed: title, axes.alpha, axes.'odd key')"),
+        ('# more words\ntitle = "A"\naxes.alpha = [1]', " (changed: comments, or how it is written)"),
+        ("\n".join(f"a{k} = 1" for k in range(9)), " (changed: title, axes.alpha, a0, a1, a2, a3 and 5 more)"),
+        ("title = ", ""),
+        (None, ""),
+    ],
+)
+def test_what_was_changed_in_a_specification_is_named(before, says):
+    assert changes(before, 'title = "A"\n[axes]\nalpha = [1]') == says
 
 
 def test_a_finished_atlas_is_used_again_and_never_overwritten_unasked(tmp_path, monkeypatch, capsys):
@@ -150,7 +174,9 @@ def test_a_finished_atlas_is_used_again_and_never_overwritten_unasked(tmp_path, 
             assert first.identical(atlas.data.load())
     assert "is complete already" in capsys.readouterr().out
     other = parse(spec(SMALL, title="Another"))
-    with pytest.raises(SweepError, match=r"atlas\.nc exists and its specification_sha256 differs: .*; choose another"):
+    with pytest.raises(
+        SweepError, match=r"its specification_sha256 differs: .* now \(changed: title\); choose another"
+    ):
         make(out, other)
     assert out.stat().st_mtime_ns == stamp
     assert make(out, other, overwrite=True).attrs["title"] == "Another"

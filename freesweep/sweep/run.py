@@ -12,6 +12,7 @@ from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
 from ..status import STATUSES
 from . import estimate, kernels
+from .changes import changes
 from .collect import groups
 from .grade import graded
 from .grid import coordinates
@@ -51,19 +52,19 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
     if threads is not None and threads < 1:
         raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
     identity, shards = identify(sweep), Shards(out)
-    if atlas := _complete(out, identity, overwrite, progress):
+    if atlas := _complete(out, identity, sweep.text, overwrite, progress):
         shards.tidy()
         return atlas
     estimate.check_memory(sweep)
     shards.hold()
     try:
-        if atlas := _complete(out, identity, overwrite, progress):  # another process was faster
+        if atlas := _complete(out, identity, sweep.text, overwrite, progress):  # another process was faster
             shards.clear()
             return atlas
         sweep = graded(sweep, print if progress else lambda _: None)
         tables = make_plan(sweep)
         split_up = {kind: split(table, sweep) for kind, table in tables.items()}
-        done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, overwrite)
+        done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, sweep.text, overwrite)
         needed = estimate.check_disk(sweep, {kind: table.equilibria for kind, table in tables.items()}, out, done)
         threads = threads or estimate.cores()
         records = _solve_all(sweep, tables, split_up, done, shards, threads, executor, progress)
@@ -84,7 +85,7 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
     return atlas
 
 
-def _complete(out, identity, overwrite, progress):
+def _complete(out, identity, text, overwrite, progress):
     """The atlas at ``out`` if it is this sweep's already; raises if it is another's that is not to be overwritten."""
     if out.exists() and not out.is_file():
         raise SweepError(f"{out} is a folder or a device; give the name of the atlas to make")
@@ -96,10 +97,11 @@ def _complete(out, identity, overwrite, progress):
         raise SweepError(f"{error}; choose another output, or overwrite it") from error
     for key, wanted in identity.items():
         if (found := atlas.data.attrs.get(key)) != wanted:
+            changed = changes(atlas.data.attrs.get("specification"), text) if key == "specification_sha256" else ""
             atlas.close()
             raise SweepError(
-                f"{out} exists and its {key} differs: {found!r:.80} there, {wanted!r:.80} now; choose another output,"
-                " or overwrite it"
+                f"{out} exists and its {key} differs: {found!r:.80} there, {wanted!r:.80} now{changed}; choose another"
+                " output, or overwrite it"
             )
     if progress:
         print(f"{out} is complete already, from this specification and this code")

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..atlas.files import BLOCK, EnvironmentFault, write_whole
 from ..status import NOT_CONVERGED
+from .changes import changes
 from .records import LIMIT, state, unsolved
 
 GAP = 64  # records that are read along rather than passed over
@@ -88,19 +89,20 @@ class Shards:
                 shutil.rmtree(self.folder, ignore_errors=True)
             self._let_go()
 
-    def open(self, identity, clear_others=False):
-        """Begin, or go on; returns the whole shards already there: (kind, index) -> file."""
+    def open(self, identity, text, clear_others=False):
+        """Begin, or go on with the specification ``text``; returns the whole shards there: (kind, index) -> file."""
         manifest = self.folder / "manifest.json"
         self.plan = identity["plan_sha256"]
         if manifest.exists():
             found = _read(manifest)
             self.started = found.get("started")
             differs = [key for key, wanted in identity.items() if found.get(key) != wanted]
-            key = differs[0] if differs else None
-            if differs and not clear_others:
+            if differs and not clear_others and any(self.folder.glob("*-*.bin")):
+                key = differs[0]
+                changed = changes(found.get("specification"), text) if key == "specification_sha256" else ""
                 raise SweepError(
                     f"{self.folder} holds an unfinished sweep whose {key} differs: {found.get(key)!r:.80} there,"
-                    f" {identity[key]!r:.80} now; choose another output, or delete that folder to begin anew"
+                    f" {identity[key]!r:.80} now{changed}; choose another output, or delete that folder to begin anew"
                 )
             if differs:
                 for path in self.folder.glob("*-*"):
@@ -108,7 +110,8 @@ class Shards:
                 manifest.unlink()
         if not manifest.exists():
             self.started = datetime.now(UTC).isoformat(timespec="seconds")
-            write_whole(manifest, json.dumps(identity | {"started": self.started}, indent=1).encode())
+            content = identity | {"started": self.started, "specification": text}
+            write_whole(manifest, json.dumps(content, indent=1).encode())
         for left in (*self.out.parent.glob(f".{self.out.name}.*.part"), *self.folder.glob(".*.part")):
             left.unlink(missing_ok=True)
         done = {}
