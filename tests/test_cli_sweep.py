@@ -10,6 +10,8 @@ from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED
 from freesweep.solver import block, branch
 from freesweep.solver.lanes import hold, walk
 from freesweep.sweep import duration
+from freesweep.sweep.doubts import doubts
+from freesweep.sweep.spec import parse
 
 TINY = spec(
     {"alpha": [0.0, 20.0, 40.0], "beta": [-40.0, -20.0, 20.0], "pressure": [0.0, 2e4, 5e4]}, title="A tiny sweep"
@@ -121,6 +123,44 @@ def test_an_output_in_a_missing_folder_is_the_environments_fault(specification, 
     err = refused(capsys, "sweep", specification, "-o", "absent/tiny.nc", code=ENVIRONMENT)
     assert "cannot make the folder absent/tiny.nc.parts: No such file or directory; there is no folder absent" in err
     assert ". is a folder or a device" in refused(capsys, "sweep", specification, "-o", ".", "--overwrite")
+
+
+def test_a_map_that_cannot_be_written_is_refused_before_anything_is_solved(specification, tmp_path, capsys):
+    err = refused(capsys, "sweep", specification, "--map", "absent/map.png", code=ENVIRONMENT)
+    assert err == "freesweep: --map: the folder absent is not there, make it first\n"
+    assert "must be one of .png" in refused(capsys, "sweep", specification, "--dry-run", "--map", "map.jpg")
+    assert [path.name for path in tmp_path.iterdir()] == ["tiny.toml"]
+    assert run("sweep", specification, "--quiet") == DONE
+    err = refused(capsys, "plot", "map", "tiny.nc", "-o", "absent/map.png", code=ENVIRONMENT)
+    assert "cannot write absent/map.png: No such file or directory" in err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("", "", None),
+        ("wall = 0.00159", "wall = 1.59", "walls up to 1.59 m are thicker than the inner radius, 0.00476 m at least"),
+        ("wall = 0.00159", "wall = [[0, 1e-3], [1, 6e-3]]", "walls up to 0.006 m are thicker"),
+        ("radius = 0.00476", "radius = 4.76", "the radius reaches 4.76 m; plain numbers are in SI units"),
+        ("c10 = 170000.0", "c10 = 0.17", "the pressure reaches 50000 Pa, far beyond a c10 of 0.17 Pa; plain numbers"),
+        ("20000.0, 50000.0]", "20.0, 50.0]", "no pressure exceeds 50 Pa, which hardly deforms a c10 of 170000 Pa"),
+        ("20000.0, 50000.0]", "]", None),
+    ],
+)
+def test_numbers_that_look_like_slips_of_units_are_told(old, new, says, specification, tmp_path, capsys):
+    (tmp_path / "tiny.toml").write_text(TINY.replace(old, new))
+    assert run("sweep", specification, "--dry-run") == DONE
+    err = capsys.readouterr().err
+    assert err == "" if says is None else err.startswith(f"freesweep: warning: {says}")
+    assert err.count("\n") == (says is not None)
+
+
+def test_each_named_design_has_its_own_wall_and_radius():
+    designs = [{"name": "a", "radius": 5e-3, "wall": 4e-3}, {"name": "b", "radius": 2e-3, "wall": 1e-3}]
+    axes = {"alpha": [20.0], "beta": [-50.0], "pressure": [1e5]}
+    assert doubts(parse(spec(axes, designs))) == []
+    designs[1]["wall"] = 3e-3
+    assert [text[:15] for text in doubts(parse(spec(axes, designs)))] == ["walls up to 0.0"]
 
 
 def test_threads_and_places_in_the_atlas_are_checked(specification, capsys):

@@ -248,6 +248,8 @@ def test_faults_of_designs_are_named(text, says):
         (', step = "2.5 deg"', "", "axes.alpha: a range needs either step or num"),
         ('step = "2.5 deg"', "step = 2.5, num = 3", "a range needs either step or num, not both"),
         ('start = "0 deg", ', "", "axes.alpha: a range needs start"),
+        ("num = 35", "num = 35, n = 35", "axes.beta.n: unknown key; write num"),
+        ("stop = 85", "stop = 85, end = 85", "axes.beta.end: unknown key; write stop"),
         ("num = 35", "num = 0", "axes.beta.num: found 0, allowed is a whole number from 1"),
         ("num = 35", "num = 35.0", "axes.beta.num: found 35.0"),
         ("num = 35", "num = true", "axes.beta.num: found True"),

@@ -105,12 +105,17 @@ def _sweep(commands):
 def _run_sweep(options):
     from pathlib import Path
 
+    from ..sweep.doubts import doubts
     from ..sweep.spec import read_file
 
     sweep = read_file(options.spec)
     out = Path(options.out or Path(options.spec).with_suffix(".nc").name)
     if options.threads is not None and options.threads < 1:
         raise ValueError(f"--threads: found {options.threads}; give 1 or more")
+    if options.map:
+        check_map(sweep, options.map)
+    for doubt in doubts(sweep):
+        print(f"freesweep: warning: {doubt}", file=sys.stderr)
     if options.dry_run:
         from ..sweep.estimate import dry_run
 
@@ -118,8 +123,6 @@ def _run_sweep(options):
         return
     from ..sweep.run import run_sweep
 
-    if options.map:
-        check_map(sweep, options.map)
     with _executor(options) as executor:
         atlas = run_sweep(
             sweep,

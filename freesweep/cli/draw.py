@@ -1,5 +1,7 @@
 """The commands that draw: plot map, validity, curve, shape. Names of files are checked before anything is solved."""
 
+import os
+
 from .picked import read, selection
 
 STILL = ".png, .svg or .pdf"
@@ -198,6 +200,11 @@ def check_map(sweep, path):
         faults.append("a map needs alpha and beta as axes of two values or more")
     if faults:
         raise ValueError(f"--map: {'; '.join(faults)}")
+    if not os.access(folder := Path(path).parent, os.W_OK):
+        from ..atlas.files import EnvironmentFault
+
+        absent = "cannot be written" if folder.is_dir() else "is not there, make it first"
+        raise EnvironmentFault(f"--map: the folder {folder} {absent}")
 
 
 def draw_map(data, out):

@@ -14,6 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
 
+from ..atlas.files import write_whole
+
 INCH = 25.4  # [mm]
 RESOLUTION = 300.0  # of PNG files [dots per inch]
 COLUMN, PAGE = 85.0, 170.0  # widths in print [mm]
@@ -153,10 +155,5 @@ def save(drawing: Axes | Figure, path: str | os.PathLike, resolution: float = RE
     content = io.BytesIO()
     with context():
         figure.savefig(content, format=suffix[1:], dpi=resolution, metadata=undated)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(content.getvalue())
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    write_whole(path, content.getvalue())
     return path

@@ -12,6 +12,9 @@ from .faults import Faults
 MAX_AXIS = 10_000  # values of one axis: beyond it a typing slip is likelier than a purpose
 MAX_PAIRS = 64  # of a profile: each place where it bends makes a segment of the mesh
 COUNTED = 10**18  # a larger count is not spelt out
+RANGE = ("start", "stop", "step", "num", "spacing")
+OTHERS = {"start": ("from", "min"), "stop": ("to", "end", "max"), "num": ("n", "count", "number", "points", "size")}
+MEANT = {other: f"write {key}" for key, others in OTHERS.items() for other in others}
 SPACINGS = ("linear", "sqrt", "log")
 STEP_TOLERANCE = 1e-9  # relative: how well a step must divide its range
 
@@ -125,7 +128,7 @@ def _from_list(faults, path, name, given):
 
 def _from_range(faults, path, name, given):
     before = len(faults.found)
-    faults.unknown_keys(given, ("start", "stop", "step", "num", "spacing"), path)
+    faults.unknown_keys(given, RANGE, path, MEANT)
     missing = [key for key in ("start", "stop") if key not in given]
     if ("step" in given) == ("num" in given):
         missing.append("either step or num" + (", not both" if "num" in given else ""))
