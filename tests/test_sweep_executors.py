@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import logging
 import subprocess
 import sys
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -208,6 +209,23 @@ def test_a_scheduler_that_does_not_answer_is_one_line(tmp_path, monkeypatch, cap
     monkeypatch.setattr(cluster, "PATIENCE", 1)
     error = refused(capsys, "sweep", str(tmp_path / "spec.toml"), "--dask", "tcp://127.0.0.1:1", code=ENVIRONMENT)
     assert "no Dask scheduler answers at tcp://127.0.0.1:1 within 1 s" in error
+
+
+@needs_dask
+def test_a_cluster_of_ones_own_is_silent_also_while_it_ends(monkeypatch):
+    """Its workers are killed when they are needed no more: what Dask says of that helps nobody."""
+    import distributed
+
+    handler = logging.StreamHandler()
+    monkeypatch.setattr(logging.getLogger("distributed"), "handlers", [handler])
+
+    def none(**_):
+        raise OSError("no cluster")
+
+    monkeypatch.setattr(distributed, "LocalCluster", none)
+    with pytest.raises(OSError, match="no cluster"), cluster.executor_of():
+        pass
+    assert handler.level == logging.CRITICAL
 
 
 @needs_dask

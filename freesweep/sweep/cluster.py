@@ -29,6 +29,9 @@ def executor_of(address="", workers=None, say=lambda text: None):
         ) from error
     cluster = None
     if not address:
+        # silence_logs ends with the cluster, but connections to its killed workers are missed a moment later
+        for handler in logging.getLogger("distributed").handlers:
+            handler.setLevel(logging.CRITICAL)
         cluster = LocalCluster(
             n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
             silence_logs=logging.CRITICAL,
