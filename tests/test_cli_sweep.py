@@ -163,6 +163,14 @@ def test_each_named_design_has_its_own_wall_and_radius():
     assert [text[:15] for text in doubts(parse(spec(axes, designs)))] == ["walls up to 0.0"]
 
 
+def test_a_specification_is_neither_overwritten_nor_taken_for_an_address(specification, tmp_path, capsys):
+    err = refused(capsys, "sweep", specification, "-o", specification, "--overwrite")
+    assert "tiny.toml is the specification itself; give the name of the atlas to make" in err
+    assert (tmp_path / "tiny.toml").read_text() == TINY
+    err = refused(capsys, "sweep", "--dask", specification)
+    assert "tiny.toml', which is no address; write SPEC before --dask" in err
+
+
 def test_threads_and_places_in_the_atlas_are_checked(specification, capsys):
     assert "--threads: found 0; give 1 or more" in refused(capsys, "sweep", specification, "--threads", "0")
     assert run("sweep", specification, "--quiet") == DONE

@@ -93,6 +93,7 @@ def _sweep(commands):
         "--dask",
         nargs="?",
         const="",
+        type=_address,
         metavar="ADDRESS",
         help="solve on the workers of the Dask scheduler there (tcp://host:8786); without ADDRESS on processes here",
     )
@@ -100,6 +101,13 @@ def _sweep(commands):
     command.add_argument("--dry-run", action="store_true", help="say what would be solved, and stop")
     command.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
     command.set_defaults(run=_run_sweep)
+
+
+def _address(text):
+    """The word behind --dask, unless it was meant to be the specification."""
+    if text.endswith(".toml"):
+        raise argparse.ArgumentTypeError(f"found {text!r}, which is no address; write SPEC before --dask")
+    return text
 
 
 def _run_sweep(options):
@@ -112,6 +120,8 @@ def _run_sweep(options):
     out = Path(options.out or Path(options.spec).with_suffix(".nc").name)
     if options.threads is not None and options.threads < 1:
         raise ValueError(f"--threads: found {options.threads}; give 1 or more")
+    if out.exists() and out.samefile(options.spec):
+        raise ValueError(f"--out: {out} is the specification itself; give the name of the atlas to make")
     if options.map:
         check_map(sweep, options.map)
     for doubt in doubts(sweep):

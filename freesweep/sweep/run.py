@@ -206,6 +206,8 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
         if estimate.is_measured(sweep):
             from ..query.measure import measure
 
+            if progress:
+                print("comparing answers between the nodes with exact ones")
             with writer.dataset() as data:
                 found = measure(data)
             writer.describe(found)
