@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq, minimize_scalar
 
 from freesweep.census.designs import Drawn, quadrature, with_pressures
 from freesweep.first_integral.folded import solve_near
@@ -26,6 +27,14 @@ def walked(designs, pressures):
     return batch.walk_all(
         Drawn(designs, pressures).problems(), first, pressures.ravel(), batch.uniform(24), 1e-6, lanes=False
     )
+
+
+def held(design, pressure, base=24):
+    """The state of a design (9,) whose rotation is held at 0."""
+    problems = Drawn(np.array([design]), None).problems()
+    tube = solve.UNIFORM[0], np.array([0, base]), solve.UNIFORM[2]
+    first = np.array([0, 1])
+    return solve._solve_held("blocked_torque", problems, np.zeros(1), first, np.array([pressure]), tube, 1e-6)[0][0]
 
 
 def test_fiber_extension_that_leaves_the_clamped_ends_hardly_any_meridian():
@@ -109,14 +118,7 @@ def test_rotation_of_nearly_straight_fibers_is_held_by_a_narrow_neck_and_a_wide_
     """One turns as far as the other turns back; between them stands a wall as steep as a flange, which moves as the load
     rises. Meshes that begin apart agree.
     """
-    problems = Drawn(np.array([design]), None).problems()
-    states = [
-        solve._solve_held(
-            "blocked_torque", problems, np.zeros(1), np.array([0, 1]), np.array([pressure]),
-            (solve.UNIFORM[0], np.array([0, base]), solve.UNIFORM[2]), 1e-6,
-        )[0][0]
-        for base in (24, 384)
-    ]  # fmt: skip
+    states = [held(design, pressure, base) for base in (24, 384)]
     assert [state["status"] for state in states] == [OK] * 2
     one, other = states
     assert one["stable"] == other["stable"]
@@ -188,3 +190,82 @@ def test_tube_drawn_in_under_a_force_that_pushes_lets_its_wall_go_in_the_middle(
     assert walk.status.tolist() == [COMPRESSED, OK]
     force, middle = design[6], walk.values[1, 4]
     assert pressures[0] * middle**2 + force < 0.0 < pressures[1] * middle**2 + force
+
+
+NECKED = np.array([
+    [15.29470272884684, -2.2070729225853136, 187.1778910, 0.1128477, 1.0052590309921823, 0.0, 0.48638724432075886, 0.0, 1],
+    [-9.693540809062114, 2.5518275559715, 119.1575391, 0.8576230, 1.0173541276490436, 0.0, 0.0, 0.0, 0],
+    [4.861206474361323, -9.072089209121209, 98.8928131, 0.0380933, 1.0120027072904665, 0.0, 0.0, 0.0, 1],
+    [-11.759827303567322, 4.6468324662693075, 176.0917846, 0.2308896, 1.0118060767839698, 0.4474165, 0.0, 0.0, 0],
+    [5.191573018859016, -4.917336901930388, 64.4558869, 0.3463806, 1.0064943926432766, 0.0, 0.0, 0.0, 0],
+])  # fmt: skip
+NECKED_PRESSURES = np.array(
+    [4.174003063666797, 8.515280736399443, 4.0215394269594995, 5.183805929986411, 4.7732829653144595]
+)
+
+
+def density(design, pressure, torque):
+    """U(y), psi(y) and G(y) of a uniform tube, as functions of y: Eqs. 2.3 - 2.5, 2.11 once more."""
+    alpha, beta, _, wall, gamma, ratio, force, _, full = design
+    ta, tb = np.tan(np.radians([alpha, beta]))
+    H, D, area, gg = (ta + tb) / 2.0, (ta - tb) / 2.0, wall * (2.0 + wall), gamma**2
+
+    def psi(y):
+        return H * (gg / y**2 - 1.0)
+
+    def G(y):
+        return gg * (1.0 + H**2 + D**2) - D**2 * y**2 - (gg * H / y) ** 2
+
+    def U(y):
+        g, shear = G(y), 1.0 + full * psi(y) ** 2
+        w = g + y**2 * shear + 1.0 / (g * y**2) - 3.0 + ratio * (g * y**2 + 1.0 / y**2 + shear / g - 3.0)
+        return (pressure * y**2 + force) * np.sqrt(g) - area * w + torque * psi(y)
+
+    return U, psi, G
+
+
+@pytest.mark.parametrize("row", range(4))
+def test_long_tube_holds_its_rotation_by_the_torque_at_which_two_stretches_balance(row):
+    """A thin and a wide part share the length, as two phases do at Maxwell's pressure: U' = 0 in both, and U is the same."""
+    design, pressure = NECKED[row], NECKED_PRESSURES[row]
+    state = held(design, pressure)
+
+    def unbalance(torque):
+        """Largest U of a thin tube over that of a wide one."""
+        U, _, G = density(design, pressure, torque)
+        largest = []
+        for y in (np.geomspace(0.02, 0.8, 2000), np.geomspace(1.2, 30.0, 2000)):
+            k = np.argmax(np.where(G(y) > 1e-3, U(y), -np.inf))
+            there = minimize_scalar(
+                lambda y: -U(y), bounds=(y[k - 1], y[k + 1]), method="bounded", options={"xatol": 1e-12}
+            )
+            largest.append(-there.fun)
+        return largest[0] - largest[1]
+
+    with np.errstate(invalid="ignore"):
+        balanced = brentq(unbalance, 0.8 * state["value"], 1.2 * state["value"], rtol=1e-12)
+    np.testing.assert_allclose(state["value"], balanced, rtol=1e-7)
+    assert state["bound"] < 1e-6 * abs(state["value"])
+
+
+def test_necked_tube_has_its_length_and_no_rotation_by_plain_quadrature():
+    """Down to the neck at 0.0608 and out to 8.786 again, with the meridian's angle 89.98 degrees between."""
+    design, pressure = NECKED[4], NECKED_PRESSURES[4]
+    U, psi, G = density(design, pressure, held(design, pressure)["value"])
+    node, weight = np.polynomial.legendre.leggauss(600)
+    t, weight = 0.5 * (node + 1.0), 0.5 * weight
+
+    def part(extreme, level):
+        """Length and twist from an extreme stretch to the end's radius; y - extreme goes as t^2: no root is left there."""
+        y = extreme + (1.0 - extreme) * t**2
+        R, F = level - U(y), pressure * y**2 * np.sqrt(G(y))
+        dx = weight * 2.0 * t * abs(1.0 - extreme) * (F + R) / np.sqrt(G(y) * R * (2.0 * F + R))
+        return np.array([np.sum(dx), np.sum(dx * psi(y))])
+
+    def half_and_twist(middle):
+        neck = brentq(lambda y: U(y) - U(middle), 0.05, 0.07, xtol=1e-15)
+        return 2.0 * part(neck, U(middle)) + part(middle, U(middle))
+
+    middle = brentq(lambda y: half_and_twist(y)[0] - 0.5 * design[2], 8.75, 8.80, xtol=1e-12)
+    np.testing.assert_allclose(middle, 8.786447, rtol=1e-6)
+    assert abs(half_and_twist(middle)[1]) < 1e-4

@@ -46,7 +46,7 @@ def beyond(cell, load, middle, half, nodes, crowding, curve):
     if not (drive > 0.0 and reach > 0.0):
         return np.inf
     scale = max(min(drive / -L_yy, reach) if L_yy < 0.0 else reach, LEAST_SCALE * reach)
-    total = meridian.trace(cell, load, middle, 0.0, scale, nodes, crowding, curve)
+    total = meridian.trace(cell, load, middle, drive, 0.0, scale, nodes, crowding, curve)
     return total / half - 1.0 if total > 0.0 else np.inf
 
 

@@ -16,7 +16,7 @@ stable state beside the cylinder.
 import numpy as np
 
 from ..jit import kernel
-from . import guide, held, lagrangian, nested, newton
+from . import guide, held, lagrangian, neck, necked, nested, newton
 from .branch import GAMMA, SHEAR, rubber_of
 from .buckle import LOWERINGS, buckled_at
 from .climb import pushed
@@ -69,6 +69,7 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     direction = tuple_times(unit, scale)
     mu /= scale
     natural, wanted = total * scale if kind == HELD_LENGTH else 0.0, target * scale
+    came_from, last_leg = (1.0, rubber, shear, 0.0, 0.0, 0.0, 1.0), wanted == natural
     found, reached, regrades = NOT_CONVERGED, 0.0, 1
     for tries in range(2):  # a buckled shape that no mesh holds is come to from a lower pressure
         if buckled:
@@ -80,6 +81,7 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
                 allowed = 1 if varying and mirrored(tube) else 0
                 begun, mu, reached = from_rest(x, y, tube, course, cell, load, direction, natural, allowed, work)
                 if begun == OK and wanted != natural:
+                    came_from, last_leg = load, True
                     begun, mu, reached = march(
                         x, y, tube, course, cell, False, load, load, 0.0, direction, mu, natural, wanted, EVERY, work
                     )
@@ -88,6 +90,13 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
                     begun, mu = directly(x, y, tube, course, cell, start, load, direction, wanted, EVERY, work)
                 found = begun
         if found != OK:
+            if found != COMPRESSED and last_leg and not (varying or buckled):
+                status, doublings, now = necked.solve(
+                    cell, tube, x, y, mu, came_from, load, reached, natural, wanted, direction, scale, accuracy, base, fine,
+                    space[3], table, out,
+                )  # fmt: skip
+                if status != NOT_CONVERGED:
+                    return status, 1, doublings, now, 1.0
             return found, 0, 0, load, reached
         marched = extremes(y, tube[4])
         status, _, doublings, _ = nested.solve(
@@ -109,6 +118,8 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     unstable, rounding = unstable_directions(
         fine[0], fine[1], base << doublings, base, tube, now, direction, size, work
     )
+    if not (varying or buckled) and neck.depth_of(y) > 0.0:
+        unstable = max(unstable, 1)  # of which a mesh may know nothing
     out[1, nested.MULTIPLIER] += rounding
     out[0, nested.MULTIPLIER] *= scale
     out[1, nested.MULTIPLIER] *= scale

@@ -13,6 +13,7 @@ from .status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
 FINER, FINEST = 4, 6144  # times the cells of the base mesh, up to so many: some layers are thin
 CONFIRMED = 0.01  # relative difference of a limit's place from one mesh to the next
+ENDED = 1e-3  # the same: where two meshes agree so well on its place, the branch ends there
 THINNEST_LAYER = 100.0  # times it fits into a cell of an even base mesh; thinner ones need a finer mesh from the start
 JUST_BEYOND = 1.0001  # times the pressure
 
@@ -66,6 +67,9 @@ def find_on_some_mesh(problem, p, other, target, kind, buckled, course, tube, ac
         )
         limit = status == BEYOND_LIMIT or (status == HELD_IMPOSSIBLE and not buckled)
         confirmed = status == before[0] and abs(reached - before[1]) <= CONFIRMED * reached
+        if status == NOT_CONVERGED and abs(reached - before[1]) <= ENDED * reached and reached < 1.0 and not buckled:
+            status = BEYOND_LIMIT  # steps die out at one place on any mesh
+            break
         if not (status == NOT_CONVERGED or status == INACCURATE or (limit and not confirmed)):
             break
         before, factor = (status, reached), FINER * factor

@@ -20,6 +20,7 @@ from .guide import cell_along
 NODES = 160  # along the curve: a guess need be good to a hundredth only
 DEEPEST = 20.0  # e-folds from end to middle; beyond them the middle is the uniform stretch
 CROWDING = 0.01  # of an e-fold: the distances at the clamped end, if not less
+TAYLOR, TAYLOR_STEP = 1e-6, 1e-4  # share of y up to which a difference of U' has too few digits; of that for U'''
 ROOT_STEPS = 60
 HALF_FITS = 1e-5  # relative
 STEEP = 0.5  # cosine of the meridian's angle
@@ -27,14 +28,36 @@ MOST_SHIFT = 0.1  # of what is left of the tube
 
 
 @kernel
-def trace(cell, load, top, gap, scale, nodes, crowding, curve):
-    """Half a tube whose middle lies ``gap`` short of ``top``: rows of ``curve`` (5, > nodes) take x, y at the ``nodes`` from
-    the clamped end on, sine and cosine of the meridian's angle in the cells between, and y there. Returns x of the middle,
-    NaN where no such shape is an equilibrium.
+def slopes_at(cell, load, top, sign):
+    """First, second and third derivative of U at ``top``, ``sign`` times toward it."""
+    step = TAYLOR_STEP * top
+    _, L_y, _, L_yy, _, _ = lagrangian.density(top, 0.0, cell, load)
+    before, after = (
+        lagrangian.density(top - step, 0.0, cell, load)[3],
+        lagrangian.density(top + step, 0.0, cell, load)[3],
+    )
+    return sign * L_y, L_yy, sign * (after - before) / (2.0 * step)
+
+
+@kernel
+def gained(cell, load, top, sign, way, slopes):
+    """Change of the drive ``sign U'`` on a ``way`` from ``top`` on toward the end, to the last digit."""
+    first, second, third = slopes
+    if way < TAYLOR * top:
+        return way * (0.5 * third * way - second)
+    return sign * lagrangian.density(top - sign * way, 0.0, cell, load)[1] - first
+
+
+@kernel
+def trace(cell, load, top, drive_at_top, gap, scale, nodes, crowding, curve):
+    """Half a tube whose middle lies ``gap`` short of ``top``, where U' toward it is ``drive_at_top``, however small: rows of
+    ``curve`` (5, > nodes) take x, y at the ``nodes`` from the clamped end on, sine and cosine of the meridian's angle in the
+    cells between, and y there. Returns x of the middle, NaN where no such shape is an equilibrium.
     """
     x, y, sine, cosine, between = curve[0], curve[1], curve[2], curve[3], curve[4]
     sign = 1.0 if top >= 1.0 else -1.0
     reach = abs(top - 1.0) - gap
+    slopes = slopes_at(cell, load, top, sign)
     end = acosh(1.0 + reach / scale)
     crowd = end + log((1.0 + crowding - exp(-end)) / crowding)
     theta, z, drive, R = 0.0, 0.0, 0.0, 0.0
@@ -44,7 +67,7 @@ def trace(cell, load, top, gap, scale, nodes, crowding, curve):
         theta = end - from_end if k < nodes else 0.0
         z = scale * 2.0 * sinh(0.5 * theta) ** 2
         y[k] = top - sign * (gap + z)
-        drive = sign * lagrangian.density(y[k], 0.0, cell, load)[1]
+        drive = drive_at_top + gained(cell, load, top, sign, gap + z, slopes)
         if k == nodes:
             continue
         middle = 0.5 * (theta + before)
@@ -100,7 +123,7 @@ def meet(cell, load, u, half, deep, tolerance, nodes, crowding, curve):
     reach = abs(u - 1.0)
     low, high = 0.0, deep
     gap = reach / cosh(high)
-    total = trace(cell, load, u, gap, gap, nodes, crowding, curve)
+    total = trace(cell, load, u, 0.0, gap, gap, nodes, crowding, curve)
     if not total > half:
         return total
     miss_low, miss_high = -half, total - half
@@ -108,7 +131,7 @@ def meet(cell, load, u, half, deep, tolerance, nodes, crowding, curve):
     for _ in range(ROOT_STEPS):
         folds = (low * miss_high - high * miss_low) / (miss_high - miss_low)
         gap = reach / cosh(folds)
-        total = trace(cell, load, u, gap, gap, nodes, crowding, curve)
+        total = trace(cell, load, u, 0.0, gap, gap, nodes, crowding, curve)
         miss = total - half
         if not abs(miss) > tolerance * half:
             break

@@ -42,6 +42,15 @@ def integrate(cell, load, u, rate, half, total, nodes, curve, row):
 
 
 @kernel
+def finish(table, out):
+    """Values and bounds from the quadratures; the largest scaled bound."""
+    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], 0.0, out[0], out[1])
+    for k in range(nested.OUTPUTS):
+        out[1, k] = CAUTION * out[1, k] + ROUNDING * out[2, k]
+    return largest
+
+
+@kernel
 def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
     """The state between the clamped end and the uniform stretch ``u`` or, where that is NaN, the one whose middle is about
     ``near``, as :func:`nested.solve` leaves it: ``(status, doublings)`` of ``base`` cells. NOT_CONVERGED where there is
@@ -74,9 +83,7 @@ def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
         if traced and not beside.is_near(row[nested.MIDDLE], near):
             return NOT_CONVERGED, 0
     out[2], out[3] = lagrangian.scales(table[ROWS - 1], cell, load, half, nested.SMALLEST_TOLERANCE)
-    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], 0.0, out[0], out[1])
-    for k in range(nested.OUTPUTS):
-        out[1, k] = CAUTION * out[1, k] + ROUNDING * out[2, k]
+    largest = finish(table, out)
     curve[0, nodes] = half
     for k in range(nodes + 1):
         fine[0, k], fine[1, k] = curve[0, k], curve[1, k]

@@ -1,8 +1,8 @@
 """Where the walk on meshes ends without an answer: the branch is traced again by its first integral, and what that shows is
 solved on a mesh that begins there, or by quadrature.
 
-A turning point that no mesh holds is told by two traces, one of more nodes than the other: they differ by less than the way
-from it to either end.
+A turning point that no mesh holds is told by two traces, one of more nodes than the other: they differ by less than its
+distance to either end of the way.
 """
 
 import numpy as np

@@ -66,7 +66,9 @@ def middle_at(cell, middle, start, end, t, half, nodes, curve):
             load = between(start, end, part)
             bend = -lagrangian.density(middle, 0.0, cell, load)[3]
             scale = min(drive / bend, reach) if bend > 0.0 else reach
-            total = meridian.trace(cell, load, middle, 0.0, max(scale, 1e-12 * reach), nodes, meridian.CROWDING, curve)
+            total = meridian.trace(
+                cell, load, middle, drive, 0.0, max(scale, 1e-12 * reach), nodes, meridian.CROWDING, curve
+            )
         if total <= half and at < first + LONG:  # so long a tube that its middle is a uniform one's
             return part, meridian.lengthened(curve, half, nodes)
         miss = total / half - 1.0 if total == total else FARTHEST

@@ -1,0 +1,157 @@
+"""The held state of a tube with a neck (:mod:`neck`), from a mesh's shape on the way to it: small steps of what loads it."""
+
+import numpy as np
+
+from ..jit import kernel
+from . import held, lagrangian, neck, nested, quadrature
+from .neck import FOLDS, MIDDLE, MU, NECK_FOLDS
+from .status import INACCURATE, NOT_CONVERGED, OK
+from .uniform import between
+
+NEAR = 0.05  # relative difference of the first middle from the mesh's
+NODES, MOST_NODES = 320, 6144  # along body and neck: on the way, and at its end
+ITERATIONS, HOPELESS = 20, 1e6  # Newton's; times the largest steps
+DIFFERENCE, FOLDS_DIFFERENCE = 1e-9, 1e-5  # for slopes: of a stretch or mu, with which much turns sharply, and of q
+CLOSE, CLOSEST = 1e-8, 1e-13  # relative, of every equation: on the way, and at its end
+ROUNDED = 1e3  # times that: near enough where it falls no further
+FIRST_STEP, SMALLEST_STEP, STEPS = 0.02, 1e-6, 2000  # of the way
+LARGEST_CHANGE, LARGEST_FOLDS = 0.1, 3.0  # of a stretch or mu, and of q, in a step
+STRAY = 0.03  # of y_m from its linear prediction: more is another branch
+
+
+@kernel
+def eliminate(matrix, right):
+    """Gauss's elimination with the largest pivot; the solution is left in ``right``."""
+    n = len(right)
+    for k in range(n):
+        best = k + np.argmax(np.abs(matrix[k:, k]))
+        for j in range(n):
+            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        right[k], right[best] = right[best], right[k]
+        for i in range(k + 1, n):
+            share = matrix[i, k] / matrix[k, k]
+            for j in range(k, n):
+                matrix[i, j] -= share * matrix[k, j]
+            right[i] -= share * right[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+
+
+@kernel
+def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve, row, other):
+    """Newton's method from a guess ``now``, which is replaced; whether it converged."""
+    miss, moved, there, matrix = np.empty(3), np.empty(3), np.empty(5), np.empty((3, 3))
+    least = 1e300
+    for _ in range(ITERATIONS):
+        neck.misses(cell, load, direction, target, half, now, free, nodes, curve, row, other, miss)
+        most = np.max(np.abs(miss))
+        if most < tolerance or (most < ROUNDED * tolerance and most >= 0.5 * least):
+            return True
+        least = min(least, most)
+        for j in range(3):
+            k = free[j]
+            step = FOLDS_DIFFERENCE if k == FOLDS or k == NECK_FOLDS else DIFFERENCE * now[k]
+            there[:] = now
+            there[k] += step
+            neck.misses(cell, load, direction, target, half, there, free, nodes, curve, row, other, moved)
+            for i in range(3):
+                matrix[i, j] = (moved[i] - miss[i]) / step
+        eliminate(matrix, miss)
+        largest = 1.0
+        for j in range(3):
+            k = free[j]
+            most = LARGEST_FOLDS if k == FOLDS or k == NECK_FOLDS else LARGEST_CHANGE * abs(now[k])
+            largest = max(largest, abs(miss[j]) / most)
+        if not largest < HOPELESS:
+            break
+        for j in range(3):
+            now[free[j]] -= miss[j] / largest
+    return False
+
+
+@kernel
+def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve, row, other, now):
+    """The numbers ``now`` at load ``end`` with ``target`` held; arguments as of :func:`solve`. Whether they were found."""
+    load = between(start, end, t)
+    if not neck.guess_of(cell, held.loaded(load, direction, mu), x, y, now):
+        return False
+    now[MU] = mu
+    middle, last, guess, t_last, step = now[MIDDLE], np.empty(5), np.empty(5), t, FIRST_STEP * t
+    free = neck.unknowns(cell, load, direction, now)
+    if not fit(cell, load, direction, first + t * (target - first), half, now, free, NODES, CLOSE, curve, row, other):
+        return False
+    if not abs(now[MIDDLE] / middle - 1.0) < NEAR:
+        return False
+    last[:] = now
+    for _ in range(STEPS):
+        if t >= 1.0:
+            return True
+        ahead = min(1.0, t + step)
+        share = (ahead - t) / (t - t_last) if t > t_last else 0.0
+        for k in range(5):
+            guess[k] = now[k] + share * (now[k] - last[k])
+        expected, load = guess[MIDDLE], between(start, end, ahead)
+        free, held_there = neck.unknowns(cell, load, direction, now), first + ahead * (target - first)
+        if (
+            fit(cell, load, direction, held_there, half, guess, free, NODES, CLOSE, curve, row, other)
+            and abs(guess[MIDDLE] / expected - 1.0) < STRAY
+            and abs(guess[MIDDLE] / now[MIDDLE] - 1.0) < LARGEST_CHANGE
+        ):
+            last[:], now[:] = now, guess
+            t_last, t, step = t, ahead, 1.5 * step
+            continue
+        step *= 0.5
+        if step < SMALLEST_STEP * t:
+            break
+    return False
+
+
+@kernel
+def solve(
+    cell, tube, x, y, mu, start, end, t, first, target, direction, scale, accuracy, base, fine, curve, table, out
+):
+    """The state at load ``end`` with the integral held at ``target``. The way there begins at ``start`` with ``first`` held;
+    at its share ``t`` a mesh has the necked shape ``x``, ``y`` and the multiplier ``mu``.
+
+    Returns ``(status, doublings, load)``, and what :func:`nested.solve` leaves, with mu in units of ``direction/scale``.
+    """
+    half, now, spare = tube[5][1], np.empty(5), table[quadrature.ROWS]
+    if not follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve, table[0], spare, now):
+        return NOT_CONVERGED, 0, end
+    free = neck.unknowns(cell, end, direction, now)
+    doublings = nested.MAX_DOUBLINGS
+    while doublings > 1 and base << doublings > MOST_NODES:
+        doublings -= 1
+    nodes = base << doublings
+    for k in range(quadrature.ROWS):
+        count = nodes >> (quadrature.ROWS - 1 - k)
+        if not fit(cell, end, direction, target, half, now, free, count, CLOSEST, curve, table[k], spare):
+            return NOT_CONVERGED, 0, end
+    loaded, last = held.loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
+    out[2], out[3] = lagrangian.scales(last, cell, loaded, half, nested.SMALLEST_TOLERANCE)
+    unit = max(abs(direction[4]), abs(direction[5]))
+    out[2, nested.MULTIPLIER] /= max(unit, 1.0)
+    out[3, nested.MULTIPLIER] /= unit
+    largest = quadrature.finish(table, out)
+    out[0, nested.MULTIPLIER] *= scale
+    out[1, nested.MULTIPLIER] *= scale
+    lay(curve, nodes, half, fine)
+    return (OK if largest <= accuracy else INACCURATE), doublings, loaded
+
+
+@kernel
+def lay(curve, nodes, half, fine):
+    """Nodes and shape of half a tube from its neck's and its body's, as :func:`nested.solve` leaves them."""
+    body, quarter = nodes // 2, nodes // 4
+    x_neck, y_neck = curve[0, body + 1 :], curve[1, body + 1 :]
+    to_neck = x_neck[quarter]
+    for k in range(quarter + 1):
+        fine[0, k], fine[1, k] = x_neck[k], y_neck[k]
+        fine[0, 2 * quarter - k], fine[1, 2 * quarter - k] = 2.0 * to_neck - x_neck[k], y_neck[k]
+    for k in range(1, body + 1):
+        fine[0, 2 * quarter + k], fine[1, 2 * quarter + k] = 2.0 * to_neck + curve[0, k], curve[1, k]
+    fine[0, nodes] = half
+    for k in range(nodes // 2 + 1):
+        fine[2, k], fine[4, k] = fine[0, 2 * k], fine[1, 2 * k]
