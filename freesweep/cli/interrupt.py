@@ -54,5 +54,6 @@ def _watch(heard, ended):
     """End the process if the command has not, some time after a signal."""
     while signals := heard.recv(1):  # nothing: closed
         if signals[0] in (signal.SIGINT, signal.SIGTERM) and not ended.wait(PATIENCE):
-            os.write(2, f"{SENTENCE}\n".encode())  # no lock that another thread may hold
+            line = "\n" * os.isatty(2) + SENTENCE + "\n"  # a terminal shows ^C or half a bar
+            os.write(2, line.encode())  # without a lock that another thread may hold
             os._exit(INTERRUPTED)
