@@ -5,11 +5,11 @@ import pytest
 from commands import refused, run
 
 from freesweep.census.count import Census
-from freesweep.census.designs import BLOCK, COLUMNS, PRESSURES, draw, quadrature
+from freesweep.census.designs import BLOCK, COLUMNS, PRESSURES, draw, quadrature, quadrature_held
 from freesweep.census.run import census
 from freesweep.scaling import OUTPUTS
 from freesweep.status import NOT_CONVERGED, OK
-from freesweep.sweep.records import FREE_STATE
+from freesweep.sweep.records import FREE_STATE, HELD_STATE
 
 DESIGNS = 40
 
@@ -38,11 +38,12 @@ def test_every_state_is_counted_once(small):
     assert sum(small.counts["locked"].values()) == DESIGNS
     assert sum(small.counts["blocked_force"].values()) == sum(small.counts["blocked_torque"].values()) == 3
     assert small.counts["free"][OK] > 0.6 * DESIGNS * PRESSURES
-    assert small.audited > 40
-    assert small.broken == 0
-    for ratios in small.ratios.values():
-        assert np.median(np.concatenate(ratios)) > 1.0
-    assert np.median(np.concatenate([ratio for ratios in small.ratios.values() for ratio in ratios])) < 10.0
+    assert small.audit.states > 40
+    assert not small.audit.breaches
+    every = [np.concatenate(ratios) for ratios in small.audit.ratios.values()]
+    for ratios in every:
+        assert not np.any(ratios < 1.0)
+    assert np.median(np.concatenate(every)) < 10.0
 
 
 def test_threads_change_nothing(small):
@@ -67,9 +68,10 @@ def test_a_bound_that_does_not_hold_is_counted_and_the_quadrature_decides_which(
     finer["values"][2, 0] += 3e-8  # the reference is off
     finer["status"][3] = NOT_CONVERGED
     found = Census(4, 0)
-    found.audit(designs, states, finer)
-    assert (found.audited, found.broken, found.acquitted, found.differing) == (3, 1, 1, 1)
-    seen = {name: np.concatenate(ratios).tolist() for name, ratios in found.ratios.items()}
+    found.audit.free(designs, states, finer)
+    audit = found.audit
+    assert (audit.states, len(audit.breaches), audit.acquitted, audit.differing) == (3, 1, 1, 1)
+    seen = {name: np.concatenate(audit.ratios[name]).tolist() for name in OUTPUTS}
     assert seen.pop("rotation") == pytest.approx([1 / 3], rel=1e-3)
     assert seen.pop("deformed_length") == pytest.approx([1 / 3], rel=1e-3)
     assert not any(seen.values())  # differences that are rounding have no ratio
@@ -78,6 +80,27 @@ def test_a_bound_that_does_not_hold_is_counted_and_the_quadrature_decides_which(
     assert f"{3 * len(OUTPUTS)} bounds, 1 broken (6.67 %); 1 states" in report
     assert "1 more seemed broken" in report
     assert "rotation off by 3 times its bound: alpha 30.0, beta -50.0" in report
+
+
+@pytest.mark.parametrize(("kind", "load", "near"), [("blocked_force", 6, 1.5), ("blocked_torque", 7, -1.6)])
+def test_so_is_a_bound_of_a_held_state(kind, load, near):
+    design = np.array([30.0, -50.0, 10.0, 0.3, 1.004, 0.5, 0.1, 0.1, 0.8, 1.0])
+    design[load] = 0.0
+    designs = np.array([design] * 3)
+    exact, own = quadrature_held(kind, designs, np.full(3, near))
+    assert np.all(own < 1e-10)
+    states, finer = np.zeros(3, HELD_STATE), np.zeros(3, HELD_STATE)
+    for records in (states, finer):
+        records["value"], records["bound"] = exact, 1e-8
+    states["value"][1] += 4e-8  # beyond its bound
+    finer["value"][2] += 4e-8  # the reference is off
+    found = Census(3, 0)
+    found.audit.held(kind, designs, states, finer)
+    assert (found.audit.states, found.audit.bounds, found.audit.acquitted) == (3, 3, 1)
+    ((name, ratio, where),) = found.audit.breaches
+    assert (name, where.tolist()) == (kind, design.tolist())
+    assert ratio == pytest.approx(4.0, rel=1e-2)
+    assert f"{kind:<16} median 0.25, least 0.25; 1 of 3 left out" in found.report()
 
 
 def test_defects_are_listed_in_full_and_failures_by_where_they_lie():

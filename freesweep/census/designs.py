@@ -58,10 +58,39 @@ def with_pressures(designs, pressures):
     return np.concatenate([repeated[..., :8], pressures[..., None], repeated[..., 8:]], axis=2)
 
 
+def words(row):
+    """A design in full."""
+    return ", ".join(f"{name} {value!r}" for name, value in zip(COLUMNS, row.tolist()))
+
+
 def quadrature(designs, mid_radius):
     """Values and errors (n, 5) of ``designs`` (n, 10) by the second method, as the kernels give them; NaN: not judged."""
     from ..first_integral.folded import solve_near
     from ..first_integral.tube import SOLVED, solve
+
+    tubes = _tubes(designs)
+    found = solve(tubes, tubes.pressure)
+    if (lost := np.flatnonzero(found.reason != SOLVED)).size:
+        again = solve_near(tubes.at(lost), mid_radius[lost])
+        found.values[lost], found.errors[lost] = again.values, again.errors
+    of_half = np.array([0.5, 0.5, 0.5, 0.5, 1.0])
+    return found.values * of_half, found.errors * of_half
+
+
+def quadrature_held(kind, designs, near):
+    """Force or torque (n,) that holds the undeformed length or rotation, and its error, by the second method; ``near`` (n,)
+    is where it is looked for. NaN: not judged.
+    """
+    from ..first_integral.held import blocked
+
+    length = designs[:, COLUMNS.index("length/radius")]
+    return blocked(
+        _tubes(designs), int(kind == "blocked_torque"), length if kind == "blocked_force" else 0.0 * length, near
+    )
+
+
+def _tubes(designs):
+    """As the second method takes them; without pressure, what is locked."""
     from ..first_integral.uniform import Tubes
 
     alpha, beta, length, wall, gamma, ratio, force, torque, pressure, full = designs.T
@@ -70,10 +99,4 @@ def quadrature(designs, mid_radius):
     loads = np.where(loaded, pressure, 1.0), np.where(loaded, force, 0.0), np.where(loaded, torque, 0.0)
     area, half, zero = wall * (2.0 + wall), 0.5 * length, 0.0 * alpha
     weight = loaded.astype(float)
-    tubes = Tubes(0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, *loads, weight, half, zero, zero)
-    found = solve(tubes, loads[0])
-    if (lost := np.flatnonzero(found.reason != SOLVED)).size:
-        again = solve_near(tubes.at(lost), mid_radius[lost])
-        found.values[lost], found.errors[lost] = again.values, again.errors
-    of_half = np.array([0.5, 0.5, 0.5, 0.5, 1.0])
-    return found.values * of_half, found.errors * of_half
+    return Tubes(0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, *loads, weight, half, zero, zero)

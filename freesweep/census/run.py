@@ -4,7 +4,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from .count import FINER, Census
+from .audit import FINER, HELD
+from .count import Census
 from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures
 
 HELD_EVERY = 16  # one design in that many is also held at its length and at its rotation
@@ -37,14 +38,16 @@ def census(count, seed=0, *, audit=1000, threads=None, progress=True) -> Census:
             for size, counted, compared in pool.map(run, range(first, min(first + 64, blocks))):
                 for kind, designs, status in counted:
                     found.add(kind, designs, status)
-                if compared:
-                    found.audit(*compared)
+                for kind, *pair in compared:
+                    found.audit.held(kind, *pair) if kind in HELD else found.audit.free(*pair)
                 bar.update(size)
     return found
 
 
 def _solve(drawn, audited):
-    """``(kind, designs with pressures, status)`` of all states of a block, and its audited records beside finer ones."""
+    """Of all states of a block ``(kind, designs with pressures, status)``, and of some ``(kind, designs with pressures,
+    records, those of a finer mesh)``.
+    """
     from ..sweep.plan import FREE, Job
     from ..sweep.solve import solve_shard
 
@@ -52,39 +55,43 @@ def _solve(drawn, audited):
     nothing = np.zeros(count)
     pressures = np.column_stack([drawn.pressures, np.full(count, np.inf)])
     first = np.arange(count + 1, dtype=np.int64) * pressures.shape[1]
-    states, _ = solve_shard(Job(FREE, problems, nothing, first, pressures.ravel(), [], nothing), ACCURACY)
-    counted = []
+    job = Job(FREE, problems, nothing, first, pressures.ravel(), [], nothing)
+    states, _ = solve_shard(job, ACCURACY)
+    counted, compared = [], []
     grid = states["status"].reshape(count, -1)
     rows = with_pressures(drawn.designs, drawn.pressures)
     counted.append(("free", rows.reshape(-1, len(COLUMNS)), grid[:, :-1].ravel()))
     counted.append(("locked", rows[:, -1], grid[:, -1]))
-    for kind, load, target in (("blocked_force", 6, problems[:, 8]), ("blocked_torque", 7, nothing)):
-        some = slice(0, count, HELD_EVERY)
+    if audited:
+        part = first[audited]
+        locked = np.full((count, 1), np.inf)
+        every = with_pressures(drawn.designs, np.column_stack([drawn.pressures, locked])).reshape(-1, len(COLUMNS))
+        compared.append((FREE, every[:part], states[:part], _finer(job, audited)))
+    some = slice(0, count, HELD_EVERY)
+    for kind, load, target in zip(HELD, (6, 7), (problems[:, 8], nothing)):
         held, unloaded = problems[some].copy(), drawn.designs[some].copy()
         held[:, load], unloaded[:, load] = 0.0, 0.0
         each = np.arange(len(held) + 1, dtype=np.int64)
         job = Job(kind, held, target[some], each, drawn.pressures[some, -1].copy(), [], nothing[some])
-        counted.append(
-            (kind, with_pressures(unloaded, drawn.pressures[some, -1:])[:, 0], solve_shard(job, ACCURACY)[0]["status"])
-        )
-    if not audited:
-        return counted, None
-    part = first[audited]
-    job = Job(
-        FREE, problems[:audited], nothing[:audited], first[: audited + 1], pressures[:audited].ravel(), [], nothing
-    )
-    locked = np.full((count, 1), np.inf)
-    every = with_pressures(drawn.designs, np.column_stack([drawn.pressures, locked])).reshape(-1, len(COLUMNS))
-    return counted, (every[:part], states[:part], _finer(job))
+        designs = with_pressures(unloaded, drawn.pressures[some, -1:])[:, 0]
+        states, _ = solve_shard(job, ACCURACY)
+        counted.append((kind, designs, states["status"]))
+        if audited:
+            compared.append((kind, designs[:audited], states[:audited], _finer(job, audited)))
+    return counted, compared
 
 
-def _finer(job):
-    """Records of a job on a finer mesh."""
+def _finer(job, count):
+    """Records of a job's first so many problems on a finer mesh."""
     from ..sweep import solve
+    from ..sweep.plan import FREE
 
+    first = job.first[: count + 1]
     edges = np.array([0, FINER * solve.BASE_CELLS])
     tube = (solve.UNIFORM[0], edges, solve.UNIFORM[2])
-    return solve._solve_free(job.kind, job.problems, job.targets, job.first, job.pressures, tube, AUDIT_ACCURACY)[0]
+    of_kind = solve._solve_free if job.kind == FREE else solve._solve_held
+    problems, targets, pressures = job.problems[:count], job.targets[:count], job.pressures[: first[-1]]
+    return of_kind(job.kind, problems, targets, first, pressures, tube, AUDIT_ACCURACY)[0]
 
 
 def _bar(total, progress):
