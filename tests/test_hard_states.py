@@ -269,3 +269,11 @@ def test_necked_tube_has_its_length_and_no_rotation_by_plain_quadrature():
     middle = brentq(lambda y: half_and_twist(y)[0] - 0.5 * design[2], 8.75, 8.80, xtol=1e-12)
     np.testing.assert_allclose(middle, 8.786447, rtol=1e-6)
     assert abs(half_and_twist(middle)[1]) < 1e-4
+
+
+@pytest.mark.parametrize("pressures", [[0.05, 0.5], [0.0139118, 0.5], [0.0139118, 0.04, 0.5, 4.0]])
+def test_a_climb_passes_no_small_snap_of_the_uniform_tube(pressures):
+    """At 0.07599 the stretch snaps from 1.009 to 1.029: within one step of the volume, which is larger behind it."""
+    walk = walked([-81.0625, 5.7909, 185.475, 0.5, 1.01948, 0.0, 0.0, 0.0, 0.0], pressures)
+    assert walk.status.tolist() == [OK if p < 0.0759 else BEYOND_LIMIT for p in pressures]
+    np.testing.assert_allclose(walk.limits[0, 0], 0.0759914722, rtol=1e-8)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..jit import inlined, kernel
 from . import lagrangian, nested, newton, uniform
-from .course import fill
+from .course import at_point, fill
 from .held import hold, largest_change, loaded, solve_held, strayed, turning_point
 from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
@@ -21,6 +21,7 @@ NEARLY_FLAT = 1e-3  # of the first slope dmu/dC: as good as a turning point
 WELL_BEFORE = 0.05  # of the first slope: a safe start for the search of a turning point
 LEAST_SHARE = 0.02  # of a step, however close the slope's zero seems
 LEAST_GAIN, MOST_GAIN, ROUNDING_GAIN = 0.95, 1.05, 1e-9
+ENDLESS = 1e300  # half a tube whose end is far
 NO_SNAP = 1e-4  # relative change of y under which nothing can snap
 SMALLEST_CREEP = 1e-6  # of the way
 CREPT_NEAR = 1e-3  # of the way: a turning point so close is what stopped the steps
@@ -53,6 +54,15 @@ def smooth(gain, first, last):
     """
     slack = ROUNDING_GAIN * max(1.0, abs(gain))
     return LEAST_GAIN * min(first, last) - slack <= gain <= MOST_GAIN * max(first, last) + slack
+
+
+@kernel
+def hops(middle, other, tube, start, end):
+    """Whether a step of a tube that is the same all along may have passed over a small snap that the uniform tube has."""
+    varying = tube[0].shape[0] > 1 or tube[0].shape[1] > 1
+    if varying or abs(other - middle) < uniform.SCAN * middle:
+        return False
+    return uniform.dips(lagrangian.density, middle, other, at_point(tube[0], 0, 0.0), start, end, ENDLESS)
 
 
 @kernel
@@ -166,6 +176,7 @@ def climb(x, y, tube, start, end, flat, work):
         elif (
             solved
             and strayed(y, n, kept_y, response, change) < CLIMB_CHANGE
+            and not hops(kept_y[n], y[n], tube, start, end)
             and (
                 smooth(mu - kept_mu, (target - kept_target) / kept_sigma, (target - kept_target) / sigma)
                 or (by_load and largest_drift(y, kept_y) < NO_SNAP)

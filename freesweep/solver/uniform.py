@@ -35,33 +35,42 @@ def may_let_go(u, L_yy, L_vv, half):
 
 
 @kernel
-def rising(density, u, trial, cell, start, end, half):
-    """Whether the load rises all the way from ``u`` to ``trial``: no small snap was passed over. Where half a tube of length
-    ``half`` is drawn in, its clamped end, which is not, may let go before: there the end has to be far.
-
-    L_y is linear in pressure, force and torque, so the fraction t of the way at which a stretch is an equilibrium, and its
-    slope dt/du, are explicit; a dip of the slope below zero between samples shows in the parabola through three of them.
+def slope_at(density, u, ahead, cell, start, end):
+    """Slope dt/du, ``ahead`` (1 or -1) times, of the share t of the way at which the stretch ``u`` is an equilibrium, and
+    L_yy and L_vv there: explicit, as L_y is linear in pressure, force and torque.
     """
-    if start[0] != end[0] or abs(trial - u) < 1e-9 * u:
-        return True
+    before = density(u, 0.0, cell, start)[1]
+    drive = density(u, 0.0, cell, end)[1] - before
+    _, _, _, L_yy, _, L_vv = density(u, 0.0, cell, between(start, end, -before / drive))
+    return -L_yy / drive * ahead, L_yy, L_vv
+
+
+@kernel
+def dips(density, u, trial, cell, start, end, half):
+    """Whether the load falls somewhere on the way from ``u`` to ``trial``: a small snap would be passed over. Where half a
+    tube of length ``half`` is drawn in, its clamped end, which is not, may let go before: there the end has to be far.
+
+    A dip of the slope below zero between samples shows in the parabola through three of them.
+    """
     count = 2 + int(abs(trial - u) / (SCAN * min(u, trial)))
-    first, second = 0.0, 0.0
+    ahead, first, second = 1.0 if trial > u else -1.0, 0.0, 0.0
     for i in range(count + 1):
         here = u + (trial - u) * i / count
-        before = density(here, 0.0, cell, start)[1]
-        drive = density(here, 0.0, cell, end)[1] - before
-        _, _, _, L_yy, _, L_vv = density(here, 0.0, cell, between(start, end, -before / drive))
-        if may_let_go(here, L_yy, L_vv, half):
-            return False
-        slope = -L_yy / drive * (1.0 if trial > u else -1.0)
-        if not slope > 0.0:
-            return False
+        slope, L_yy, L_vv = slope_at(density, here, ahead, cell, start, end)
+        if not slope > 0.0 or may_let_go(here, L_yy, L_vv, half):
+            return True
         if i >= 2 and second < first and second < slope:
             bend = first - 2.0 * second + slope
             if second - (slope - first) * (slope - first) / (8.0 * bend) <= 0.0:
-                return False
+                return True
         first, second = second, slope
-    return True
+    return False
+
+
+@kernel
+def rising(density, u, trial, cell, start, end, half):
+    """Whether the load rises all the way from ``u`` to ``trial``, as far as that can be told."""
+    return start[0] != end[0] or abs(trial - u) < 1e-9 * u or not dips(density, u, trial, cell, start, end, half)
 
 
 @kernel
