@@ -1,6 +1,7 @@
 """Atlases that measure themselves, curves, and the command: what is stated is what was measured; files in, files out."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,8 +13,11 @@ from freesweep.atlas.store import Atlas, describe
 from freesweep.bench.query import table
 from freesweep.cli import DONE
 from freesweep.query import calibration, errors
-from freesweep.query.calibrate import calibrate
+from freesweep.query.calibrate import calibrate, piece_scales
 from freesweep.query.faults import QueryError
+from freesweep.query.reference import VOLUME
+from freesweep.query.refine import as_points, exact_answers
+from freesweep.query.tensor import KNOT, RANK, ROUGH
 from freesweep.sweep.grade import graded
 from freesweep.sweep.spec import SpecificationError, parse
 from freesweep.verify import faults as verify
@@ -128,6 +132,53 @@ def test_factors_are_the_least_that_hold():
     assert few.bound * calibration.UNMEASURED == pytest.approx(1.0)
 
 
+def test_what_was_stored_wrongly_does_not_pass_for_roughness():
+    draw, count = np.random.default_rng(0), 8000
+    pieces = np.repeat([[0, 2], [2, 2]], count // 2, axis=0)
+    rough = 10.0 ** draw.uniform(-9, -4, count)
+    share, bound = np.full((count, 2), 0.5), np.full(count, 1e-6)
+    cells = np.zeros((count, ROUGH + 2))
+    cells[:, ROUGH] = rough
+    knots = np.zeros((2, 5, KNOT))
+    knots[:, :, RANK] = np.arange(5)
+    table = SimpleNamespace(axes=(0, 1), knots=knots, variable=lambda name: SimpleNamespace(cells=cells))
+    table.family = SimpleNamespace(variables={"volume": VOLUME})
+    true = rough * draw.uniform(0.0, 1.0, count) * np.where(pieces[:, 0] == 0, 0.3, 1.0)
+    noise = 0.15 * bound * draw.uniform(-1.0, 1.0, count)
+    inquiry = SimpleNamespace(table=table, pieces=pieces, shares=share, cell=np.arange(count))
+    inquiry.estimate = lambda name, scales: (true, rough, bound, np.zeros(count, bool))
+    scales = piece_scales(inquiry, "volume", np.arange(count), noise)
+    assert scales[0, 0] / scales[0, 2] == pytest.approx(0.3, rel=0.15)
+
+
+def test_few_designs_cannot_have_met_the_worst():
+    draw = np.random.default_rng(3)
+    size = np.ones(40_000)
+    error = 1e-6 * (1.0 + draw.pareto(3.0, len(size)))  # errors of atlases fall off about so
+    rest = np.full(len(size), 1e-6), np.zeros(len(size)), size, np.zeros(len(size), bool)
+    held = []
+    for begin in range(0, 20_000, 500):
+        some = slice(begin, begin + 500)
+        factors = calibrate(error[some], *(each[some] for each in rest), np.full(500, 1e-2))
+        held.append((error[20_000:] <= errors.stated(factors, *(each[20_000:] for each in rest))).mean())
+    assert np.mean(held) >= 0.9994
+
+
+def test_the_middle_of_a_long_tube_is_known_to_the_last_digits(made):
+    draw, count = np.random.default_rng(6), 400
+    points = {name: draw.uniform(values[0], values[-1], count) for name, values in AXES.items()}
+    found = made.query(**points, variables=["mid_radius"])
+    reader = made._reader
+    asked = as_points(reader, "state", reader.complete(points, count))
+    exact = exact_answers(reader, "state", asked, ["mid_radius"], 1e-8)["mid_radius"]
+    known = (found["status"].values == status.OK) & np.isfinite(exact)
+    gap = np.abs(found["mid_radius"].values - exact)[known]
+    stated = found["mid_radius_error"].values[known]
+    assert (gap <= stated).mean() >= 0.995
+    assert np.median(stated / exact[known]) < 1e-14
+    assert np.median(stated) < 10.0 * np.median(gap)
+
+
 def test_ends_of_an_axis_have_estimates_of_their_own(made):
     found = calibration.factors(made.data, "volume", ("alpha", "beta", "length", "pressure"))
     assert found.scales.shape == (4, calibration.RANKS)
@@ -135,10 +186,19 @@ def test_ends_of_an_axis_have_estimates_of_their_own(made):
     assert (calibration.factors(made.data, "volume", ("torque",)).scales == 1.0).all()
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"variables": {"rotation": {"factors": [1], "bound": 0}}}'])
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", '{"estimates": 2, "variables": {"rotation": {"factors": [1], "bound": 0}}}']
+)
 def test_what_cannot_be_read_of_a_measurement_is_replaced_by_caution(made, text):
     data = made.data.assign_attrs({calibration.ATTRIBUTE: text})
     assert (calibration.factors(data, "rotation").classes == calibration.UNMEASURED).all()
+
+
+def test_factors_of_other_estimates_are_not_taken(made):
+    found = calibration.read(made.data)
+    assert (calibration.factors(made.data, "rotation").classes != calibration.UNMEASURED).any()
+    older = made.data.assign_attrs({calibration.ATTRIBUTE: json.dumps(found | {"estimates": 1})})
+    assert (calibration.factors(older, "rotation").classes == calibration.UNMEASURED).all()
 
 
 def test_curves_run_along_one_axis(made):

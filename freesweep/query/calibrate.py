@@ -9,6 +9,7 @@ from .tensor import RANK, ROUGH
 
 BEYOND = 4e-4  # share of the designs of a class that may need more than its factor
 FEW = 200.0  # factors go beyond what was seen, the more the fewer designs were seen
+TAIL = 1.0 / 3.0  # ten times as many designs bring about twice the largest need, as atlases show
 ENOUGH, LEAST = 500, 200  # designs of a class that speak for it; of all classes together
 SMALLEST = 0.03  # of all factors
 SHARES = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)  # of stored bounds, from which the sharpest is taken
@@ -16,7 +17,7 @@ ALONE = 0.6  # share of an estimate with which one axis makes it
 HIGH = 0.95  # quantile of errors over estimates that is made equal among the pieces of the axes
 SPEAK = 50  # designs of a piece that speak for it
 WIDEST = 10.0  # largest scale, and the smallest's inverse
-PLAIN = 0.03  # of the bound: an estimate above it is not hidden by what was stored
+PLAIN = 1.0  # of the bound: below it, what was stored wrongly would pass for what the next order adds
 
 
 def calibrate(error, estimate, bound, size, beside, allowed) -> calibration.Factors:
@@ -57,8 +58,9 @@ def _by_class(needed, classes, beside):
 
 
 def _high(numbers):
-    """The largest but a few in ten thousand, and more where few designs cannot have met the worst."""
-    return (1.0 + FEW / len(numbers)) * np.quantile(numbers, 1.0 - BEYOND)
+    """The largest but a few in ten thousand, and more where few numbers (n,) cannot have met the worst."""
+    few = max(1.0 + FEW / len(numbers), (BEYOND * len(numbers)) ** -TAIL)
+    return few * np.quantile(numbers, 1.0 - BEYOND)
 
 
 def piece_scales(inquiry, name, places, exact):

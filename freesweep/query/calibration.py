@@ -13,6 +13,7 @@ import numpy as np
 
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
+ESTIMATES = 2  # which estimates were measured: of others, factors say nothing
 DEFAULT_TOLERANCE = 1e-4
 DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
 CLASSES = len(DECADES) + 1
@@ -53,12 +54,14 @@ def factors(data, name, axes=()) -> Factors:
 
 
 def read(data) -> dict:
-    """What the atlas measured of itself; empty if nothing."""
+    """What the atlas measured of itself; empty if nothing, or if it was measured with other estimates than these."""
     try:
         found = json.loads(data.attrs.get(ATTRIBUTE, "{}"))
     except (TypeError, ValueError):
         return {}
-    return found if isinstance(found, dict) and isinstance(found.get("variables", {}), dict) else {}
+    if not isinstance(found, dict) or not isinstance(found.get("variables", {}), dict):
+        return {}
+    return found if found.get("estimates") == ESTIMATES else {}
 
 
 def tolerance(data) -> float:

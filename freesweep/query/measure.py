@@ -17,8 +17,8 @@ from .reference import ALPHA, BETA
 from .refine import exact_answers
 
 SEED = 20260101
-MOST, LEAST, EACH = 20_000, 2000, 40  # designs: at most, at least, and one for so many nodes
-LEAST_HELD, HELD_SHARE = 200, 8  # held states cost more: so much fewer designs
+MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
+HELD_SHARE = 2  # held states cost more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
 REGIONS = ("I", "IIa", "IIb")
@@ -47,12 +47,13 @@ def measured(data, designs=None) -> dict:
         names = sorted((name for name in family.variables if name in data), key=lambda name: name != "mid_radius")
         if key == "limit" or not names or not reader.table(key).names:
             continue
-        own = max(count // HELD_SHARE, LEAST_HELD) if key.startswith("blocked") else count
+        own = count // HELD_SHARE if key.startswith("blocked") else count
         drawn = _draw(reader, reader.table(key), own)
         share, results = _family(reader, key, names, drawn)
         answered[key] = share
         variables |= results
-    return {"designs": count, "seed": SEED, "answered": answered, "variables": variables}
+    head = {"designs": count, "seed": SEED, "estimates": calibration.ESTIMATES}
+    return head | {"answered": answered, "variables": variables}
 
 
 def _draw(reader, table, count):

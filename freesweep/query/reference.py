@@ -24,9 +24,9 @@ PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOL
 
 UNIFORM = 8  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier
 TINY = 1e-5  # what the middle of a long tube lacks is not told from nothing below it, of its swelling
-GUESS = 10.0  # times what the middle lacks is the estimate of its error there
 CANCELLATION = 1e-15  # of the energy of a unit of strain
 ROUNDING = 1e-13  # of a value, and of the closed form
+OF_RADIUS = 1e-15  # the same in the middle, whose stretch is the root itself: no large numbers cancel
 LEAST = 1e-7  # q - 1 or H below it: what the ends add cannot be told from rounding
 
 
@@ -141,16 +141,18 @@ def restore_all(variable, kind, points, states, effects, rests, noise, values, e
         estimate = abs(slope) * rests[k]
         if base != 0.0:
             estimate = abs(value - offset) * math.expm1(min(abs(scale) * rests[k], 50.0))
-        if variable == MID_RADIUS:  # below TINY what the middle lacks is a guess
+        rounding = ROUNDING
+        if variable == MID_RADIUS:  # below TINY what the middle lacks is a guess, which may be wrong by all of it
             lack = abs(math.exp(effects[k]) - TINY)
-            estimate += GUESS * abs(base) * lack / (1.0 + lack / TINY)
+            estimate += abs(base) * lack / (1.0 + lack / TINY)
+            rounding = OF_RADIUS
         elif variable == ENERGY and base + scale != 0.0:  # invariants less three: of a tube near rest little is left
             stiffness = points[k, C10] + points[k, C01]
             volume = math.pi * points[k, FIBERS] ** 2 * states[k, 2] * points[k, LENGTH]
             estimate += CANCELLATION * stiffness * volume
         noise_slope = base if variable == MID_RADIUS else slope
         values[k], estimates[k], bounds[k] = value, estimate, abs(noise_slope) * noise[k]
-        estimates[k] += ROUNDING * (abs(value) + abs(offset) + abs(base))
+        estimates[k] += rounding * (abs(value) + abs(offset) + abs(base))
 
 
 @kernel
