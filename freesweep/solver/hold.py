@@ -67,7 +67,12 @@ def find_on_some_mesh(problem, p, other, target, kind, buckled, course, tube, ac
         )
         limit = status == BEYOND_LIMIT or (status == HELD_IMPOSSIBLE and not buckled)
         confirmed = status == before[0] and abs(reached - before[1]) <= CONFIRMED * reached
-        if status == NOT_CONVERGED and abs(reached - before[1]) <= ENDED * reached and reached < 1.0 and not buckled:
+        if (
+            status == NOT_CONVERGED
+            and abs(reached - before[1]) <= ENDED * reached
+            and 0.0 < reached < 1.0
+            and not buckled
+        ):
             status = BEYOND_LIMIT  # steps die out at one place on any mesh
             break
         if not (status == NOT_CONVERGED or status == INACCURATE or (limit and not confirmed)):

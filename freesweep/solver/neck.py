@@ -20,7 +20,8 @@ import numpy as np
 from ..jit import kernel
 from . import held, lagrangian, meridian, nested, quadrature
 
-LEAST_NECK, SHALLOWEST = 1e-3, 1e-6  # |y_n - 1| that is traced; (y_n - 1)/(y_m - 1) that is no rounding
+LEAST_NECK, ROUNDED_OFF = 1e-3, 1e-9  # |y_n - 1| that is traced; that may be rounding
+SHALLOWEST = 1e-6  # (y_n - 1)/(y_m - 1) that is no rounding either
 FLAT = 0.01  # of |y_n - 1|: within it a mesh's neck counts as flat
 CROWDING = 0.1  # of an e-fold: distances at the end's radius
 DEEP = 25.0  # e-folds of a drive below its bend: beyond them the tube is uniform, to the last digits
@@ -40,7 +41,7 @@ def depth_of(y):
     """By how much of the body's height a tube has a neck; 0 where there is none."""
     neck, middle = y[neck_of(y)], y[len(y) - 1]
     depth = (1.0 - neck) / (middle - 1.0) if middle != 1.0 else 0.0
-    return depth if depth > SHALLOWEST else 0.0
+    return depth if depth > SHALLOWEST and abs(neck - 1.0) > ROUNDED_OFF else 0.0
 
 
 @kernel
