@@ -13,6 +13,7 @@ from .plan import FREE
 TYPICAL, HELD, VARYING = 5e-6, 3e-4, 8  # [s] of a free state on one core; of a held one; times that where tubes vary
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 10.0  # [s] up to which it is not worth a sample
+MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
 SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
 TOGETHER = 32  # problems that are solved at once, as vectors need them
 KERNELS = {FREE: ("solve_lanes", "walk_many")} | dict.fromkeys(
@@ -26,7 +27,9 @@ def time_of(sweep, tables, equilibria, threads) -> str:
     sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and all(map(_is_compiled, equilibria))
     if sampled:
         together = 1 if sweep.profiles else TOGETHER
-        each = {kind: _sample(tables[kind], sweep.accuracy, together) for kind in equilibria}
+        share = {kind: each[kind] * count for kind, count in equilibria.items()}
+        for kind in (kind for kind in share if share[kind] > MUCH * sum(share.values())):
+            each[kind] = _sample(tables[kind], sweep.accuracy, together)
     took = _seconds(sweep, equilibria, each, threads)
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)):
         if took > 2.0 * size:
