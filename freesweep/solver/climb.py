@@ -14,6 +14,7 @@ from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
 CLIMB_CHANGE = 0.06  # relative change of y in one step
 CLIMB_STEPS = 400
+CAREFUL_STEPS = 150  # in which no small snap is passed over: a tube that swells tenfold would need thousands
 TOLERANCE = 1e-10  # of states on the way
 CLOSING = 1.2  # times what is left of the way, by the linear prediction: the last step passes the end
 SMALLEST_SHRINK = 1e-3  # of a step, before the climb is given up
@@ -135,7 +136,7 @@ def climb(x, y, tube, start, end, flat, work):
     kept_mu, kept_target, kept_sigma, safe_mu = 0.0, 0.0, 1.0, 0.0
     first_slope, trend = 1.0, 0.0
     mu, target, change, shrink, stepping, started, by_load = 0.0, 0.0, 0.0, 1.0, False, False, False
-    for _ in range(CLIMB_STEPS):
+    for made in range(CLIMB_STEPS):
         own = fill(course, edges, x, n, n, cells)
         if by_load:
             now = loaded(start, direction, mu)
@@ -176,7 +177,7 @@ def climb(x, y, tube, start, end, flat, work):
         elif (
             solved
             and strayed(y, n, kept_y, response, change) < CLIMB_CHANGE
-            and not hops(kept_y[n], y[n], tube, start, end)
+            and not (made < CAREFUL_STEPS and hops(kept_y[n], y[n], tube, start, end))
             and (
                 smooth(mu - kept_mu, (target - kept_target) / kept_sigma, (target - kept_target) / sigma)
                 or (by_load and largest_drift(y, kept_y) < NO_SNAP)
