@@ -12,7 +12,7 @@ from .plan import FREE
 
 TYPICAL, HELD, VARYING = 5e-6, 3e-4, 8  # [s] of a free state on one core; of a held one; times that where tubes vary
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
-LITTLE = 10.0  # [s] up to which it is not worth a sample
+LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more than a second
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
 SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
 TOGETHER = 32  # problems that are solved at once, as vectors need them
