@@ -14,7 +14,6 @@ from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
 CLIMB_CHANGE = 0.06  # relative change of y in one step
 CLIMB_STEPS = 400
-CAREFUL_STEPS = 150  # in which no small snap is passed over: a tube that swells tenfold would need thousands
 TOLERANCE = 1e-10  # of states on the way
 CLOSING = 1.2  # times what is left of the way, by the linear prediction: the last step passes the end
 SMALLEST_SHRINK = 1e-3  # of a step, before the climb is given up
@@ -22,7 +21,6 @@ NEARLY_FLAT = 1e-3  # of the first slope dmu/dC: as good as a turning point
 WELL_BEFORE = 0.05  # of the first slope: a safe start for the search of a turning point
 LEAST_SHARE = 0.02  # of a step, however close the slope's zero seems
 LEAST_GAIN, MOST_GAIN, ROUNDING_GAIN = 0.95, 1.05, 1e-9
-ENDLESS = 1e300  # half a tube whose end is far
 NO_SNAP = 1e-4  # relative change of y under which nothing can snap
 SMALLEST_CREEP = 1e-6  # of the way
 CREPT_NEAR = 1e-3  # of the way: a turning point so close is what stopped the steps
@@ -59,11 +57,18 @@ def smooth(gain, first, last):
 
 @kernel
 def hops(middle, other, tube, start, end):
-    """Whether a step of a tube that is the same all along may have passed over a small snap that the uniform tube has."""
+    """Whether a step of a tube that is the same all along, its ends far, may have passed over a small snap of the uniform
+    tube, which its middle follows.
+    """
     varying = tube[0].shape[0] > 1 or tube[0].shape[1] > 1
     if varying or abs(other - middle) < uniform.SCAN * middle:
         return False
-    return uniform.dips(lagrangian.density, middle, other, at_point(tube[0], 0, 0.0), start, end, ENDLESS)
+    cell, half = at_point(tube[0], 0, 0.0), tube[5][1]
+    for y in (middle, other):
+        _, L_yy, L_vv = uniform.slope_at(lagrangian.density, y, 1.0, cell, start, end)
+        if not uniform.is_far(L_yy, L_vv, half):
+            return False
+    return uniform.dips(lagrangian.density, middle, other, cell, start, end, half)
 
 
 @kernel
@@ -136,7 +141,7 @@ def climb(x, y, tube, start, end, flat, work):
     kept_mu, kept_target, kept_sigma, safe_mu = 0.0, 0.0, 1.0, 0.0
     first_slope, trend = 1.0, 0.0
     mu, target, change, shrink, stepping, started, by_load = 0.0, 0.0, 0.0, 1.0, False, False, False
-    for made in range(CLIMB_STEPS):
+    for _ in range(CLIMB_STEPS):
         own = fill(course, edges, x, n, n, cells)
         if by_load:
             now = loaded(start, direction, mu)
@@ -177,7 +182,7 @@ def climb(x, y, tube, start, end, flat, work):
         elif (
             solved
             and strayed(y, n, kept_y, response, change) < CLIMB_CHANGE
-            and not (made < CAREFUL_STEPS and hops(kept_y[n], y[n], tube, start, end))
+            and not hops(kept_y[n], y[n], tube, start, end)
             and (
                 smooth(mu - kept_mu, (target - kept_target) / kept_sigma, (target - kept_target) / sigma)
                 or (by_load and largest_drift(y, kept_y) < NO_SNAP)

@@ -16,7 +16,7 @@ stable state beside the cylinder.
 import numpy as np
 
 from ..jit import kernel
-from . import guide, held, lagrangian, neck, necked, nested, newton
+from . import guide, held, lagrangian, neck_march, neck_shape, nested, newton
 from .branch import GAMMA, SHEAR, rubber_of
 from .buckle import LOWERINGS, buckled_at
 from .climb import pushed
@@ -91,7 +91,7 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
                 found = begun
         if found != OK:
             if found != COMPRESSED and last_leg and not (varying or buckled):
-                status, doublings, now = necked.solve(
+                status, doublings, now = neck_march.solve(
                     cell, tube, x, y, mu, came_from, load, reached, natural, wanted, direction, scale, accuracy, base, fine,
                     space[3], table, out,
                 )  # fmt: skip
@@ -118,7 +118,7 @@ def find(problem, p, other, target, kind, buckled, course, tube, accuracy, space
     unstable, rounding = unstable_directions(
         fine[0], fine[1], base << doublings, base, tube, now, direction, size, work
     )
-    if not (varying or buckled) and neck.depth_of(y) > 0.0:
+    if not (varying or buckled) and neck_shape.depth_of(y) > 0.0:
         unstable = max(unstable, 1)  # of which a mesh may know nothing
     out[1, nested.MULTIPLIER] += rounding
     out[0, nested.MULTIPLIER] *= scale

@@ -20,7 +20,6 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
     fine, work, table = space[0], space[1], space[2]
     start, way, goal, mu = before, WARM, nested.PLAIN, 0.0
     direction = retrace.FLAT
-    limit, limit_bound = np.nan, np.nan
     flat, shapes, lost = NEARLY_FLAT, space[4], NOT_CONVERGED
     for i in range(len(x)):
         shapes[4, i], shapes[5, i] = last_x[i], last_y[i]
@@ -43,7 +42,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 tube, u[0], u[0], load, len(x) - 1, accuracy, fine, space[3], table, out
             )
             if status != NOT_CONVERGED:
-                return status, doublings, limit, limit_bound
+                return status, doublings, np.nan, np.nan
             way = SLOW
         if way == SLOW:
             start = before
@@ -58,7 +57,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
             if status == OK and start[0] != load[0]:
                 status, _ = creep(x, y, tube, start, load, work)
                 if status == BEYOND_LIMIT and not alike:
-                    return status, 0, limit, limit_bound
+                    return status, 0, np.nan, np.nan
                 if status == BEYOND_LIMIT:  # steps may die out for another reason: the tracer decides, if it can
                     lost, status = BEYOND_LIMIT, NOT_CONVERGED
             elif status == OK:
@@ -71,7 +70,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
             elif status == NOT_CONVERGED and alike:
                 break
             elif status != OK:
-                return status, 0, limit, limit_bound
+                return status, 0, np.nan, np.nan
             for i in range(len(x)):
                 last_x[i], last_y[i] = x[i], y[i]
         caution = retrace.CAUTION if way == STEEP else 1.0
@@ -91,21 +90,13 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
             if not solved:
                 if flat == 0.0:
                     break
-                goal, direction, way, flat = (
-                    nested.PLAIN,
-                    retrace.FLAT,
-                    SLOW,
-                    0.0,
-                )  # hardly rising, but no turning point: go on
+                # hardly rising, but no turning point: go on
+                goal, direction, way, flat = nested.PLAIN, retrace.FLAT, SLOW, 0.0
                 continue
             if out[0, nested.MULTIPLIER] < 1.0:
                 limit = start[3] + out[0, nested.MULTIPLIER] * direction[3]
-                return (
-                    BEYOND_LIMIT,
-                    0,
-                    limit,
-                    abs(out[1, nested.MULTIPLIER] * direction[3]) + retrace.LIMIT_ROUNDING * limit,
-                )
+                bound = abs(out[1, nested.MULTIPLIER] * direction[3]) + retrace.LIMIT_ROUNDING * limit
+                return BEYOND_LIMIT, 0, limit, bound
             # the turning point lies just beyond: the state asked for is one step away
             goal, direction, way = nested.PLAIN, retrace.FLAT, LAST_STEP
             for i in range(len(x)):
@@ -125,13 +116,10 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                         x, y, tube, u[0] if guided else np.nan, load, accuracy, fine, space[3], table, out, status,
                         doublings,
                     )  # fmt: skip
-                return status, doublings, limit, limit_bound
+                return status, doublings, np.nan, np.nan
         if way >= SLOW:
             break
-        if way == STEEP:
-            way = INTEGRATED
-        else:
-            way = COLD if way == WARM else STEEP if alike else SLOW
+        way = INTEGRATED if way == STEEP else COLD if way == WARM else STEEP if alike else SLOW
     if not alike:
-        return NOT_CONVERGED, 0, limit, limit_bound
+        return NOT_CONVERGED, 0, np.nan, np.nan
     return retrace.retrace(x, y, middle, lost, tube, before, load, accuracy, space, out)

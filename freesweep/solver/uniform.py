@@ -29,9 +29,15 @@ def between(start, end, t):
 
 
 @kernel
+def is_far(L_yy, L_vv, half):
+    """Whether half a tube of length ``half`` is so many end layers long that its middle does what the uniform tube does."""
+    return L_yy * half * half < FAR * FAR * L_vv
+
+
+@kernel
 def may_let_go(u, L_yy, L_vv, half):
     """Whether half a tube of length ``half`` is drawn in so much, its clamped end so near, that this may turn it back."""
-    return u < 1.0 - DRAWN_IN and not L_yy * half * half < FAR * FAR * L_vv
+    return u < 1.0 - DRAWN_IN and not is_far(L_yy, L_vv, half)
 
 
 @kernel

@@ -1,10 +1,10 @@
-"""The held state of a tube with a neck (:mod:`neck`), from a mesh's shape on the way to it: small steps of what loads it."""
+"""The held state of a tube with a neck (:mod:`neck_shape`): from a mesh's shape on, in small steps of what loads it."""
 
 import numpy as np
 
 from ..jit import kernel
-from . import held, lagrangian, neck, nested, quadrature
-from .neck import FOLDS, MIDDLE, MU, NECK_FOLDS
+from . import held, lagrangian, neck_shape, nested, quadrature
+from .neck_shape import FOLDS, MIDDLE, MU, NECK_FOLDS
 from .status import INACCURATE, NOT_CONVERGED, OK
 from .uniform import between
 
@@ -45,7 +45,7 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
     miss, moved, there, matrix = np.empty(3), np.empty(3), np.empty(5), np.empty((3, 3))
     least = 1e300
     for _ in range(ITERATIONS):
-        neck.misses(cell, load, direction, target, half, now, free, nodes, curve, row, other, miss)
+        neck_shape.misses(cell, load, direction, target, half, now, free, nodes, curve, row, other, miss)
         most = np.max(np.abs(miss))
         if most < tolerance or (most < ROUNDED * tolerance and most >= 0.5 * least):
             return True
@@ -55,7 +55,7 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
             step = FOLDS_DIFFERENCE if k == FOLDS or k == NECK_FOLDS else DIFFERENCE * now[k]
             there[:] = now
             there[k] += step
-            neck.misses(cell, load, direction, target, half, there, free, nodes, curve, row, other, moved)
+            neck_shape.misses(cell, load, direction, target, half, there, free, nodes, curve, row, other, moved)
             for i in range(3):
                 matrix[i, j] = (moved[i] - miss[i]) / step
         eliminate(matrix, miss)
@@ -75,11 +75,11 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
 def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve, row, other, now):
     """The numbers ``now`` at load ``end`` with ``target`` held; arguments as of :func:`solve`. Whether they were found."""
     load = between(start, end, t)
-    if not neck.guess_of(cell, held.loaded(load, direction, mu), x, y, now):
+    if not neck_shape.guess_of(cell, held.loaded(load, direction, mu), x, y, now):
         return False
     now[MU] = mu
     middle, last, guess, t_last, step = now[MIDDLE], np.empty(5), np.empty(5), t, FIRST_STEP * t
-    free = neck.unknowns(cell, load, direction, now)
+    free = neck_shape.unknowns(cell, load, direction, now)
     if not fit(cell, load, direction, first + t * (target - first), half, now, free, NODES, CLOSE, curve, row, other):
         return False
     if not abs(now[MIDDLE] / middle - 1.0) < NEAR:
@@ -93,7 +93,7 @@ def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve,
         for k in range(5):
             guess[k] = now[k] + share * (now[k] - last[k])
         expected, load = guess[MIDDLE], between(start, end, ahead)
-        free, held_there = neck.unknowns(cell, load, direction, now), first + ahead * (target - first)
+        free, held_there = neck_shape.unknowns(cell, load, direction, now), first + ahead * (target - first)
         if (
             fit(cell, load, direction, held_there, half, guess, free, NODES, CLOSE, curve, row, other)
             and abs(guess[MIDDLE] / expected - 1.0) < STRAY
@@ -120,7 +120,7 @@ def solve(
     half, now, spare = tube[5][1], np.empty(5), table[quadrature.ROWS]
     if not follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve, table[0], spare, now):
         return NOT_CONVERGED, 0, end
-    free = neck.unknowns(cell, end, direction, now)
+    free = neck_shape.unknowns(cell, end, direction, now)
     doublings = nested.MAX_DOUBLINGS
     while doublings > 1 and base << doublings > MOST_NODES:
         doublings -= 1
