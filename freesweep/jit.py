@@ -4,6 +4,8 @@
 * ``fastmath={"contract"}``: fused multiply-add only. Reordering or ignoring NaN would break guards and determinism.
 * ``nogil``: kernels are driven by a thread pool, never by ``prange`` (its ``workqueue`` layer aborts the process when
   two Python threads enter it).
+* A literal, or a name that stands for one, is a type of its own to Numba, which compiles what it is handed to once more:
+  kernels take it for any other whole number or truth.
 
 Entry points are cached on disk. Numba's cache knows only the file of the cached function, so editing the physics in
 another file would run stale code: the cache folder is therefore named after a hash of all sources in the kernel's room.
@@ -16,8 +18,9 @@ import sys
 from pathlib import Path
 
 import numba
-from numba.core import config
+from numba.core import config, types
 
+_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # which a quarter of the compiler's time would go to
 _POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
 
 
@@ -43,7 +46,18 @@ def is_compiled(room: str) -> bool:
 
 def kernel(function):
     """Compile a kernel that other kernels call."""
-    return numba.njit(**_POLICY)(function)
+    return _blind_to_literals(numba.njit(**_INNER, **_POLICY)(function))
+
+
+def _blind_to_literals(dispatcher):
+    """Let a call's literal arguments count as what they are: Numba asks here for machine code for such types."""
+    if config.DISABLE_JIT:
+        return dispatcher
+    ask = dispatcher.get_call_template
+    dispatcher.get_call_template = lambda given, named: ask(
+        tuple(map(types.unliteral, given)), {name: types.unliteral(kind) for name, kind in named.items()}
+    )
+    return dispatcher
 
 
 def inlined(function):

@@ -1,4 +1,5 @@
-"""Many designs at once: vectors of designs go the quick way, the scalar walk goes on where that ends."""
+"""Many designs at once: vectors of designs go the quick way, then once more on a finer mesh; the scalar walk goes on where
+that ends."""
 
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
 NOTHING = np.empty(0)
+FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
 class Walks(NamedTuple):
@@ -52,16 +54,17 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
         steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
         owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
         stretches, cosines = np.full(count, np.nan), np.full(count, np.nan)
+        drawn = (stations, found.profiles) if len(stations) else (None, None)
         for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
             if not np.any(some):
                 continue
             carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
-            rows = np.flatnonzero(some[owners] & (found.status == PENDING) & np.isfinite(stretches))
-            alike = np.argsort(_steepness(cosines[rows]), kind="stable")
-            solve_lanes(
-                problems, owners, pressures, stretches, rows[alike], constants, base, accuracy, *found[:4], stations,
-                found.profiles,
-            )  # fmt: skip
+            for cells in (base, FINER * base):
+                rows = np.flatnonzero(some[owners] & (found.status == PENDING) & np.isfinite(stretches))
+                alike = np.argsort(_steepness(cosines[rows]), kind="stable")
+                solve_lanes(
+                    problems, owners, pressures, stretches, rows[alike], constants, cells, accuracy, *found[:4], *drawn
+                )
         if not np.any(found.status == PENDING):
             return found
     if not (soon and at_once(count, walk_many, walk_many, *scalar)):

@@ -31,6 +31,16 @@ def fill(course, edges, x, n, base, cells):
 
 
 @kernel
+def copy(course, out):
+    """Make ``out`` the same course."""
+    for s in range(course.shape[0]):
+        for piece in range(course.shape[1]):
+            for k in range(3):
+                for power in range(4):
+                    out[s, piece, k, power] = course[s, piece, k, power]
+
+
+@kernel
 def at_point(course, segment, share):
     """The three numbers at a ``share`` (0 to 1) of one segment."""
     pieces = course.shape[1]

@@ -5,6 +5,7 @@ import numpy as np
 from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested
 from .branch import GAMMA, SHEAR, rubber_of
+from .course import copy
 from .find import HELD_LENGTH, find
 from .march import cylinder_multiplier
 from .profile import FIELDS, at_stations
@@ -61,7 +62,7 @@ def find_on_some_mesh(problem, p, other, target, kind, buckled, course, tube, ac
         tube = (tube[0], factor * edges, cells, free, factor * middle, places)
     status, before = NOT_CONVERGED, (NOT_CONVERGED, 0.0)
     while True:
-        tube[0][:] = course  # a march leaves it changed
+        copy(course, tube[0])  # a march leaves it changed
         status, unstable, doublings, now, reached = find(
             problem, p, other, target, kind, buckled, course, tube, accuracy, space, out
         )
@@ -80,7 +81,7 @@ def find_on_some_mesh(problem, p, other, target, kind, buckled, course, tube, ac
         before, factor = (status, reached), FINER * factor
         if factor * base > FINEST:
             if status == NOT_CONVERGED and reached == 1.0 and not buckled:  # no mesh holds it: a limit just beyond?
-                tube[0][:] = course
+                copy(course, tube[0])
                 beyond, _, _, _, _ = find(
                     problem, JUST_BEYOND * p, other, target, kind, buckled, course, tube, accuracy, space, out
                 )

@@ -112,10 +112,10 @@ def _hold(problems, targets, length_held, owners, pressures, rows, constants, ba
             part = todo[fine[todo] == asked]
             size = len(part)
             free = np.full((2, size, 5), np.nan)
-            status, slack, none = np.full(size, PENDING), np.zeros(size, np.int64), np.empty(0)
+            status, slack = np.full(size, PENDING), np.zeros(size, np.int64)
             solve_lanes(
                 own, part, p[part], stretches[part], np.arange(size), constants, base, asked, free[0], free[1], status,
-                slack, none, np.empty((size, 7, 0)),
+                slack, None, None,
             )  # fmt: skip
             c[part], bound[part] = np.where(status == OK, free[:, :, column], np.nan)
         with np.errstate(all="ignore"):

@@ -20,6 +20,12 @@ STRAY = 0.03  # of y_m from its linear prediction: more is another branch
 
 
 @kernel
+def copy(numbers, out):
+    for k in range(len(numbers)):
+        out[k] = numbers[k]
+
+
+@kernel
 def eliminate(matrix, right):
     """Gauss's elimination with the largest pivot; the solution is left in ``right``."""
     n = len(right)
@@ -53,7 +59,7 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
         for j in range(3):
             k = free[j]
             step = FOLDS_DIFFERENCE if k == FOLDS or k == NECK_FOLDS else DIFFERENCE * now[k]
-            there[:] = now
+            copy(now, there)
             there[k] += step
             neck_shape.misses(cell, load, direction, target, half, there, free, nodes, curve, row, other, moved)
             for i in range(3):
@@ -84,7 +90,7 @@ def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve,
         return False
     if not abs(now[MIDDLE] / middle - 1.0) < NEAR:
         return False
-    last[:] = now
+    copy(now, last)
     for _ in range(STEPS):
         if t >= 1.0:
             return True
@@ -99,7 +105,8 @@ def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve,
             and abs(guess[MIDDLE] / expected - 1.0) < STRAY
             and abs(guess[MIDDLE] / now[MIDDLE] - 1.0) < LARGEST_CHANGE
         ):
-            last[:], now[:] = now, guess
+            copy(now, last)
+            copy(guess, now)
             t_last, t, step = t, ahead, 1.5 * step
             continue
         step *= 0.5

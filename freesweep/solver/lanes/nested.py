@@ -122,8 +122,8 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
     mesh and a first guess, replaced by its solution.
 
     ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
-    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH or 0, 5, ...), if asked for,
-    takes their finest meshes as :func:`profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
+    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH, 5, ...), unless None, takes
+    their finest meshes as :func:`profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
     fibers would have to push, beta fibers would)``.
     """
     # the energy at a low pressure is little beside the work whose error it takes: more than the accuracy of the rest
@@ -182,8 +182,9 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
         todo = todo & converged
         integrate(here_x, here_y, count, cell, load, table[level])
         put(table[level], MIDDLE, middle.stretch(here_y, count, n, u, long, share, room))
-        if level == 2 and len(kept) > 0:
-            continue  # profiles have no bounds of their own: they keep to the finer mesh
+        if kept is not None:
+            if level == 2:
+                continue  # profiles have no bounds of their own: they keep to the finer mesh
         largest = extrapolate(table, level, cell, load, length, max(error, coarser), missed, sizes, found[0], found[1])
         ready = todo & (largest <= accuracy)
         if level == 2:
@@ -194,7 +195,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
         if some(ready):
             alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
             alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
-            if len(kept) > 0:
+            if kept is not None:
                 keep(bits(ready), count, half_x, half_y, here_x, here_y, kept)
                 for lane in range(WIDTH):
                     doublings[lane] = level - 1 if (bits(ready) >> lane) & 1 else doublings[lane]

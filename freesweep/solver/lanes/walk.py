@@ -86,12 +86,12 @@ def carry_lanes(problems, first, pressures, order, constants, values, bounds, st
 
 @entry_point
 def solve_lanes(
-    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack, stations,
-    profiles,
+    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack,
+    stations, profiles,
 ):  # fmt: skip
     """Solve the rows in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]`` and has the uniform
     stretch ``stretches[i]``. Other arguments as of :func:`branch.walk_many`; rows that a lane could not do keep the status
-    that they have.
+    that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
     """
     size = (base << nested.LANE_DOUBLINGS) + 2
     space = aligned(23, size)
@@ -99,9 +99,12 @@ def solve_lanes(
     shape, small = aligned(2, base + 1), aligned(3, COLUMNS)
     x, y = shape[0], shape[1]
     columns, sizes, start = small[0], small[1], small[2]
-    drawn = len(stations) > 0
-    kept, nodes, doublings = np.zeros((WIDTH if drawn else 0, 5, size)), np.zeros((5, size)), np.zeros(WIDTH, np.int64)
-    tube = (np.zeros((1, 1, 3, 4)), np.array([0, base]), np.zeros((1, 3)), True, base, np.zeros(2))
+    doublings = np.zeros(WIDTH, np.int64)
+    if stations is None:
+        kept = None
+    else:
+        kept, nodes = np.zeros((WIDTH, 5, size)), np.zeros((5, size))
+        tube = (np.zeros((1, 1, 3, 4)), np.array([0, base]), np.zeros((1, 3)), True, base, np.zeros(2))
     rows = np.zeros(WIDTH, np.int64)
     for group in range(0, len(order), WIDTH):
         count = min(WIDTH, len(order) - group)
@@ -123,5 +126,5 @@ def solve_lanes(
         )  # fmt: skip
         met = met & guide.within(y, base, u, cell, load, half)
         record(bits(met), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
-        if drawn:
+        if stations is not None:
             draw_profiles(bits(met), rows, columns, base, doublings, kept, stations, tube, nodes, profiles)
