@@ -72,6 +72,6 @@ def entry_point(function):
     try:
         return numba.njit(cache=True, **_POLICY)(function)
     except RuntimeError:  # no folder can be written here: compile anew in each process
-        return kernel(function)
+        return numba.njit(**_POLICY)(function)
     finally:
         config.CACHE_DIR = before

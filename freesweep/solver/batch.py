@@ -1,5 +1,4 @@
-"""Many designs at once: vectors of designs go the quick way, then once more on a finer mesh; the scalar walk goes on where
-that ends."""
+"""Many designs at once: vectors go the quick way, once more on a finer mesh; the scalar walk goes on where that ends."""
 
 from typing import NamedTuple
 

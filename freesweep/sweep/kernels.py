@@ -1,40 +1,115 @@
-"""The machine code that a sweep needs, at hand before its threads would wait for each other to compile it."""
+"""The machine code that a sweep needs, at hand before its threads would wait for each other to compile it.
 
-from threading import Timer
+What does not lie on disk yet is compiled by two processes side by side, as Numba's lock lets only one thread of a process
+compile: about half the work each.
+"""
+
+import contextlib
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 
 from ..atlas.schema import YEOH
 from ..scaling import problem_rows
+from .estimate import is_measured
 from .jobs import in_order
-from .plan import Job
-from .solve import solve_shard
+from .plan import FREE, Job
+from .solve import BASE_CELLS, solve_shard
 
 TYPICAL = {
     **{"alpha": 40.0, "beta": -20.0, "length": 20.0, "radius": 1.0, "fiber_radius": 1.0, "wall": 0.3},
     **{"c10": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0, "fiber_extension": 1.0},
 }  # a tube that every kernel solves in no time, in its own radii and C10
 PRESSURE = 0.1
-PATIENCE = 3.0  # [s]: what takes longer is compiled, not loaded
+CHILD = "import sys; sys.path.insert(0, sys.argv[1]); from freesweep.sweep.kernels import compile_idle as do; do(sys.argv[2:])"
+SOLVING, THE_REST = ("solve_lanes",), ("carry_lanes", "seek_lanes", "query")  # what takes either process about as long
+ANSWERS = "interpolate"  # of the query's kernels one of the last that is compiled
 
 
 def load(kinds, sweep, progress=False):
     """Compile, or load from disk, the kernels that begin every shard of such kinds of states: each solves one of them.
 
     Tubes that are the same all along begin with vectors of designs, and those with the family of their rubber; the scalar
-    kernels, which some sweeps never need, are left to the thread that first does.
+    kernels, which most sweeps never need, are left to the thread that first does. What the atlas will measure itself with
+    is compiled as well, where other processes can do it.
     """
-    waiting = Timer(PATIENCE, print, ["compiling the kernels: up to a minute, once for each version"])
-    jobs = (
-        (_typical(kind, rubber), sweep.accuracy, not sweep.profiles) for kind in kinds for rubber in _rubbers(sweep)
-    )
-    if progress:
-        waiting.start()
+    rubbers = list(_rubbers(sweep))
+    if missing := _missing(kinds, sweep):
+        if progress:
+            print("compiling the kernels in two processes, once for each version: 20 seconds if two cores are idle")
+        _compile_aside(missing, rubbers)
+    elif progress and sweep.profiles and "walk_many" not in _stored("solver"):
+        print("compiling the kernels of tubes that vary, once for each version: a minute")
+    jobs = ((_typical(kind, rubber), sweep.accuracy, not sweep.profiles) for kind in kinds for rubber in rubbers)
+    for _ in in_order(solve_shard, jobs, 1):  # not here: LLVM calls back, and forgets an interrupt that comes then
+        pass
+
+
+def _missing(kinds, sweep):
+    """Which entry points of those that two processes share do not lie on disk; none where nothing can be kept there."""
+    names = ["carry_lanes", "solve_lanes"] if FREE in kinds else []
+    names += ["seek_lanes", "solve_lanes"] if any(kind != FREE for kind in kinds) else []
+    solver = set() if sweep.profiles else {*names} - _stored("solver")
+    query = is_measured(sweep) and not sweep.profiles and ANSWERS not in _stored("query")
+    return solver | ({"query"} if query else set())
+
+
+def _stored(room):
+    """Names of the entry points of a room whose machine code lies on disk, and all of them where none can."""
+    from ..jit import cache_folder
+
     try:
-        for _ in in_order(solve_shard, jobs, 1):  # not here: LLVM calls back, and forgets an interrupt that comes then
-            pass
-    finally:
-        waiting.cancel()
+        folder = Path(cache_folder(room))
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, RuntimeError, TypeError):  # read-only, nobody's home: each process compiles for itself
+        return {*SOLVING, *THE_REST, ANSWERS, "walk_many"}
+    return {path.name.split(".")[1].split("-")[0] for path in folder.rglob("*.nbc")}
+
+
+def _compile_aside(missing, rubbers):
+    """Let two other processes compile what is ``missing``; what they could not do is left to this one."""
+    families = ["Yeoh" if rubber else "Mooney-Rivlin" for rubber in rubbers]
+    with contextlib.ExitStack() as running:
+        children = []
+        for part in (SOLVING, THE_REST):
+            if own := missing.intersection(part):
+                words = [sys.executable, "-c", CHILD, str(Path(__file__).parents[2]), *families, *own]
+                silent = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+                children.append(running.enter_context(subprocess.Popen(words, **silent)))
+                running.callback(children[-1].kill)
+        for child in children:
+            child.wait()
+
+
+def compile_idle(words):
+    """Compile the entry points named among the ``words``, for the families of rubbers among them; no state is solved."""
+    from ..solver.branch import MOONEY_RIVLIN, PROBLEM_SIZE
+    from ..solver.branch import YEOH as YEOH_COLUMNS
+    from ..solver.lanes.hold import seek_lanes
+    from ..solver.lanes.walk import carry_lanes, solve_lanes
+
+    numbers, whole, states = np.empty(0), np.empty(0, np.int64), np.empty((0, 5))
+    problems, first, four = np.empty((0, PROBLEM_SIZE)), np.zeros(1, np.int64), (numbers,) * 4
+    for name, constants in (("Mooney-Rivlin", MOONEY_RIVLIN), ("Yeoh", YEOH_COLUMNS)):
+        if name not in words:
+            continue
+        if "carry_lanes" in words:
+            carry_lanes(problems, first, numbers, whole, constants, states, states, whole, numbers, numbers)
+        if "solve_lanes" in words:
+            solve_lanes(
+                problems, whole, numbers, numbers, whole, constants, BASE_CELLS, 1.0, states, states, whole, whole, None,
+                None,
+            )  # fmt: skip
+        if "seek_lanes" in words:
+            seek_lanes(
+                problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four
+            )
+    if "query" in words:
+        from ..query.idle import compile_kernels
+
+        compile_kernels()
 
 
 def _rubbers(sweep):
