@@ -7,8 +7,10 @@ from numba import config
 
 from ..interpret import at_once
 from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, walk_many
+from .load_path import settling_pressure
 from .profile import FIELDS
 from .status import PENDING
+from .varying.free_states import follow_many
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
 NOTHING = np.empty(0)
@@ -66,8 +68,11 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
                 )
         if not np.any(found.status == PENDING):
             return found
-    if not (soon and at_once(count, walk_many, walk_many, *scalar)):
-        walk_many(*scalar)
+    entry, arguments = walk_many, scalar
+    if not uniform_tubes:
+        entry, arguments = follow_many, (problems, settling_pressure(problems), *scalar[1:])
+    if not (soon and at_once(count, entry, entry, *arguments)):
+        entry(*arguments)
     return found
 
 

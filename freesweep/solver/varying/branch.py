@@ -1,0 +1,122 @@
+"""The branch of a free tube that varies: followed through the pressures asked for, to the fold where it ends."""
+
+import numpy as np
+
+from ...jit import inlined, kernel
+from .. import guide, lagrangian
+from ..climb import pushed
+from ..continuation import CHANGE, FIRST_STEP, FOLLOWED, advance, between, is_stable, last_alike
+from ..course import fill
+from ..held import loaded
+from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
+from .fold import locate
+from .meshes import GRADINGS, stand, take
+from .one_state import REGRADES, near_fold, plain, record
+
+MOST_STEPS = 3000
+SMALL_STRAIN = 0.02  # of all uniform stretches along the tube: where a branch begins, the wall has one state only
+HALVINGS = 80  # of the load, until that holds
+STABLE = np.bool_(True)
+
+
+@kernel
+def begin(track, space, tube, path):
+    """The first state of a branch from rest, where the load is small enough to have one state only: ``(status, mu, the
+    tangent's mu)``.
+    """
+    mu = 1.0
+    for _ in range(HALVINGS):
+        load, largest = loaded(path.origin, path.direction, mu), 0.0
+        for k in range(len(space.u)):
+            space.u[k] = 1.0
+        reached = guide.follow(tube, space.u, path.origin, load, space.ahead)
+        for k in range(len(space.u)):
+            largest = max(largest, abs(space.ahead[k] - 1.0))
+        if reached == 1.0 and largest < SMALL_STRAIN:
+            guide.start(tube, space.ahead, load, track.x, track.y)
+            status, negative, tangent_mu = stand(track, tube, path, mu, 1.0, GRADINGS, space.work)
+            if status == FOLLOWED and negative == 0:
+                return FOLLOWED, mu, tangent_mu
+        mu *= 0.5
+    return NOT_CONVERGED, mu, 0.0
+
+
+@kernel
+def guess(track, space, here, ahead, pressure):
+    """A guess of the state at ``pressure`` on a step from ``here`` to what is ``ahead``, each (mu, the tangent's mu), the
+    step's length beside.
+    """
+    n = len(track.x) - 1
+    for i in range(n + 1):
+        space.x[i] = track.x[i]
+    between(track, n, here[0], here[1], ahead[0], ahead[1], ahead[2], pressure, space.y)
+
+
+@inlined
+def answer(track, space, tube, path, here, ahead, rows, accuracy):
+    """Solve the rows that wait for a pressure on the step from ``here`` to what is ``ahead``."""
+    low, high = min(here[0], ahead[0]), max(here[0], ahead[0])
+    for i in range(len(rows.pressures)):
+        p = rows.pressures[i]
+        if rows.status[i] == PENDING and low <= p <= high:
+            guess(track, space, here, ahead, p)
+            load = loaded(path.origin, path.direction, p)
+            status, doublings = plain(space, tube, load, REGRADES, accuracy)
+            record(space, tube, load, status, doublings, rows, i)
+
+
+@inlined
+def end_at_fold(track, roomy, space, tube, path, here, ahead, rows, limit, accuracy):
+    """What rows still wait for, where the branch ends on a step: states before the fold are solved, the rest lie beyond."""
+    if here[1] < 0.0:  # the pressure falls, but a limit pressure is one of rising pressures
+        answer(track, space, tube, path, here, ahead, rows, accuracy)
+        return
+    value, bound = locate(track, roomy, space, tube, path, here, ahead)
+    for i in range(len(rows.pressures)):
+        p = rows.pressures[i]
+        if rows.status[i] != PENDING or p < here[0] or p == np.inf:
+            continue
+        load, status, doublings = loaded(path.origin, path.direction, p), NOT_CONVERGED, 0
+        if p >= value - bound:
+            rows.status[i], limit[0], limit[1] = BEYOND_LIMIT, value, bound
+            continue
+        if p < ahead[0]:
+            guess(track, space, here, ahead, p)
+            status, doublings = plain(space, tube, load, REGRADES, accuracy)
+        if status == NOT_CONVERGED and value == value:
+            status, doublings = near_fold(track, space, tube, path, p, here[0], value, accuracy)
+        record(space, tube, load, status, doublings, rows, i)
+
+
+@kernel
+def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, accuracy):
+    """Follow the branch from the state in ``track`` to the load ``far``, and solve the ``rows`` that wait on the way.
+
+    Returns ``(status, here, ahead)``: OK where the last step, which is not taken yet, from ``here`` to what is ``ahead``,
+    passes ``far``.
+    """
+    n = len(track.x) - 1
+    course, edges, cells, _, _, _ = tube
+    sense, step = (1.0 if tangent_mu > 0.0 else -1.0), FIRST_STEP * CHANGE
+    here = (mu, tangent_mu)
+    for _ in range(MOST_STEPS):
+        own = fill(course, edges, track.x, n, n, cells)
+        status, negative, mu, tangent_mu, made, step = advance(
+            lagrangian.density, track, n, own, path, here[0], here[1], step, space.work
+        )
+        ahead = (mu, tangent_mu, made)
+        if status != FOLLOWED:
+            gone = pushed(track.y, loaded(path.origin, path.direction, here[0]))
+            return (COMPRESSED if gone else NOT_CONVERGED), here, ahead
+        if not is_stable(negative, tangent_mu, sense):
+            ahead = last_alike(
+                lagrangian.density, track, n, own, path, here[0], here[1], made, sense, STABLE, space.work
+            )
+            if len(rows.pressures) > 0:
+                end_at_fold(track, roomy, space, tube, path, here, ahead, rows, limit, accuracy)
+            return (OK if (ahead[0] - far) * sense >= 0.0 else BEYOND_LIMIT), here, ahead
+        answer(track, space, tube, path, here, ahead, rows, accuracy)
+        if (mu - far) * sense >= 0.0:
+            return OK, here, ahead
+        here = take(track, tube, path, mu, tangent_mu, space.work)
+    return NOT_CONVERGED, here, (here[0], here[1], 0.0)

@@ -1,0 +1,109 @@
+"""Where a branch ends: the edge of its stability, by bisection in arclength on four nested meshes, extrapolated.
+
+At a fold the load turns back; where a mode of another symmetry lets go, it goes on, but no longer as a maximum. Each mesh
+has that edge at a place of its own, before or behind the state that the base mesh stands on: it is looked for both ways.
+"""
+
+import numpy as np
+
+from ...jit import kernel
+from .. import lagrangian, nested
+from ..continuation import (
+    CHANGE,
+    FIRST_STEP,
+    FOLLOWED,
+    Track,
+    advance,
+    correct,
+    is_stable,
+    last_alike,
+    size_of,
+)
+from ..course import fill
+from ..held import loaded
+
+COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
+STEPS = 40  # along the branch, to the edge
+ROUNDING = 4e-9  # of its load, relative: where a load is flat, many shapes are equilibria to rounding
+
+
+@kernel
+def nodes_of(track, n):
+    """The first n + 1 nodes of a track that has room for more."""
+    m = n + 1
+    return Track(
+        track.x[:m], track.y[:m], track.tangent[:m], track.next_y[:m], track.next_tangent[:m], track.normal[:m],
+        track.spare[:m], track.other[:m],
+    )  # fmt: skip
+
+
+@kernel
+def carry(old_x, old, x, y):
+    """Values at nodes ``x`` of what is linear between those at ``old_x``."""
+    j = 0
+    for i in range(len(x)):
+        while j < len(old_x) - 2 and old_x[j + 1] < x[i]:
+            j += 1
+        y[i] = old[j] + (x[i] - old_x[j]) * (old[j + 1] - old[j]) / (old_x[j + 1] - old_x[j])
+
+
+@kernel
+def edge(track, n, cells, path, mu, tangent_mu, sense, work):
+    """The load at the edge of stability nearest to the state in ``track`` on its own mesh; NaN if there is none near."""
+    unit, step = size_of(mu, path), FIRST_STEP * CHANGE
+    for i in range(n + 1):
+        track.normal[i] = track.tangent[i] / (n * track.y[i] * track.y[i])
+    status, negative, mu, tangent_mu = correct(
+        lagrangian.density, track.x, track.y, mu, n, cells, path, track.normal, tangent_mu / (unit * unit), track.tangent,
+        work,
+    )  # fmt: skip
+    stable = is_stable(negative, tangent_mu, sense)
+    if not stable:  # turn round
+        sense, tangent_mu = -sense, -tangent_mu
+        for i in range(n + 1):
+            track.tangent[i] = -track.tangent[i]
+    for _ in range(STEPS):
+        if status != FOLLOWED:
+            break
+        status, negative, next_mu, next_tangent_mu, made, step = advance(
+            lagrangian.density, track, n, cells, path, mu, tangent_mu, step, work
+        )
+        if status == FOLLOWED and is_stable(negative, next_tangent_mu, sense) != stable:
+            return last_alike(lagrangian.density, track, n, cells, path, mu, tangent_mu, made, sense, stable, work)[0]
+        mu, tangent_mu = next_mu, next_tangent_mu
+        for i in range(n + 1):
+            track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
+    return np.nan
+
+
+@kernel
+def locate(track, roomy, space, tube, path, here, ahead):
+    """The load at which the branch ends, from the state ``here`` in ``track``; ``ahead`` is where the base mesh has that
+    edge. ``(load, bound)``, NaN where some mesh has none near; ``roomy`` is a track for the finest.
+    """
+    n = len(track.x) - 1
+    course, edges, cells, _, _, _ = tube
+    for i in range(n + 1):
+        space.x[i], space.y[i] = track.x[i], track.next_y[i]
+    now = loaded(path.origin, path.direction, ahead[0])
+    if not nested.adapt(lagrangian.density, lagrangian.integrands, space.x, space.y, n, tube, now, space.work):
+        for i in range(n + 1):
+            space.x[i] = track.x[i]
+    loads = space.table[0]
+    for k in range(len(COUNTS)):
+        count = n * COUNTS[k] // 2
+        own = nodes_of(roomy, count)
+        if COUNTS[k] == 1:
+            for i in range(count + 1):
+                own.x[i] = space.x[2 * i]
+        else:
+            nested.split(space.x, n, edges, COUNTS[k] // 2, own.x)
+        carry(track.x, track.y, own.x, own.y)
+        carry(track.x, track.tangent, own.x, own.tangent)
+        filled = fill(course, edges, own.x, count, n, cells)
+        loads[k] = edge(own, count, filled, path, here[0], here[1], 1.0 if here[1] > 0.0 else -1.0, space.work)
+    first, second, third = (
+        (4.0 * loads[1] - loads[0]) / 3.0, (4.0 * loads[2] - loads[1]) / 3.0, (4.0 * loads[3] - loads[2]) / 3.0
+    )  # fmt: skip
+    estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
+    return third, nested.SAFETY * estimate + ROUNDING * abs(third)

@@ -1,0 +1,80 @@
+"""The mesh of a branch, graded by the state that stands on it."""
+
+import numpy as np
+
+from ...jit import kernel
+from .. import lagrangian, nested
+from ..continuation import FOLLOWED, correct, size_of
+from ..course import fill
+from ..held import loaded
+
+GRADINGS = np.int64(3)  # of the first mesh
+
+
+@kernel
+def regrade(track, tube, path, mu, work):
+    """Move the nodes to where the state bends, and carry it over: whether that fits, else all is as it was. The old nodes
+    are left in ``track.spare``.
+    """
+    n = len(track.x) - 1
+    for i in range(n + 1):
+        track.spare[i], track.other[i] = track.x[i], track.y[i]
+    now = loaded(path.origin, path.direction, mu)
+    if nested.adapt(lagrangian.density, lagrangian.integrands, track.x, track.y, n, tube, now, work):
+        return True
+    for i in range(n + 1):
+        track.x[i], track.y[i] = track.spare[i], track.other[i]
+    return False
+
+
+@kernel
+def stand(track, tube, path, mu, sense, gradings, work):
+    """The state at ``mu`` near the one in ``track``, on a mesh that it graded itself so many times, and the tangent in this
+    ``sense`` of mu: ``(status, negative pivots, the tangent's mu)``.
+    """
+    n = len(track.x) - 1
+    course, edges, cells, _, _, _ = tube
+    for i in range(n + 1):
+        track.normal[i] = 0.0
+    made = 0
+    while True:
+        own = fill(course, edges, track.x, n, n, cells)
+        status, negative, _, tangent_mu = correct(
+            lagrangian.density, track.x, track.y, mu, n, own, path, track.normal, sense, track.tangent, work
+        )
+        if status != FOLLOWED or made == gradings or not regrade(track, tube, path, mu, work):
+            return status, negative, tangent_mu
+        made += 1
+
+
+@kernel
+def take(track, tube, path, mu, tangent_mu, work):
+    """Stand on the state a step ahead, on a mesh graded by it, on the plane normal to the branch: ``(mu, the tangent's mu)``
+    there.
+    """
+    n = len(track.x) - 1
+    course, edges, cells, _, _, _ = tube
+    for i in range(n + 1):
+        track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
+    if not regrade(track, tube, path, mu, work):
+        return mu, tangent_mu
+    j = 0
+    for i in range(n + 1):
+        while j < n - 1 and track.spare[j + 1] < track.x[i]:
+            j += 1
+        share = (track.x[i] - track.spare[j]) / (track.spare[j + 1] - track.spare[j])
+        slope = track.tangent[j] + share * (track.tangent[j + 1] - track.tangent[j])
+        track.next_y[i], track.normal[i] = track.y[i], slope / (n * track.y[i] * track.y[i])
+    unit = size_of(mu, path)
+    own = fill(course, edges, track.x, n, n, cells)
+    status, _, new_mu, new_tangent_mu = correct(
+        lagrangian.density, track.x, track.next_y, mu, n, own, path, track.normal, tangent_mu / (unit * unit),
+        track.next_tangent, work,
+    )  # fmt: skip
+    if status != FOLLOWED:
+        for i in range(n + 1):
+            track.x[i], track.y[i] = track.spare[i], track.other[i]
+        return mu, tangent_mu
+    for i in range(n + 1):
+        track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
+    return new_mu, new_tangent_mu

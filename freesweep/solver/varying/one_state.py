@@ -1,0 +1,125 @@
+"""One free state of a tube that varies, from a guess close to it, on nested meshes; near a fold by what is conjugate to the
+pressure.
+
+Close to a fold meshes differ in whether they have a state at a pressure at all. Held instead is the volume, which rises
+through the fold, and made such that the extrapolated pressure is the one asked for.
+"""
+
+import numpy as np
+
+from ...jit import inlined, kernel
+from .. import held, lagrangian, nested, newton
+from ..course import fill
+from ..profile import FIELDS, at_stations
+from ..slack import slack_fibers
+from ..status import INACCURATE, NOT_CONVERGED, OK
+
+MESH_CHANGE = 0.03  # relative difference of a shape from one mesh to the next
+ROOT_STEPS, ROOT = 40, 1e-9  # of the pressure, relative
+FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+REGRADES = np.int64(1)
+PLAIN, HELD = np.int64(nested.PLAIN), np.int64(nested.HELD)
+
+
+@kernel
+def extremes(y, middle):
+    """What tells one shape from another: stretch in the middle, least and largest."""
+    return y[middle], np.min(y), np.max(y)
+
+
+@kernel
+def differ(one, other):
+    """Whether two shapes differ by more than meshes do."""
+    return max(abs(one[0] - other[0]), max(abs(one[1] - other[1]), abs(one[2] - other[2]))) > MESH_CHANGE * one[2]
+
+
+@kernel
+def solve(space, tube, load, goal, direction, target, regrades, accuracy):
+    """:func:`nested.solve` from the guess in ``space``: ``(status, doublings)``, and that the shape is still the guess's."""
+    guess = extremes(space.y, tube[4])
+    status, unstable, doublings, _ = nested.solve(
+        lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, space.x, space.y, tube, load,
+        goal, direction, target, 1.0, regrades, accuracy, space.fine, space.work, space.table, space.out,
+    )  # fmt: skip
+    solved = status == newton.CONVERGED or status == nested.UNREACHED
+    if not solved or unstable > 0 or differ(guess, extremes(space.y, tube[4])):
+        return NOT_CONVERGED, doublings
+    return (OK if status == newton.CONVERGED else INACCURATE), doublings
+
+
+@inlined
+def plain(space, tube, load, regrades, accuracy):
+    """The state at ``load``."""
+    return solve(space, tube, load, PLAIN, FLAT, 0.0, regrades, accuracy)
+
+
+@kernel
+def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
+    """The state at ``pressure``, between one at the pressure ``first``, in ``track``, and a fold at ``limit`` whose shape is
+    a step ahead there; as :func:`plain`. The error of the pressure that was met enters the bounds.
+    """
+    n = len(space.x) - 1
+    course, edges, cells, _, _, _ = tube
+    own = fill(course, edges, track.x, n, n, cells)
+    direction = (0.0, 0.0, 0.0, pressure, 0.0, 0.0, 0.0)
+    low = held.hold(lagrangian.conjugate, track.x, track.y, n, own, path.origin, direction, space.work[8])
+    high = held.hold(lagrangian.conjugate, track.x, track.next_y, n, own, path.origin, direction, space.work[8])
+    start, whole = low, high - low
+    miss_low, miss_high, gap = first / pressure - 1.0, limit / pressure - 1.0, 1.0
+    values, slope, last = space.curve[0], space.curve[1], 1.0
+    status, doublings = NOT_CONVERGED, 0
+    for made in range(ROOT_STEPS):
+        target = (low * miss_high - high * miss_low) / (miss_high - miss_low)
+        if made % 3 == 2:  # a parabola's flat top holds the secant up
+            target = 0.5 * (low + high)
+        share = (target - start) / whole
+        for i in range(n + 1):
+            space.x[i], space.y[i] = track.x[i], track.y[i] + share * (track.next_y[i] - track.y[i])
+        status, doublings = solve(space, tube, path.origin, HELD, direction, target, REGRADES, accuracy)
+        if status == NOT_CONVERGED:
+            return status, doublings
+        gap = space.out[0, nested.MULTIPLIER] - 1.0
+        for k in range(nested.OUTPUTS):
+            if made > 0 and gap != last:
+                slope[k] = abs((space.out[0, k] - values[k]) / (gap - last))
+            values[k] = space.out[0, k]
+        last = gap
+        if abs(gap) < ROOT and made > 1:
+            break
+        if gap > 0.0:
+            high, miss_high = target, gap
+        else:
+            low, miss_low = target, gap
+    if not abs(gap) < np.sqrt(ROOT):
+        return NOT_CONVERGED, doublings
+    doubt, largest = abs(gap) + space.out[1, nested.MULTIPLIER], 0.0
+    for k in range(nested.OUTPUTS - 1):
+        space.out[1, k] += slope[k] * doubt
+        largest = max(largest, space.out[1, k] / space.out[2, k])
+    return (OK if largest <= accuracy else INACCURATE), doublings
+
+
+@kernel
+def record(space, tube, load, status, doublings, rows, i):
+    """Write a state, or why there is none, to row ``i``."""
+    rows.status[i] = status
+    if status != OK and status != INACCURATE:
+        return
+    base = len(space.x) - 1
+    for k in range(5):
+        share = 0.5 if k < 4 else 1.0  # of half the tube
+        rows.values[i, k], rows.bounds[i, k] = share * space.out[0, k], share * space.out[1, k]
+    rows.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << doublings, base, tube, load)
+    if len(rows.stations) > 0:
+        at_stations(rows.stations, base, doublings, tube, load, space.fine, space.curve, rows.profiles[i])
+
+
+@kernel
+def blank(rows, i):
+    """No value in row ``i`` yet."""
+    rows.slack[i] = 0
+    for k in range(5):
+        rows.values[i, k], rows.bounds[i, k] = np.nan, np.nan
+    for j in range(len(rows.stations)):
+        for k in range(FIELDS):
+            rows.profiles[i, k, j] = np.nan

@@ -1,0 +1,53 @@
+"""What the free states of a tube that varies are found with, and what they are written to."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...jit import kernel
+from .. import guide, nested
+from ..continuation import Track
+
+
+class Space(NamedTuple):
+    """Scratch: of :func:`nested.solve`, a mesh and shape of its own (n + 1,), and uniform stretches along the tube."""
+
+    fine: np.ndarray
+    work: np.ndarray
+    table: np.ndarray
+    curve: np.ndarray
+    out: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    u: np.ndarray
+    ahead: np.ndarray
+
+
+class Rows(NamedTuple):
+    """States of one design: see :func:`branch.walk`."""
+
+    pressures: np.ndarray
+    values: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    slack: np.ndarray
+    stations: np.ndarray
+    profiles: np.ndarray
+
+
+@kernel
+def make_space(base):
+    """Scratch for a base mesh of ``base`` cells."""
+    size = (base << nested.MAX_DOUBLINGS) + 2
+    return Space(
+        np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
+        np.zeros((5, size)), np.zeros((4, nested.OUTPUTS)), np.zeros(base + 1), np.zeros(base + 1),
+        np.zeros(guide.PLACES), np.zeros(guide.PLACES),
+    )  # fmt: skip
+
+
+@kernel
+def make_track(base):
+    """Scratch of a branch on ``base`` cells."""
+    nodes = np.zeros((8, base + 1))
+    return Track(nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], nodes[5], nodes[6], nodes[7])
