@@ -1,4 +1,4 @@
-"""Many designs at once: vectors go the quick way, once more on a finer mesh; the scalar walk goes on where that ends."""
+"""Many designs at once: vectors of designs go the quick way, the scalar walk goes on where that ends."""
 
 from typing import NamedTuple
 
@@ -7,14 +7,13 @@ from numba import config
 
 from ..interpret import at_once
 from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, walk_many
-from .load_path import settling_pressure
+from .load_path import is_loaded, legs, settling_pressure
 from .profile import FIELDS
-from .status import PENDING
+from .status import OK, PENDING
 from .varying.free_states import follow_many
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
 NOTHING = np.empty(0)
-FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
 class Walks(NamedTuple):
@@ -40,40 +39,66 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     designs share a vector; those of the scalar kernels alone (``lanes=False``) differ by less than the bounds.
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
-    uniform_tubes, count, base = len(tube[0]) == 0, len(pressures), int(tube[1][-1])
-    found = Walks(
-        np.full((count, OUTPUTS), np.nan), np.full((count, OUTPUTS), np.nan), np.full(count, PENDING, np.int64),
-        np.zeros(count, np.int64), np.full((len(problems), 2), np.nan), np.full((count, FIELDS, len(stations)), np.nan),
+    found = _nothing(len(problems), len(pressures), stations)
+    if len(tube[0]) > 0:
+        arguments = (
+            problems, settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
+        )  # fmt: skip
+        if not (soon and at_once(len(pressures), follow_many, follow_many, *arguments)):
+            follow_many(*arguments)
+        return found
+    if not np.any(is_loaded(problems)):
+        _walk(problems, first, pressures, np.zeros(len(pressures), bool), tube, accuracy, stations, lanes, soon, found)
+        return found
+    own = legs(problems, first, pressures)
+    on_the_way = _nothing(len(own.owners), len(own.pressures), stations)
+    _walk(
+        problems[own.owners], own.first, own.pressures, own.rows < 0, tube, accuracy, stations, lanes, soon, on_the_way
+    )
+    asked = own.rows >= 0
+    for all_found, here in zip(found, on_the_way):
+        if len(here) == len(asked):
+            all_found[own.rows[asked]] = here[asked]
+    found.limits[own.owners[own.upward]] = on_the_way.limits[own.upward]
+    return found
+
+
+def _nothing(problems, states, stations):
+    """Room for walks that are not made yet."""
+    return Walks(
+        np.full((states, OUTPUTS), np.nan), np.full((states, OUTPUTS), np.nan), np.full(states, PENDING, np.int64),
+        np.zeros(states, np.int64), np.full((problems, 2), np.nan), np.full((states, FIELDS, len(stations)), np.nan),
     )  # fmt: skip
-    scalar = (problems, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles)
-    if lanes and uniform_tubes and not config.DISABLE_JIT:
+
+
+def _walk(problems, first, pressures, passing, tube, accuracy, stations, lanes, soon, found):
+    """Walk tubes that do not vary, each along pressures that rise or fall; ``passing`` states need no values."""
+    scalar = (problems, first, pressures, tube[1], accuracy, *found[:5], stations, found.profiles)
+    if lanes and not config.DISABLE_JIT:
         from .lanes.walk import carry_lanes, solve_lanes
 
-        if soon and at_once(count, solve_lanes, walk_many, *scalar):
-            return found
+        if soon and at_once(len(pressures), solve_lanes, walk_many, *scalar):
+            return
         # what shares a vector should need much the same work: as many pressures, as steep ends
         steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
         owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
-        stretches, cosines = np.full(count, np.nan), np.full(count, np.nan)
-        drawn = (stations, found.profiles) if len(stations) else (None, None)
+        stretches, cosines = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
         for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
             if not np.any(some):
                 continue
             carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
-            for cells in (base, FINER * base):
-                rows = np.flatnonzero(some[owners] & (found.status == PENDING) & np.isfinite(stretches))
-                alike = np.argsort(_steepness(cosines[rows]), kind="stable")
-                solve_lanes(
-                    problems, owners, pressures, stretches, rows[alike], constants, cells, accuracy, *found[:4], *drawn
-                )
+            carried = some[owners] & (found.status == PENDING) & np.isfinite(stretches)
+            found.status[carried & passing] = OK  # to be solved only where a scalar walk begins there
+            rows = np.flatnonzero(carried & ~passing)
+            alike = np.argsort(_steepness(cosines[rows]), kind="stable")
+            solve_lanes(
+                problems, owners, pressures, stretches, rows[alike], constants, int(tube[1][-1]), accuracy, *found[:4],
+                stations, found.profiles,
+            )  # fmt: skip
         if not np.any(found.status == PENDING):
-            return found
-    entry, arguments = walk_many, scalar
-    if not uniform_tubes:
-        entry, arguments = follow_many, (problems, settling_pressure(problems), *scalar[1:])
-    if not (soon and at_once(count, entry, entry, *arguments)):
-        entry(*arguments)
-    return found
+            return
+    if not (soon and at_once(len(pressures), walk_many, walk_many, *scalar)):
+        walk_many(*scalar)
 
 
 def _steepness(cosines):

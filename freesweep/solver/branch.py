@@ -1,10 +1,11 @@
-"""The walk: one design, its equilibria at rising pressures, on the branch that starts at the undeformed cylinder.
+"""The walk: one tube that is the same all along, its equilibria at pressures that rise, or fall, along its one path of loads
+(:mod:`load_path`): on the branch that starts at the undeformed cylinder.
 
-First leg: pressure, force, torque and fiber extension - 1 rise in proportion up to the smallest pressure asked for at
-which the meridional resultant is a tension. Second leg: the pressure alone. The uniform tube guides (``uniform.py``):
-where it is carried without a turning point, the shape is solved directly and must lie between 1 and the uniform stretch.
-Elsewhere the walk climbs in small steps of the quantity conjugate to the load (the volume, for a rising pressure), which
-rises through a turning point: no jump to another branch is possible, and the turning point itself is the limit pressure.
+The uniform tube guides (``uniform.py``): where it is carried without a turning point, the shape is solved directly and must
+lie between 1 and the uniform stretch. Elsewhere the walk climbs in small steps of the quantity conjugate to the load (the
+volume, for a rising pressure), which rises through a turning point: no jump to another branch is possible, and the turning
+point itself is the limit pressure. Of a loaded tube the first state of each walk is the one at which its loads have settled;
+where there is none, none follows.
 
 Here physics and numerics are bound together.
 """
@@ -32,27 +33,26 @@ def rubber_of(problem):
 
 
 @kernel
-def workspace(base, varying):
-    """Scratch of :func:`walk` for a base mesh of ``base`` cells, and the cells of a tube that varies."""
+def workspace(base):
+    """Scratch of :func:`walk` for a base mesh of ``base`` cells."""
     size = (base << nested.MAX_DOUBLINGS) + 2
-    space = (
+    return (
         np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
-        np.zeros((5, size)), np.zeros((6, base + 1)), np.zeros((4, guide.PLACES)),
+        np.zeros((5, size)), np.zeros((6, base + 1)), np.zeros((4, 1)),
     )  # fmt: skip
-    return space, np.zeros((size if varying else 1, 3))
 
 
 @inlined
 def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slack, limit, stations, profiles):
-    """Equilibria of one design at rising ``pressures``, on the branch that the module describes.
+    """Equilibria of one design at ``pressures`` that rise, or fall, on the branch that the module describes.
 
     Rows whose status is not PENDING are passed over.
 
     Arguments
     ---------
     problem : (PROBLEM_SIZE,) the design, dimensionless
-    tube : what varies along it, and where its base mesh begins, bends and ends: see :func:`nested.solve`
-    pressures : (n,) p = P/C10, ascending; infinity is the locked shape, where the wall no longer counts
+    tube : its cell, and where its base mesh begins and ends: see :func:`nested.solve`
+    pressures : (n,) p = P/C10, monotone; infinity is the locked shape, where the wall no longer counts
     accuracy : bound to reach, scaled
     values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds
     status, slack : (n,) codes; values are NaN unless the status is OK or INACCURATE
@@ -62,38 +62,30 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     fine, shapes, guides = space[0], space[4], space[5]
     base = tube[1][len(tube[1]) - 1]
     x, y, last_x, last_y = shapes[0, : base + 1], shapes[1, : base + 1], shapes[2, : base + 1], shapes[3, : base + 1]
-    places = 1 if tube[0].shape[0] == 1 and tube[0].shape[1] == 1 else guide.PLACES
-    u, ahead, scratch = guides[0, :places], guides[1, :places], guides[2:, :places]
-    share = 1.0 if tube[3] else 0.5
+    u, ahead, scratch = guides[0], guides[1], guides[2:]
     half = 0.5 * problem[LENGTH]
     out = np.zeros((4, nested.OUTPUTS))
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
+    alone = f == 0.0 and m == 0.0 and gamma == 1.0
     rubber, shear = rubber_of(problem), problem[SHEAR]
     before = (1.0, rubber, shear, 0.0, 0.0, 0.0, 1.0)
-    started, guided, ended = False, True, OK
-    clamped, middle = 1.0, 1.0
-    for end in range(2):
-        stretch = lagrangian.kinematics(1.0, guide.cell_along(tube, 1.0 * end), (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[
-            3
-        ]
-        clamped = min(clamped, 1.0 + stretch)
-    for k in range(places):
-        u[k] = 1.0
+    started, guided, ended, middle = False, True, OK, 1.0
+    clamped = 1.0 + lagrangian.kinematics(1.0, guide.cell_along(tube, 0.0), (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3]
+    u[0] = 1.0
     limit[0], limit[1] = np.nan, np.nan
     passed = -1
-    for i in range(
-        len(pressures)
-    ):  # the last state that is done already, and goes on to one that is not, is solved again
-        if status[i] == OK and 0.0 < pressures[i] < np.inf:
+    for i in range(len(pressures)):
+        # the last state that is done already, and goes on to one that is not, is solved again
+        if status[i] == OK and pressures[i] < np.inf and (pressures[i] > 0.0 or not alone):
             passed = i
         elif status[i] == PENDING and pressures[i] < np.inf:
-            if passed >= 0 and places == 1:
+            if passed >= 0:
                 status[passed] = PENDING
             break
     for i in range(len(pressures)):
         p = pressures[i]
         if status[i] != PENDING:
-            if status[i] == OK and 0.0 < p < np.inf and places == 1:  # on the same two legs
+            if status[i] == OK and p < np.inf and (p > 0.0 or not alone):  # on the same two legs
                 load = (gamma, rubber, shear, p, f, m, 1.0)
                 if guide.follow(tube, u, before, load, ahead) == 1.0:
                     before, u[0], middle = load, ahead[0], values[i, 4]
@@ -137,81 +129,52 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
         status[i] = found
         if found == OK or found == INACCURATE:
             for k in range(5):
-                whole = share if k < 4 else 1.0
-                values[i, k], bounds[i, k] = whole * out[0, k], whole * out[1, k]
+                values[i, k], bounds[i, k] = out[0, k], out[1, k]
             slack[i] = slack_fibers(fine[0], fine[1], base << doublings, base, tube, load)
             if len(stations) > 0:
                 at_stations(stations, base, doublings, tube, load, fine, space[3], profiles[i])
             before, started, guided, middle = load, True, reached == 1.0, out[0, nested.MIDDLE]
-            for k in range(places):
-                u[k] = ahead[k]
+            u[0] = ahead[0]
             for k in range(base + 1):
                 last_x[k], last_y[k] = x[k], y[k]
-        elif not started and (found == COMPRESSED or found == NOT_CONVERGED):
-            continue  # a higher pressure may hold the wall, or be easier to reach
+        elif not started and alone and (found == COMPRESSED or found == NOT_CONVERGED):
+            continue  # a higher pressure may be easier to reach
         else:
             ended = found
-            if found == BEYOND_LIMIT:
-                # a turning point of the first leg, of part of the load, is no limit pressure
-                alone = f == 0.0 and m == 0.0 and gamma == 1.0
-                limit[0], limit[1] = (fold, fold_bound) if started or alone else (np.nan, np.nan)
+            if found == BEYOND_LIMIT and (started or alone):  # that of loads that settle is no limit pressure
+                limit[0], limit[1] = fold, fold_bound
 
 
 @entry_point
 def walk_many(
-    problems,
-    first,
-    pressures,
-    course,
-    edges,
-    places,
-    accuracy,
-    values,
-    bounds,
-    status,
-    slack,
-    limits,
-    stations,
-    profiles,
-):
+    problems, first, pressures, edges, accuracy, values, bounds, status, slack, limits, stations, profiles
+):  # fmt: skip
     """:func:`walk` for each row of ``problems``; problem k owns rows ``first[k]`` to ``first[k + 1]`` of all others.
 
-    Tubes that vary share one ``course`` (segments, pieces, 3, 4) with ``places`` (segments + 1,), in radii, where the
-    segments meet: one of them is the middle. A course without segments stands for tubes that are the same all along,
-    half of each solved. ``edges`` (segments + 1,) are the nodes of the base mesh at those places. A walk that
-    does not converge there, where cells may be longer than an end layer, is walked again on a finer one.
+    Half of each tube is solved, on a base mesh of ``edges[-1]`` cells. A walk that does not converge there, where cells may
+    be longer than an end layer, is walked again on a finer one.
     """
-    varying = course.shape[0] > 0
-    space, cells = workspace(edges[len(edges) - 1], varying)
-    finer_space, finer_cells, has_finer = space, cells, False  # large: made where it is needed
-    own_course = course if varying else np.zeros((1, 1, 3, 4))
-    own_places = places.copy() if varying else np.zeros(2)
-    middle = edges[len(edges) - 1]
-    for k in range(len(own_places)):
-        if (
-            varying
-            and abs(own_places[k] - 0.5 * own_places[len(own_places) - 1]) < 1e-9 * own_places[len(own_places) - 1]
-        ):
-            middle = edges[k]
+    space, cells = workspace(edges[len(edges) - 1]), np.zeros((1, 3))
+    finer_space, has_finer = space, False  # large: made where it is needed
+    course, places = np.zeros((1, 1, 3, 4)), np.zeros(2)
     for k in range(len(problems)):
-        if not varying:
-            own_places[1] = 0.5 * problems[k, LENGTH]
-            for i in range(3):
-                own_course[0, 0, i, 0] = problems[k, i]
+        places[1] = 0.5 * problems[k, LENGTH]
+        for i in range(3):
+            course[0, 0, i, 0] = problems[k, i]
         own = slice(first[k], first[k + 1])
         if not np.any(status[own] == PENDING):
-            limits[k] = np.nan
+            limits[k, 0], limits[k, 1] = np.nan, np.nan
             continue
         for factor in (1, FINER):
             if factor == FINER and not has_finer:
-                finer_space, finer_cells = workspace(FINER * edges[len(edges) - 1], varying)
-                has_finer = True
-            own_space, own_cells = (space, cells) if factor == 1 else (finer_space, finer_cells)
-            tube = (own_course, factor * edges, own_cells, not varying, factor * middle, own_places)
+                finer_space, has_finer = workspace(FINER * edges[len(edges) - 1]), True
+            own_space = space if factor == 1 else finer_space
+            tube = (course, factor * edges, cells, True, factor * edges[len(edges) - 1], places)
             walk(
                 problems[k], tube, pressures[own], accuracy, own_space, values[own], bounds[own], status[own], slack[own],
                 limits[k], stations, profiles[own],
             )  # fmt: skip
             if factor == FINER or not np.any((status[own] == NOT_CONVERGED) | (status[own] == INACCURATE)):
                 break
-            status[own] = PENDING  # all of it again
+            for i in range(first[k], first[k + 1]):
+                status[i] = PENDING  # all of it again

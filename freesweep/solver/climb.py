@@ -60,8 +60,7 @@ def hops(middle, other, tube, start, end):
     """Whether a step of a tube that is the same all along, its ends far, may have passed over a small snap of the uniform
     tube, which its middle follows.
     """
-    varying = tube[0].shape[0] > 1 or tube[0].shape[1] > 1
-    if varying or abs(other - middle) < uniform.SCAN * middle:
+    if abs(other - middle) < uniform.SCAN * middle:
         return False
     cell, half = at_point(tube[0], 0, 0.0), tube[5][1]
     for y in (middle, other):

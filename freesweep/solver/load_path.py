@@ -10,6 +10,8 @@ extension in their own units, so that neither turns or swells a tube that has no
 pulled needs none: the weight is hung on first.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .branch import FORCE, GAMMA, TORQUE
@@ -25,3 +27,28 @@ def settling_pressure(problems) -> np.ndarray:
     return np.maximum.reduce(
         [2.0 * np.maximum(-problems[:, FORCE], 0.0), np.abs(problems[:, TORQUE]), problems[:, GAMMA] ** 2 - 1.0]
     )
+
+
+class Legs(NamedTuple):
+    """Walks of one direction of pressure each: two of a loaded problem, up and down from its settled state."""
+
+    owners: np.ndarray  # (walks,) the problem of each
+    upward: np.ndarray  # (walks,) of bool
+    first: np.ndarray  # (walks + 1,)
+    pressures: np.ndarray  # (steps,) on the way, the settled state's first
+    rows: np.ndarray  # (steps,) which state that is; -1 for a settled state, which nobody asked for
+
+
+def legs(problems, first, pressures) -> Legs:
+    """Split states, problem k's from ``first[k]`` to ``first[k + 1]`` at ascending ``pressures``, into walks."""
+    loaded, settled = is_loaded(problems), settling_pressure(problems)
+    owners = np.repeat(np.arange(len(problems)), np.diff(first))
+    falls = loaded[owners] & (pressures < settled[owners])
+    walks, index = np.unique(2 * owners + falls, return_inverse=True)
+    hidden = np.flatnonzero(loaded[walks // 2])
+    walk = np.concatenate([index, hidden])
+    pressure = np.concatenate([pressures, settled[walks[hidden] // 2]])
+    rows = np.concatenate([np.arange(len(pressures)), np.full(len(hidden), -1)])
+    order = np.lexsort((rows, np.where(walks[walk] % 2, -pressure, pressure), walk))
+    starts = np.searchsorted(walk[order], np.arange(len(walks) + 1))
+    return Legs(walks // 2, walks % 2 == 0, starts, pressure[order], rows[order])

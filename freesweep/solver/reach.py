@@ -23,7 +23,6 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
     flat, shapes, lost = NEARLY_FLAT, space[4], NOT_CONVERGED
     for i in range(len(x)):
         shapes[4, i], shapes[5, i] = last_x[i], last_y[i]
-    alike = len(u) == 1  # all along
     if reached < 1.0:
         way = SLOW
     elif not started:
@@ -56,8 +55,6 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 status = OK if part > 0.0 else NOT_CONVERGED
             if status == OK and start[0] != load[0]:
                 status, _ = creep(x, y, tube, start, load, work)
-                if status == BEYOND_LIMIT and not alike:
-                    return status, 0, np.nan, np.nan
                 if status == BEYOND_LIMIT:  # steps may die out for another reason: the tracer decides, if it can
                     lost, status = BEYOND_LIMIT, NOT_CONVERGED
             elif status == OK:
@@ -67,7 +64,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 regrades = 0  # close to a turning point no other mesh is safe
                 direction = (0.0, 0.0, 0.0, load[3] - start[3], load[4] - start[4], load[5] - start[5], 0.0)
                 graded_for_turning(x, y, len(x) - 1, tube, start, direction, mu, work)
-            elif status == NOT_CONVERGED and alike:
+            elif status == NOT_CONVERGED:
                 break
             elif status != OK:
                 return status, 0, np.nan, np.nan
@@ -83,7 +80,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
         for k in range(nested.OUTPUTS):
             out[1, k] *= caution
         solved = status == newton.CONVERGED or status == nested.UNREACHED
-        if status == nested.UNREACHED and way < STEEP and alike:
+        if status == nested.UNREACHED and way < STEEP:
             way = STEEP
             continue
         if goal == nested.TURNING_POINT:
@@ -111,7 +108,7 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 found = abs(y[tube[4]] / last_y[tube[4]] - 1.0) < 3.0 * CLIMB_CHANGE
             if found:
                 status = OK if status == newton.CONVERGED else INACCURATE
-                if alike and way >= STEEP:
+                if way >= STEEP:
                     status, doublings = quadrature.sharpen(
                         x, y, tube, u[0] if guided else np.nan, load, accuracy, fine, space[3], table, out, status,
                         doublings,
@@ -119,7 +116,5 @@ def reach(x, y, last_x, last_y, middle, u, scratch, reached, started, tube, befo
                 return status, doublings, np.nan, np.nan
         if way >= SLOW:
             break
-        way = INTEGRATED if way == STEEP else COLD if way == WARM else STEEP if alike else SLOW
-    if not alike:
-        return NOT_CONVERGED, 0, np.nan, np.nan
+        way = INTEGRATED if way == STEEP else COLD if way == WARM else STEEP
     return retrace.retrace(x, y, middle, lost, tube, before, load, accuracy, space, out)
