@@ -7,7 +7,7 @@ import numpy as np
 from .atlas.schema import VARIABLES, YEOH
 from .first_integral import folded, held
 from .first_integral.tube import NO_GUIDE, OUTPUTS, SOLVED, cylinders, solve
-from .first_integral.uniform import Tubes, follow
+from .first_integral.uniform import Tubes, follow, to_corner
 from .status import VALUED
 
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "c10", "c01", "force", "torque")
@@ -71,7 +71,6 @@ class _Points:
         self.column = {name: self.stored(name) for name in (*DESIGN, "pressure")}
         self.column |= {name: self.stored(name) if name in data else np.zeros(self.count) for name in YEOH}
         self.radius = self.stored("fiber_radius") if "fiber_radius" in data else self.column["radius"]
-        self.first = self._first_pressures(status)
 
     def stored(self, name):
         """Numbers of a variable at the points (n,)."""
@@ -84,17 +83,6 @@ class _Points:
             mine = at[0] == row
             numbers[mine] = variable[int(row)].values[tuple(index[mine] for index in at[1:])]
         return numbers
-
-    def _first_pressures(self, status):
-        """The smallest pressure with a result of each point's design: up to it, loads rise in proportion."""
-        if "pressure" not in self.dims:
-            return self.column["pressure"]
-        pressures = self.data["pressure"].values
-        place = tuple(self.index[name] for name in self.dims if name != "pressure")
-        rows = np.moveaxis(status, self.dims.index("pressure"), -1)[place]
-        loaded = (self.column["force"] != 0.0) | (self.column["torque"] != 0.0)
-        there = np.isin(rows, VALUED) & ((pressures > 0.0) | loaded[:, None])
-        return np.where(there.any(axis=1), pressures[np.argmax(there, axis=1)], self.column["pressure"])
 
     def tubes(self, locked=False, **changes):
         """The points' dimensionless problems."""
@@ -119,7 +107,7 @@ class _Points:
 def _free(points, notes):
     """Equilibria under the points' loads; of those past the uniform tube's turn, beginning at the stored middle."""
     tubes = points.tubes()
-    judged = solve(tubes, points.first / points.column["c10"])
+    judged = solve(tubes)
     values, errors, reason = judged
     rest = (tubes.pressure == 0.0) & (tubes.force == 0.0) & (tubes.torque == 0.0)
     values[rest], errors[rest], reason[rest] = (
@@ -138,7 +126,7 @@ def _free(points, notes):
 
 
 def _locked(points):
-    return solve(points.tubes(locked=True), np.ones(points.count))[:2]
+    return solve(points.tubes(locked=True))[:2]
 
 
 def _shapes(points, prefix, values, errors):
@@ -158,12 +146,8 @@ def _limits(points):
     value = np.full(points.count, np.nan)
     tubes = points.tubes()
     if (some := np.flatnonzero(np.isfinite(near))).size:
-        tubes, first = tubes.at(some), (points.first / points.column["c10"])[some]
-        nothing = np.zeros(some.size)
-        rest = tubes._replace(gamma=nothing + 1.0, pressure=nothing, force=nothing, torque=nothing)
-        alone = (tubes.force == 0.0) & (tubes.torque == 0.0) & (tubes.gamma == 1.0)
-        corner = tubes._replace(pressure=np.where(alone, 0.0, np.minimum(first, near[some])))
-        u, _ = follow(nothing + 1.0, rest, corner)
+        tubes = tubes.at(some)
+        corner, u, _ = to_corner(tubes)
         beyond = tubes._replace(pressure=1.5 * near[some])
         turning, t = follow(u, corner, beyond)
         value[some] = folded.limit_pressures(tubes, turning, corner.toward(beyond, t).pressure, near[some])

@@ -472,11 +472,11 @@ def _stretch(quadrature, folds, edges, from_end, x, half):
 
 def first_integral(
     alpha, beta, length_over_radius, wall_ratio_area_a, c_ratio, p, f=0.0, m=0.0, gamma=1.0, energy="full",
-    stations=(), first_pressure=None,
+    stations=(),
 ):  # fmt: skip
     """The equilibrium on the branch from the undeformed cylinder, by quadrature.
 
-    The loads and gamma - 1 rise in proportion up to ``first_pressure`` (None: ``p``), then the pressure alone; p =
+    The loads and gamma - 1 rise in proportion until they have :func:`settled`, then the pressure alone changes; p =
     infinity is the locked shape, y^2 G/s = c. Stations are distances from one end in radii. Where the uniform tube
     folds the clamped tube is followed itself; NoState (with the pressure reached) where that folds too.
     """
@@ -489,10 +489,11 @@ def first_integral(
             raise NoState("the end is not under meridional tension")
         values = parameters(*given, p, f, m, gamma, energy)
         try:
-            u = _uniform_of(*given, p if first_pressure is None else first_pressure, p, f, m, gamma, energy)
+            u = _uniform_of(*given, settled(p, f, m, gamma), p, f, m, gamma, energy)
         except NoState:
-            legs = [parameters(*given, *load, energy) for load in ((0, 0, 0, 1.0), (first_pressure or p, f, m, gamma))]
-            legs += [values] if (first_pressure or p) != p else []
+            first = settled(p, f, m, gamma)
+            legs = [parameters(*given, *load, energy) for load in ((0, 0, 0, 1.0), (first, f, m, gamma))]
+            legs += [values] if first != p else []
             y_m, u = _follow_tube(legs, 0.5 * length_over_radius)
             if u is not None:
                 return _solve(values, u, 0.5 * length_over_radius, stations)
@@ -501,9 +502,15 @@ def first_integral(
     return _solve(values, u, 0.5 * length_over_radius, stations)
 
 
+def settled(p, f, m, gamma):
+    """The pressure at which loads and fiber extension are at their full size (theory, section 7); ``p`` without any."""
+    loaded = f != 0 or m != 0 or gamma != 1
+    return max(2 * max(-f, 0.0), abs(m), gamma**2 - 1) if loaded else p
+
+
 def uniform_stretch(alpha, beta, area, ratio, p, f=0.0, m=0.0, gamma=1.0, energy="full"):
-    """Stretch of the uniform tube, all loads raised in proportion."""
-    return float(_uniform_of(alpha, beta, area, ratio, p, p, f, m, gamma, energy))
+    """Stretch of the uniform tube on its one path of loads."""
+    return float(_uniform_of(alpha, beta, area, ratio, settled(p, f, m, gamma), p, f, m, gamma, energy))
 
 
 @lru_cache(maxsize=256)

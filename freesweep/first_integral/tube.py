@@ -117,12 +117,9 @@ def cylinders(tubes):
     return np.column_stack([*(2.0 * tubes.half * part for part in (s, s, psi, tubes.area * w)), np.ones(len(s))])
 
 
-def solve(tubes, first_pressure) -> Judged:
-    """Equilibria on the branch from the undeformed cylinder, and an estimate of this method's own errors.
-
-    ``first_pressure`` (n,): up to it all loads and gamma - 1 rise in proportion, then the pressure alone.
-    """
-    u, carried = stretch(tubes, first_pressure)
+def solve(tubes) -> Judged:
+    """Equilibria on the branch from the undeformed cylinder, and an estimate of this method's own errors."""
+    u, carried = stretch(tubes)
     return solve_beside(tubes, np.where(carried, u, np.nan))
 
 

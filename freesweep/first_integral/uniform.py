@@ -120,11 +120,32 @@ def follow(u, start, end):
     return u, t
 
 
-def stretch(tubes, first_pressure):
+def settled(tubes):
+    """``(rest, corner)``: the tubes without loads, and with all of them at the pressure at which they have settled; of a tube
+    without loads and extension both are at rest.
+
+    That pressure is the largest of twice an axial compression, the torque and gamma^2 - 1.
+    """
+    nothing = np.zeros(len(tubes.half))
+    rest = tubes._replace(gamma=nothing + 1.0, pressure=nothing, force=nothing, torque=nothing)
+    pressure = np.maximum(np.maximum(2.0 * np.maximum(-tubes.force, 0.0), np.abs(tubes.torque)), tubes.gamma**2 - 1.0)
+    return rest, tubes._replace(pressure=pressure)
+
+
+def to_corner(tubes):
+    """``(corner, q, carried)``: where the pressure alone begins to change, and the stationary q there, if it is met."""
+    rest, corner = settled(tubes)
+    u, t = np.ones(len(tubes.half)), np.ones(len(tubes.half))
+    if (loaded := np.flatnonzero((tubes.force != 0.0) | (tubes.torque != 0.0) | (tubes.gamma != 1.0))).size:
+        u[loaded], t[loaded] = follow(u[loaded], rest.at(loaded), corner.at(loaded))
+    return corner, u, t == 1.0
+
+
+def stretch(tubes):
     """The stationary q = y^2 of uniform tubes on the branch from the undeformed cylinder; ``(u, carried)``.
 
-    Loads and gamma - 1 rise in proportion up to ``first_pressure`` (n,), then the pressure alone. Locked tubes, of weight
-    0, have a closed form (Eq. 2.12).
+    Loads and gamma - 1 rise in proportion until they have :func:`settled`, then the pressure alone changes. Locked tubes,
+    of weight 0, have a closed form (Eq. 2.12).
     """
     gg = tubes.gamma**2
     A = gg * (1.0 + tubes.H**2 + tubes.D**2)
@@ -132,10 +153,7 @@ def stretch(tubes, first_pressure):
     carried = np.ones(len(u), bool)
     if (walk := np.flatnonzero(tubes.weight > 0.0)).size:
         end = tubes.at(walk)
-        nothing = np.zeros(walk.size)
-        rest = end._replace(gamma=nothing + 1.0, pressure=nothing, force=nothing, torque=nothing)
-        corner = end._replace(pressure=np.minimum(first_pressure[walk], end.pressure))
-        u[walk], there = follow(nothing + 1.0, rest, corner)
+        corner, u[walk], there = to_corner(end)
         u[walk], further = follow(u[walk], corner, end)
-        carried[walk] = (there == 1.0) & (further == 1.0)
+        carried[walk] = there & (further == 1.0)
     return u, carried
