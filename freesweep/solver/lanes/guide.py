@@ -1,12 +1,13 @@
 """The uniform tube of :mod:`freesweep.solver.uniform` as a guide, for a vector of designs.
 
-L_y and L_yy are linear in pressure, force and torque: their values at the two ends of a path give them all along it.
+L_y and L_yy are linear in pressure, force and torque: their values at the two ends of a path give them all along it. Where
+the fibers' extension changes, Newton's method finds the place on it.
 """
 
 from ...jit import kernel
 from .. import lagrangian
 from ..guide import FAR_FROM, STRAY
-from ..uniform import DRAWN_IN, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, between
+from ..uniform import BENDS, DRAWN_IN, FAR, ITERATIONS, LARGEST_CHANGE, PROBE, SCAN, between
 from .vector import HUGE, get, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
@@ -20,6 +21,7 @@ def scan(u, change, samples, cell, start, end, half, asked):
     """Where the load rises at all so many ``samples`` of the way, and between them; its smallest and largest slope."""
     risen, least, most = asked, spread(HUGE), spread(0.0)
     first, second = spread(0.0), spread(0.0)
+    bent = asked & (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
     ahead = select(change > 0.0, spread(1.0), spread(-1.0))
     i = 0
     while True:
@@ -31,8 +33,16 @@ def scan(u, change, samples, cell, start, end, half, asked):
         _, end_y, _, end_yy, _, end_vv = lagrangian.density(here, 0.0, cell, end)
         drive = end_y - L_y
         t = -L_y / drive
-        far = (L_yy + t * (end_yy - L_yy)) * half * half < FAR * FAR * (L_vv + t * (end_vv - L_vv))
-        slope = -(L_yy - L_y / drive * (end_yy - L_yy)) / drive * ahead
+        L_yy, L_vv = L_yy + t * (end_yy - L_yy), L_vv + t * (end_vv - L_vv)
+        if some(bent):
+            for _ in range(BENDS):
+                _, here_y, _, here_yy, _, here_vv = lagrangian.density(here, 0.0, cell, between(start, end, t))
+                there_y = lagrangian.density(here, 0.0, cell, between(start, end, t + PROBE))[1]
+                drive = select(bent, (there_y - here_y) / PROBE, drive)
+                L_yy, L_vv = select(bent, here_yy, L_yy), select(bent, here_vv, L_vv)
+                t = select(bent, t - here_y / drive, t)
+        far = L_yy * half * half < FAR * FAR * L_vv
+        slope = -L_yy / drive * ahead
         risen = risen & (~within | ((far | (here > 1.0 - DRAWN_IN)) & (slope > 0.0)))
         if i >= 2:
             dips = within & (second < first) & (second < slope)
@@ -51,7 +61,7 @@ def rising(u, trial, cell, start, end, half, asked):
     slope hardly changes, which leaves no room for a dip, and the tube is not drawn in.
     """
     change = trial - u
-    still = (abs(change) < 1e-9 * u) | (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
+    still = abs(change) < 1e-9 * u
     asked = asked & ~still
     size = abs(change) / min(u, trial)
     risen, least, most = scan(u, change, max(1.0 + size / GLANCE, 2.0), cell, start, end, half, asked)
