@@ -1,4 +1,4 @@
-"""Tubes that vary stay on the branch from rest: an independent continuation is the judge, and no list of pressures matters."""
+"""Tubes that vary stay on the branch from rest: an independent continuation is the judge, and no list matters."""
 
 import warnings
 
@@ -46,8 +46,8 @@ def test_no_list_of_pressures_leads_through_a_snap(tube, pressure, limit, count)
 
 
 def test_states_just_below_a_limit_are_solved_and_just_above_are_not():
-    """Within 1e-4 to 1e-7 of the fold, where a mesh of its own may have none: status by the located fold, values of the branch,
-    whose rotation falls as the root of what is left.
+    """Within 1e-3 to 1e-7 of the fold, where a mesh may have no state: the status is told by the located fold, the values
+    are the branch's, whose rotation falls as the root of what is left.
     """
     tube = stepped(80, 71, 0.7, 31, 6, 0.07, 0.1)
     at_once = inflated(tube, 0.12)

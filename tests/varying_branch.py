@@ -1,10 +1,12 @@
 """The branch of a free tube that varies, by someone else: nothing here shares code with freesweep.
 
-Second-order midpoint cells on one fixed mesh, SymPy's derivatives of the density, arclength continuation in small steps with
-SciPy's sparse LU of the whole bordered matrix. Good to about 1e-3: it tells which branch a state lies on, and where that ends.
+Second-order midpoint cells on one fixed mesh, SymPy's derivatives of the density, arclength continuation in small steps
+with SciPy's sparse LU of the whole bordered matrix. Good to about 1e-3: it tells which branch a state lies on, and where
+that ends.
 """
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import sympy as sp
@@ -30,7 +32,7 @@ def mesh(breaks):
     """Nodes dense at both ends of each segment."""
     share = 0.5 * (1.0 - np.cos(np.pi * np.arange(CELLS + 1) / CELLS))
     share = 0.5 * (1.0 - np.cos(np.pi * share))
-    parts = [a + (b - a) * share for a, b in zip(breaks[:-1], breaks[1:])]
+    parts = [a + (b - a) * share for a, b in pairwise(breaks)]
     return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
 
 
@@ -124,7 +126,7 @@ class Branch:
             cosine = np.mean(tangent[:-1] * self.tangent[:-1]) + tangent[-1] * self.tangent[-1]
             if cosine < STRAIGHT:
                 return False
-        before = None if self.tangent is None else (self.mu, self.tangent[-1])
+        before = None if self.tangent is None else self.mu
         self.y, self.mu, self.tangent = y, mu, tangent
         self.note(beside, before)
         return True
@@ -135,8 +137,7 @@ class Branch:
     def note(self, beside, before):
         diagonal, off, length, rotation = beside
         if negative_pivots(diagonal, off):
-            a, b = before if before else (self.mu, 1.0)
-            self.fold = max(a, self.mu)
+            self.fold = self.mu if before is None else max(before, self.mu)
         else:
             self.states.append((self.mu, length, rotation))
 

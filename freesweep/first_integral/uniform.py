@@ -121,8 +121,7 @@ def follow(u, start, end):
 
 
 def settled(tubes):
-    """``(rest, corner)``: the tubes without loads, and with all of them at the pressure at which they have settled; of a tube
-    without loads and extension both are at rest.
+    """``(rest, corner)``: the tubes without loads, and with all of them at the pressure at which they have settled.
 
     That pressure is the largest of twice an axial compression, the torque and gamma^2 - 1.
     """
