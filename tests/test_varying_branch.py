@@ -136,11 +136,8 @@ def verdict(tube, p, f, m):
     if state is not None:
         return f"no limit up to {p}"
     limit = found["limit_pressure"].item() / C10
-    return (
-        ""
-        if not limit == limit or not fold == fold or limit == pytest.approx(fold, rel=1e-2)
-        else f"{limit} for {fold}"
-    )
+    known = np.isfinite(limit) and np.isfinite(fold)
+    return f"{limit} for {fold}" if known and limit != pytest.approx(fold, rel=1e-2) else ""
 
 
 def by_list(tube, p, f, m):
