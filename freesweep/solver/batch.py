@@ -7,7 +7,7 @@ from numba import config
 
 from ..interpret import at_once
 from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, walk_many
-from .load_path import is_loaded, legs, settling_pressure
+from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
 from .profile import FIELDS
 from .status import OK, PENDING
 from .varying.free_states import follow_many
@@ -27,6 +27,9 @@ class Walks(NamedTuple):
     profiles: np.ndarray
 
 
+STATES = tuple(name for name in Walks._fields if name != "limits")
+
+
 def uniform(cells):
     """``(course, edges, places)`` of tubes that are the same all along, on a base mesh of ``cells``."""
     return np.empty((0, 1, 3, 4)), np.array([0, cells]), np.zeros(2)
@@ -40,27 +43,33 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     found = _nothing(len(problems), len(pressures), stations)
+    pressures, limp = next_to_nothing(problems, first, pressures)
+    _follow(problems, first, pressures, tube, accuracy, stations, lanes, soon, found)
+    found.bounds[limp] += MISSED * np.abs(found.values[limp])
+    return found
+
+
+def _follow(problems, first, pressures, tube, accuracy, stations, lanes, soon, found):
+    """Walk each problem along its path of loads, into what is ``found``."""
     if len(tube[0]) > 0:
         arguments = (
             problems, settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
         )  # fmt: skip
         if not (soon and at_once(len(pressures), follow_many, follow_many, *arguments)):
             follow_many(*arguments)
-        return found
+        return
     if not np.any(is_loaded(problems)):
         _walk(problems, first, pressures, np.zeros(len(pressures), bool), tube, accuracy, stations, lanes, soon, found)
-        return found
+        return
     own = legs(problems, first, pressures)
     on_the_way = _nothing(len(own.owners), len(own.pressures), stations)
     _walk(
         problems[own.owners], own.first, own.pressures, own.rows < 0, tube, accuracy, stations, lanes, soon, on_the_way
     )
     asked = own.rows >= 0
-    for all_found, here in zip(found, on_the_way):
-        if len(here) == len(asked):
-            all_found[own.rows[asked]] = here[asked]
+    for name in STATES:
+        getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
     found.limits[own.owners[own.upward]] = on_the_way.limits[own.upward]
-    return found
 
 
 def _nothing(problems, states, stations):

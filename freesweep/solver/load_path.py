@@ -29,6 +29,22 @@ def settling_pressure(problems) -> np.ndarray:
     )
 
 
+NEXT_TO_NOTHING = 1e-14  # of the torque: a pressure for none
+MISSED = 1e-7  # of every output: what that changes, a layer at each clamped end as wide as its root
+
+
+def next_to_nothing(problems, first, pressures):
+    """``(pressures, replaced)``: a tube that only torque works on is limp, its end layers have no length. Its state is the
+    limit of falling pressures, and solved at one that is next to nothing.
+    """
+    only_torque = (problems[:, FORCE] == 0.0) & (problems[:, TORQUE] != 0.0)
+    if not np.any(only_torque):
+        return pressures, np.zeros(len(pressures), bool)
+    owners = np.repeat(np.arange(len(problems)), np.diff(first))
+    replaced = only_torque[owners] & (pressures == 0.0)
+    return np.where(replaced, NEXT_TO_NOTHING * np.abs(problems[owners, TORQUE]), pressures), replaced
+
+
 class Legs(NamedTuple):
     """Walks of one direction of pressure each: two of a loaded problem, up and down from its settled state."""
 
