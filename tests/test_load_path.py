@@ -27,7 +27,7 @@ def test_the_settling_pressure_is_that_of_the_theory():
 
 
 def test_legs_rise_and_fall_from_the_settled_state():
-    """A loaded tube's pressures go up and down from it, an unloaded one's stay a list, a locked state goes with the rising."""
+    """A loaded tube's pressures go up and down from it, an unloaded one's stay a list; a locked state rises."""
     given = problems(f=[0.0, -0.5], m=[0.0, 0.0])
     first, pressures = np.array([0, 2, 6]), np.array([0.5, 2.0, 0.6, 0.8, 3.0, np.inf])
     found = legs(given, first, pressures)

@@ -1,4 +1,4 @@
-"""Many designs at once: vectors of designs go the quick way, the scalar walk goes on where that ends."""
+"""Many designs at once: vectors go the quick way, once more on a finer mesh; the scalar walk goes on where that ends."""
 
 from typing import NamedTuple
 
@@ -14,6 +14,7 @@ from .varying.free_states import follow_many
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
 NOTHING = np.empty(0)
+FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
 class Walks(NamedTuple):
@@ -92,18 +93,19 @@ def _walk(problems, first, pressures, passing, tube, accuracy, stations, lanes, 
         steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
         owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
         stretches, cosines = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
+        drawn = (stations, found.profiles) if len(stations) else (None, None)
         for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
             if not np.any(some):
                 continue
             carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
             carried = some[owners] & (found.status == PENDING) & np.isfinite(stretches)
             found.status[carried & passing] = OK  # to be solved only where a scalar walk begins there
-            rows = np.flatnonzero(carried & ~passing)
-            alike = np.argsort(_steepness(cosines[rows]), kind="stable")
-            solve_lanes(
-                problems, owners, pressures, stretches, rows[alike], constants, int(tube[1][-1]), accuracy, *found[:4],
-                stations, found.profiles,
-            )  # fmt: skip
+            for cells in (int(tube[1][-1]), FINER * int(tube[1][-1])):
+                rows = np.flatnonzero(carried & (found.status == PENDING))
+                alike = np.argsort(_steepness(cosines[rows]), kind="stable")
+                solve_lanes(
+                    problems, owners, pressures, stretches, rows[alike], constants, cells, accuracy, *found[:4], *drawn
+                )
         if not np.any(found.status == PENDING):
             return
     if not (soon and at_once(len(pressures), walk_many, walk_many, *scalar)):

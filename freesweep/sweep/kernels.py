@@ -103,9 +103,7 @@ def compile_idle(words):
                 None,
             )  # fmt: skip
         if "seek_lanes" in words:
-            seek_lanes(
-                problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four
-            )
+            seek_lanes(problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four)
     if "query" in words:
         from ..query.idle import compile_kernels
 
