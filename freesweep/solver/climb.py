@@ -67,7 +67,7 @@ def hops(middle, other, tube, start, end):
         _, L_yy, L_vv = uniform.slope_at(lagrangian.density, y, 1.0, cell, start, end)
         if not uniform.is_far(L_yy, L_vv, half):
             return False
-    return uniform.dips(lagrangian.density, middle, other, cell, start, end, half)
+    return uniform.dips(lagrangian.density, middle, other, cell, start, end, half, lagrangian.drawn_in(cell, end))
 
 
 @kernel

@@ -33,7 +33,8 @@ def follow(tube, u, before, load, ahead):
     reached, half = 1.0, (1.0 if tube[3] else 0.5) * places[len(places) - 1]
     for k in range(len(u)):
         cell = cell_along(tube, k / max(len(u) - 1, 1))
-        ahead[k], part = uniform.follow(lagrangian.density, u[k], cell, before, load, half)
+        drawn = lagrangian.drawn_in(cell, load)
+        ahead[k], part = uniform.follow(lagrangian.density, u[k], cell, before, load, half, drawn)
         reached = min(reached, part)
     return reached
 
@@ -103,9 +104,11 @@ def strays(y, u, middle, tube, load):
     """
     if len(u) > 1:
         return False  # neighbouring places pull a shape beyond what each would do alone
-    if u[0] < 1.0 - uniform.DRAWN_IN and middle - u[0] > FAR_FROM * (1.0 - u[0]):
-        _, _, _, L_yy, _, L_vv = lagrangian.density(u[0], 0.0, cell_along(tube, 0.5), load)
-        if not uniform.may_let_go(u[0], L_yy, L_vv, (1.0 if tube[3] else 0.5) * tube[5][len(tube[5]) - 1]):
+    cell = cell_along(tube, 0.5)
+    drawn = lagrangian.drawn_in(cell, load)
+    if u[0] < drawn and middle - u[0] > FAR_FROM * (1.0 - u[0]):
+        _, _, _, L_yy, _, L_vv = lagrangian.density(u[0], 0.0, cell, load)
+        if not uniform.may_let_go(u[0], L_yy, L_vv, (1.0 if tube[3] else 0.5) * tube[5][len(tube[5]) - 1], drawn):
             return True
     slack = STRAY * abs(u[0] - 1.0) + 1e-6
     low, high = min(1.0, u[0]) - slack, max(1.0, u[0]) + slack

@@ -32,6 +32,7 @@ from math import sqrt
 
 from ..jit import kernel
 
+DRAWN_IN = 0.05  # share of radius or length
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative: the state is refused, its numbers stay finite
 LAST_STEP = 10.0  # share of Newton's tolerance in every error bound
 ROUNDING = 2e-13  # relative floor of every error bound
@@ -173,6 +174,17 @@ def longest(cell, gamma):
     """The largest meridional stretch that the fibers allow, whatever pulls: G at y^2 = gamma^2 |H/D| (Eqs. 2.3, 2.4)."""
     apart = abs(cell[0]) - abs(cell[1])
     return gamma * sqrt(1.0 + apart * apart)
+
+
+@kernel
+def drawn_in(cell, load):
+    """The stretch below 1 from which a tube counts as drawn in: DRAWN_IN of its radius, and under force or torque as soon as
+    its length has changed by that share.
+    """
+    size = abs(load[4]) + abs(load[5])
+    loaded = size / (size + NO_ROOM)  # 1, or 0
+    _, _, _, G_1, G_y, _ = kinematics(1.0, cell, load)
+    return 1.0 - DRAWN_IN * (1.0 + loaded * (min(2.0 * (1.0 + G_1) / abs(G_y), 1.0) - 1.0))
 
 
 @kernel

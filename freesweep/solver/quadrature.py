@@ -64,7 +64,7 @@ def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
     if layered:
         _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
         top, rate = u, sqrt(L_yy / L_vv)
-        if not traced and uniform.may_let_go(u, L_yy, L_vv, half):
+        if not traced and uniform.may_let_go(u, L_yy, L_vv, half, lagrangian.drawn_in(cell, load)):
             return NOT_CONVERGED, 0
     if not abs(top - 1.0) > STILL:
         return NOT_CONVERGED, 0

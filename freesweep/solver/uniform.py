@@ -12,7 +12,7 @@ LARGEST_CHANGE = 0.15  # relative change of the stretch in one step; a jump to a
 ITERATIONS = 12
 SCAN = 0.015  # relative change of the stretch between two looks at the slope
 BENDS, PROBE = 3, 1e-3  # of Newton's method on a way that is not linear; share of the way to see its slope
-DRAWN_IN, FAR = 0.05, 8.0  # 1 - u from which, end layers per half tube up to which, clamped ends may turn the tube back
+FAR = 8.0  # end layers per half tube, up to which clamped ends may turn back a tube that is drawn in
 
 
 @kernel
@@ -36,9 +36,11 @@ def is_far(L_yy, L_vv, half):
 
 
 @kernel
-def may_let_go(u, L_yy, L_vv, half):
-    """Whether half a tube of length ``half`` is drawn in so much, its clamped end so near, that this may turn it back."""
-    return u < 1.0 - DRAWN_IN and not is_far(L_yy, L_vv, half)
+def may_let_go(u, L_yy, L_vv, half, drawn):
+    """Whether half a tube of length ``half`` is drawn in, below the stretch ``drawn``, its clamped end so near that this may
+    turn it back.
+    """
+    return u < drawn and not is_far(L_yy, L_vv, half)
 
 
 @kernel
@@ -59,9 +61,10 @@ def slope_at(density, u, ahead, cell, start, end):
 
 
 @kernel
-def dips(density, u, trial, cell, start, end, half):
+def dips(density, u, trial, cell, start, end, half, drawn):
     """Whether the load falls somewhere on the way from ``u`` to ``trial``: a small snap would be passed over. Where half a
-    tube of length ``half`` is drawn in, its clamped end, which is not, may let go before: there the end has to be far.
+    tube of length ``half`` is drawn in, below ``drawn``, its clamped end, which is not, may let go before: there the end has
+    to be far.
 
     A dip of the slope below zero between samples shows in the parabola through three of them.
     """
@@ -70,7 +73,7 @@ def dips(density, u, trial, cell, start, end, half):
     for i in range(count + 1):
         here = u + (trial - u) * i / count
         slope, L_yy, L_vv = slope_at(density, here, ahead, cell, start, end)
-        if not slope > 0.0 or may_let_go(here, L_yy, L_vv, half):
+        if not slope > 0.0 or may_let_go(here, L_yy, L_vv, half, drawn):
             return True
         if i >= 2 and second < first and second < slope:
             bend = first - 2.0 * second + slope
@@ -81,13 +84,13 @@ def dips(density, u, trial, cell, start, end, half):
 
 
 @kernel
-def rising(density, u, trial, cell, start, end, half):
+def rising(density, u, trial, cell, start, end, half, drawn):
     """Whether the load rises all the way from ``u`` to ``trial``, as far as that can be told."""
-    return abs(trial - u) < 1e-9 * u or not dips(density, u, trial, cell, start, end, half)
+    return abs(trial - u) < 1e-9 * u or not dips(density, u, trial, cell, start, end, half, drawn)
 
 
 @kernel
-def follow(density, u, cell, start, end, half):
+def follow(density, u, cell, start, end, half, drawn):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the fraction reached (1: all)."""
     t, step = 0.0, FIRST_STEP
     by_load = start[0] == end[0]
@@ -107,9 +110,9 @@ def follow(density, u, cell, start, end, half):
                 arrived = True
                 break
             before = abs(change)
-        if by_load and arrived and ahead - t < FIRST_STEP and may_let_go(trial, L_yy, L_vv, half):
+        if by_load and arrived and ahead - t < FIRST_STEP and may_let_go(trial, L_yy, L_vv, half, drawn):
             break  # a smaller step would only creep on to here
-        if arrived and rising(density, u, trial, cell, start, end, half):
+        if arrived and rising(density, u, trial, cell, start, end, half, drawn):
             t, u, step = ahead, trial, 2.0 * step
         else:
             step *= 0.5

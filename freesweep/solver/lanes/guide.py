@@ -7,7 +7,7 @@ the fibers' extension changes, Newton's method finds the place on it.
 from ...jit import kernel
 from .. import lagrangian
 from ..guide import FAR_FROM, STRAY
-from ..uniform import BENDS, DRAWN_IN, FAR, ITERATIONS, LARGEST_CHANGE, PROBE, SCAN, between
+from ..uniform import BENDS, FAR, ITERATIONS, LARGEST_CHANGE, PROBE, SCAN, between
 from .vector import HUGE, get, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
@@ -21,6 +21,7 @@ def scan(u, change, samples, cell, start, end, half, asked):
     """Where the load rises at all so many ``samples`` of the way, and between them; its smallest and largest slope."""
     risen, least, most = asked, spread(HUGE), spread(0.0)
     first, second = spread(0.0), spread(0.0)
+    drawn = lagrangian.drawn_in(cell, end)
     bent = asked & (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
     ahead = select(change > 0.0, spread(1.0), spread(-1.0))
     i = 0
@@ -43,7 +44,7 @@ def scan(u, change, samples, cell, start, end, half, asked):
                 t = select(bent, t - here_y / drive, t)
         far = L_yy * half * half < FAR * FAR * L_vv
         slope = -L_yy / drive * ahead
-        risen = risen & (~within | ((far | (here > 1.0 - DRAWN_IN)) & (slope > 0.0)))
+        risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
         if i >= 2:
             dips = within & (second < first) & (second < slope)
             bend = first - 2.0 * second + slope
@@ -65,7 +66,7 @@ def rising(u, trial, cell, start, end, half, asked):
     asked = asked & ~still
     size = abs(change) / min(u, trial)
     risen, least, most = scan(u, change, max(1.0 + size / GLANCE, 2.0), cell, start, end, half, asked)
-    unsure = risen & ((least < EVEN * most) | (min(u, trial) < 1.0 - DRAWN_IN))
+    unsure = risen & ((least < EVEN * most) | (min(u, trial) < lagrangian.drawn_in(cell, end)))
     if some(unsure):
         risen_all, _, _ = scan(u, change, 2.0 + size / SCAN, cell, start, end, half, unsure)
         risen = risen & (~unsure | risen_all)
@@ -110,7 +111,7 @@ def within(y, n, u, cell, load, half):
     for i in range(n + 1):
         low, high = min(low, get(y, i)), max(high, get(y, i))
     kept = (min(u, 1.0) - slack <= low) & (high <= max(u, 1.0) + slack)
-    missed = kept & (u < 1.0 - DRAWN_IN) & (get(y, n) - u > FAR_FROM * (1.0 - u))
+    missed = kept & (u < lagrangian.drawn_in(cell, load)) & (get(y, n) - u > FAR_FROM * (1.0 - u))
     if some(missed):
         _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
         kept = kept & ~(missed & (L_yy * half * half < FAR * FAR * L_vv))
