@@ -26,7 +26,7 @@ LOAD_SHARE = 0.1  # weight of a relative change of the load against one of y: it
 CHANGE = 0.05  # largest change of y in one step, relative, and of the load, weighted
 FIRST_STEP = 0.2  # of that: nothing is known of the bend yet
 LEAST_STEP = 1e-7  # below it the branch is lost
-DEFECT = 0.05  # of the larger of two slopes: by which a chord may differ from their mean
+DEFECT = 0.03  # of the larger of two slopes: by which a chord may differ from their mean
 GROWTH = 1.6  # of the step where the defect is small
 ROUNDING = 1e-9  # relative: a defect that is none
 CORRECTIONS = 12  # of Newton's method; three suffice where a step is taken
@@ -85,7 +85,7 @@ def load_slope(density, x, y, n, cells, path, mu, b):
 
 @kernel
 def correct(density, x, y, mu, n, cells, path, normal, normal_mu, tangent, work):
-    """Newton's method on the plane through (y, mu), y in place; ``tangent`` takes the branch's, on the normal's side.
+    """Newton's method on the plane through (y, mu), y in place; ``tangent`` takes the branch's, of length 1 on the normal.
 
     Returns ``(status, negative pivots of H, mu, the tangent's mu)``.
     """
@@ -118,17 +118,25 @@ def correct(density, x, y, mu, n, cells, path, normal, normal_mu, tangent, work)
         if not size < 1.0:
             return LOST, 0, mu, 0.0
         if size < CORRECTED or (size < STUCK and size >= 0.5 * last):
-            unit = size_of(mu, path)
-            square = 1.0 / (unit * unit)
-            for i in range(1, n):
-                square += response[i] * response[i] / (n * y[i] * y[i])
-            scale = (1.0 if by_load > 0.0 else -1.0) / np.sqrt(square)
             tangent[0] = tangent[n] = 0.0
             for i in range(1, n):
-                tangent[i] = -response[i] * scale
-            return FOLLOWED, negative, mu, scale
+                tangent[i] = -response[i] / by_load
+            return FOLLOWED, negative, mu, 1.0 / by_load
         last = size
     return LOST, 0, mu, 0.0
+
+
+@kernel
+def make_unit(y, tangent, n, mu, tangent_mu, path):
+    """Let a tangent have length 1; its mu."""
+    part = tangent_mu / size_of(mu, path)
+    square = part * part
+    for i in range(1, n):
+        square += tangent[i] * tangent[i] / (n * y[i] * y[i])
+    scale = 1.0 / np.sqrt(square)
+    for i in range(1, n):
+        tangent[i] *= scale
+    return scale * tangent_mu
 
 
 @kernel

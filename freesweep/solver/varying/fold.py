@@ -17,6 +17,7 @@ from ..continuation import (
     correct,
     is_stable,
     last_alike,
+    make_unit,
     size_of,
 )
 from ..course import fill
@@ -57,6 +58,7 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
         lagrangian.density, track.x, track.y, mu, n, cells, path, track.normal, tangent_mu / (unit * unit), track.tangent,
         work,
     )  # fmt: skip
+    tangent_mu = make_unit(track.y, track.tangent, n, mu, tangent_mu, path)
     stable = is_stable(negative, tangent_mu, sense)
     if not stable:  # turn round
         sense, tangent_mu = -sense, -tangent_mu
@@ -70,9 +72,9 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
         )
         if status == FOLLOWED and is_stable(negative, next_tangent_mu, sense) != stable:
             return last_alike(lagrangian.density, track, n, cells, path, mu, tangent_mu, made, sense, stable, work)[0]
-        mu, tangent_mu = next_mu, next_tangent_mu
         for i in range(n + 1):
             track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
+        mu, tangent_mu = next_mu, make_unit(track.y, track.tangent, n, next_mu, next_tangent_mu, path)
     return np.nan
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...jit import kernel
 from .. import lagrangian, nested
-from ..continuation import FOLLOWED, correct, size_of
+from ..continuation import FOLLOWED, correct, make_unit, size_of
 from ..course import fill
 from ..held import loaded
 
@@ -43,7 +43,7 @@ def stand(track, tube, path, mu, sense, gradings, work):
             lagrangian.density, track.x, track.y, mu, n, own, path, track.normal, sense, track.tangent, work
         )
         if status != FOLLOWED or made == gradings or not regrade(track, tube, path, mu, work):
-            return status, negative, tangent_mu
+            return status, negative, make_unit(track.y, track.tangent, n, mu, tangent_mu, path)
         made += 1
 
 
@@ -56,6 +56,7 @@ def take(track, tube, path, mu, tangent_mu, work):
     course, edges, cells, _, _, _ = tube
     for i in range(n + 1):
         track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
+    tangent_mu = make_unit(track.y, track.tangent, n, mu, tangent_mu, path)
     if not regrade(track, tube, path, mu, work):
         return mu, tangent_mu
     j = 0
@@ -77,4 +78,4 @@ def take(track, tube, path, mu, tangent_mu, work):
         return mu, tangent_mu
     for i in range(n + 1):
         track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
-    return new_mu, new_tangent_mu
+    return new_mu, make_unit(track.y, track.tangent, n, new_mu, new_tangent_mu, path)
