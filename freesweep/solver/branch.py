@@ -141,7 +141,7 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
                 values[i, k], bounds[i, k] = whole * out[0, k], whole * out[1, k]
             slack[i] = slack_fibers(fine[0], fine[1], base << doublings, base, tube, load)
             if len(stations) > 0:
-                at_stations(stations, base, doublings, tube, load, fine, space[3], profiles[i])
+                at_stations(stations, base, doublings, tube, load, fine, space[3], accuracy, profiles[i])
             before, started, guided, middle = load, True, reached == 1.0, out[0, nested.MIDDLE]
             for k in range(places):
                 u[k] = ahead[k]

@@ -131,4 +131,4 @@ def hold_many(
             cells_of_base = tube[1][len(tube[1]) - 1]
             slack[i] = slack_fibers(space[0][0], space[0][1], cells_of_base << doublings, cells_of_base, tube, now)
             if len(stations) > 0:
-                at_stations(stations, cells_of_base, doublings, tube, now, space[0], space[3], profiles[i])
+                at_stations(stations, cells_of_base, doublings, tube, now, space[0], space[3], accuracy, profiles[i])

@@ -189,6 +189,12 @@ def conjugate(y, v, cell, load, direction):
 
 @kernel
 def fiber_multipliers(y, v, cell, load):
+    """:func:`multipliers_of` a slope ``v``."""
+    return multipliers_of(y, sqrt(max(1.0 + kinematics(y, cell, load)[3] - v * v, NO_ROOM)), cell, load)
+
+
+@kernel
+def multipliers_of(y, s, cell, load):
     """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family); a negative one belongs to a fiber that would have to push.
 
     The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of pi r0^2 C10.
@@ -204,7 +210,7 @@ def fiber_multipliers(y, v, cell, load):
     slope = yeoh_slope(rubber, excess(G_1, (y - 1.0) * (y + 1.0), e * z) + y2 * k * psi * psi)
     w_G = slope * (1.0 - e * e * z) + c * (y2 - q * e * e)
     w_psi = 2.0 * k * psi * (slope * y2 + c * e)
-    total = 0.5 * (load[3] * y2 + f) / sqrt(max(G - v * v, NO_ROOM)) - a * w_G
+    total = 0.5 * (load[3] * y2 + f) / s - a * w_G
     difference = (0.5 * (m - a * w_psi) - total * H * load[0] * load[0]) * z / D
     return 0.5 * (total + difference), 0.5 * (total - difference)
 

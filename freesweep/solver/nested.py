@@ -11,7 +11,7 @@ middle, and the multiplier of a held integral.
 """
 
 from ..jit import kernel
-from . import held, mesh, middle, newton
+from . import finest, held, mesh, middle, newton
 from .course import fill
 from .held import loaded
 
@@ -149,8 +149,7 @@ def solve(
     ``tube`` is (course, edges, cells, free, middle, places): what varies along the tube and a buffer for it, whether the
     last node is a plane of symmetry, the node of the base mesh that lies in the middle, and where segments begin and end.
     ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
-    call's warm start. ``fine`` is scratch of shape (5, > 2 n) for the finer meshes: (x, y) of the last one in rows 0, 1,
-    of the one before in rows 2, 4. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
+    call's warm start. ``fine`` is scratch for the finer meshes, left as :mod:`finest` describes. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
 
     Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
     """
@@ -204,10 +203,10 @@ def solve(
                 unit = max(abs(direction[3]), max(abs(direction[4]), abs(direction[5])))
                 out[2, MULTIPLIER] /= max(unit, 1.0)
                 out[3, MULTIPLIER] /= unit
-            if extrapolate(table, level, out[2], out[3], missed, out[0], out[1]) <= accuracy:
-                return newton.CONVERGED, unstable, level - 1, on_base
-            if level == MAX_DOUBLINGS + 1:
-                return UNREACHED, unstable, MAX_DOUBLINGS, on_base
+            met = extrapolate(table, level, out[2], out[3], missed, out[0], out[1]) <= accuracy
+            if met or level == MAX_DOUBLINGS + 1:
+                finest.leave_loads(table[:, MULTIPLIER], level, out[0, MULTIPLIER], direction, fine)
+                return newton.CONVERGED if met else UNREACHED, unstable, level - 1, on_base
 
         # order of the meshes: base (row 1), half of it (row 0), then double, double again, ...
         if level == 1:
@@ -221,8 +220,10 @@ def solve(
             level, mu = 1, on_base
             for i in range(n + 1):
                 fine[0, i], fine[1, i] = x[i], y[i]
-        # rows 1 and 3 hold the solutions on this mesh and on the coarser one
+        # rows 1 and 3 hold the solutions on this mesh and on the coarser one: that becomes the last of three
         count = n << (level - 1)
+        for i in range(count // 2 + 1):
+            fine[2, count + 1 + i], fine[4, count + 1 + i] = fine[0, 2 * i], fine[3, i]
         for i in range(count + 1):
             fine[2, i], fine[4, i] = fine[0, i], fine[1, i]
         level, count = level + 1, 2 * count

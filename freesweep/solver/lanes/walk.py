@@ -124,4 +124,4 @@ def solve_lanes(
         met = met & guide.within(y, base, u, cell, load, half)
         record(bits(met), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
         if drawn:
-            draw_profiles(bits(met), rows, columns, base, doublings, kept, stations, tube, nodes, profiles)
+            draw_profiles(bits(met), rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles)
