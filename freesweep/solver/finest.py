@@ -1,11 +1,14 @@
 """The three finest meshes of a solved state, as the solver leaves them in scratch of shape (5, > 2 n): (x, y) of the last in
 rows 0, 1, of the two before, one behind the other, in rows 2, 4. Row 3 holds, for each of them, by how much its pressure,
-force and torque differ from the load at last: where something is held, the multiplier changes from mesh to mesh.
+force and torque differ from the load at last: where something is held, the multiplier changes from mesh to mesh; and the
+relative error that Newton's last steps left, or NO_MESH where the meshes are curves that a quadrature has traced.
 """
 
 from ..jit import kernel
 
 MESHES = 3
+LEFT = 3 * MESHES  # the place of that error
+NO_MESH = -1.0
 
 
 @kernel
@@ -26,8 +29,9 @@ def load_of(which, load, fine):
 
 
 @kernel
-def leave_loads(multipliers, level, multiplier, direction, fine):
-    """Loads of the meshes from their ``multipliers`` of a direction, that of the finest at ``level``, and the one at last."""
+def leave_loads(multipliers, level, multiplier, direction, left, fine):
+    """Loads of the meshes from their ``multipliers`` of a direction, the finest's at ``level``, and the one at last."""
+    fine[3, LEFT] = left
     for which in range(MESHES):
         for i in range(3):
             fine[3, 3 * which + i] = (multipliers[level - which] - multiplier) * direction[3 + i]

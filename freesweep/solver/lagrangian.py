@@ -188,15 +188,10 @@ def conjugate(y, v, cell, load, direction):
 
 
 @kernel
-def fiber_multipliers(y, v, cell, load):
-    """:func:`multipliers_of` a slope ``v``."""
-    return multipliers_of(y, sqrt(max(1.0 + kinematics(y, cell, load)[3] - v * v, NO_ROOM)), cell, load)
-
-
-@kernel
-def multipliers_of(y, s, cell, load):
+def fiber_multipliers(y, s, cell, load):
     """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family); a negative one belongs to a fiber that would have to push.
 
+    They take the axial stretch ``s``, not the slope: where the meridian stands upright, that has no digits to spare for it.
     The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of pi r0^2 C10.
     """
     H, D, a = cell[0], cell[1], load[6] * cell[2]

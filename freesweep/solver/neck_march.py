@@ -137,7 +137,9 @@ def solve(
     out[2, nested.MULTIPLIER] /= max(unit, 1.0)
     out[3, nested.MULTIPLIER] /= unit
     largest = quadrature.finish(table, out)
-    finest.leave_loads(table[:, nested.MULTIPLIER], quadrature.ROWS - 1, out[0, nested.MULTIPLIER], direction, fine)
+    finest.leave_loads(
+        table[:, nested.MULTIPLIER], quadrature.ROWS - 1, out[0, nested.MULTIPLIER], direction, finest.NO_MESH, fine
+    )
     out[0, nested.MULTIPLIER] *= scale
     out[1, nested.MULTIPLIER] *= scale
     return (OK if largest <= accuracy else INACCURATE), doublings, loaded

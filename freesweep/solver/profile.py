@@ -18,8 +18,8 @@ import numpy as np
 from ..jit import kernel
 from . import lagrangian
 from .course import at_point, fill
+from .finest import LEFT, MESHES, load_of, mesh_of
 from .lagrangian import LAST_STEP, ROUNDING
-from .finest import MESHES, load_of, mesh_of
 from .mesh import cell_at
 
 VALUES = 7  # stretch, axial position, twist, angles after deformation, fiber multipliers
@@ -28,8 +28,6 @@ STENCIL = 6  # nodes of the interpolating polynomial: its error is of sixth orde
 SAFETY = 3.3  # times the difference of two extrapolations, over the 15 that their order allows
 SPREAD = 0.5  # of a node's difference that its neighbours have at least: differences pass through zero
 UNEVEN = 30.0  # times the cell beside: what is that long, of a tube that is uniform there, is interpolated linearly
-NEWTON_SHARE = 1e-6  # of the accuracy: what Newton's last step leaves
-DIGIT = 2.2e-16
 
 
 @kernel
@@ -46,6 +44,23 @@ def axial_stretch(y, constant, cell, load):
 
 
 @kernel
+def axial_of_flux(y, flux, cell, load):
+    """s of any tube from its flux q."""
+    meridional, pull, _ = lagrangian.uniform_tube(y, cell, load)
+    T = pull / meridional
+    return pull / sqrt(T * T + flux * flux)
+
+
+@kernel
+def flux_at(x, y, j, n, cells, load):
+    """The flux at node j of a mesh of n cells: the reaction of the cell behind it; at the last node, of the one before."""
+    i = min(j, n - 1)
+    h = x[i + 1] - x[i]
+    _, L_y, L_v, _, _, _ = lagrangian.density(0.5 * (y[i] + y[i + 1]), (y[i + 1] - y[i]) / h, cell_at(cells, i), load)
+    return (0.5 if j < n else -0.5) * h * L_y - L_v
+
+
+@kernel
 def add(nodes, at, mesh, share, numbers):
     """Add a share of a node's numbers to a column of ``nodes``; the finer ``mesh`` (0) of an extrapolation comes first."""
     for i in range(len(numbers)):
@@ -54,8 +69,8 @@ def add(nodes, at, mesh, share, numbers):
 
 @kernel
 def extrapolate_nodes(base, n, tube, load, fine, nodes):
-    """x, y, axial position, twist and flux at the nodes of the mesh of n cells, to fourth order, in rows of ``nodes``; behind
-    them, from column n + 1 on, and at every second of them, how an extrapolation from coarser meshes differs.
+    """x, y, axial position, twist and flux at the nodes of the mesh of n cells, to fourth order, in rows of ``nodes``; from
+    column n + 1 on, at every second node, by how much those from coarser meshes differ, or spread from beside.
     """
     course, edges, cells, _, _, _ = tube
     alike, behind = is_alike(course), n + 1
@@ -63,25 +78,17 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
         x, y = mesh_of(which, n, fine)
         now, count = load_of(which, load, fine), len(x) - 1
         own = fill(course, edges, x, count, base, cells)
-        cell = cell_at(own, 0)
-        constant = lagrangian.uniform_tube(y[count], cell, now)[2] if alike else 0.0
-        z, twist, flux, before = 0.0, 0.0, 0.0, 0.0
+        constant = lagrangian.uniform_tube(y[count], cell_at(own, 0), now)[2] if alike else 0.0
+        z, twist = 0.0, 0.0
         for j in range(count + 1):
-            if j < count or not alike:
-                cell = cell_at(own, min(j, count - 1))
-            if not alike and j < count:  # the reaction of what lies behind the node; at the last one, of what lies before
-                h = x[j + 1] - x[j]
-                _, L_y, L_v, _, _, _ = lagrangian.density(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell, now)
-                flux, before = 0.5 * h * L_y - L_v, -0.5 * h * L_y - L_v
-            elif not alike:
-                flux = before
-            numbers = (x[j], y[j], z, twist, flux)
+            numbers = (x[j], y[j], z, twist, 0.0 if alike else flux_at(x, y, j, count, own, now))
             half = j >> 1
             if which < MESHES - 1 and j == half << 1:
                 add(nodes, half + (0 if which == 0 else behind), 0, 4.0 / 3.0, numbers)
             if which > 0:
                 add(nodes, j + (0 if which == 1 else behind), 1, -1.0 / 3.0, numbers)
             if j < count:
+                cell = cell_at(own, j)
                 h, middle = x[j + 1] - x[j], 0.5 * (y[j] + y[j + 1])
                 s, _, turn, _ = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
                 z += h * (axial_stretch(middle, constant, cell, now) if alike else s)
@@ -115,9 +122,8 @@ def local(y, flux, constant, alike, cell, load):
     """Angles after deformation [rad], and multipliers of both families with their extension, at one place."""
     psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
     meridional = sqrt(1.0 + G_1)
-    T = load[3] * y * y + load[4]
-    s = axial_stretch(y, constant, cell, load) if alike else T * meridional / sqrt(T * T + flux * flux)
-    alpha, beta = lagrangian.multipliers_of(y, s, cell, load)
+    s = axial_stretch(y, constant, cell, load) if alike else axial_of_flux(y, flux, cell, load)
+    alpha, beta = lagrangian.fiber_multipliers(y, s, cell, load)
     return (
         atan(y * (cell[0] + cell[1] + psi) / meridional), atan(y * (cell[0] - cell[1] + psi) / meridional),
         load[0] * alpha, load[0] * beta,
@@ -125,35 +131,43 @@ def local(y, flux, constant, alike, cell, load):
 
 
 @kernel
-def at_stations(stations, base, doublings, tube, load, fine, nodes, accuracy, profile):
+def extrapolated_loads(load, fine):
+    """The load to fourth order, and one as far from it as its error may be."""
+    first = (4.0 * fine[3, 0:3] - fine[3, 3:6]) / 3.0
+    wrong = SAFETY / 15.0 * (first - (4.0 * fine[3, 3:6] - fine[3, 6:9]) / 3.0)
+    p, f, m = load[3] + first[0], load[4] + first[1], load[5] + first[2]
+    return (load[0], load[1], load[2], p, f, m, load[6]), (
+        load[0], load[1], load[2], p + wrong[0], f + wrong[1], m + wrong[2], load[6],
+    )  # fmt: skip
+
+
+@kernel
+def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
     """Write the FIELDS at each of ``stations`` (distance from the end in radii, ascending) into ``profile`` (FIELDS, m):
     stretch, axial position [radius], twist [rad], angles of both families [rad], multipliers of both; then their bounds.
 
-    Returns the largest bound, scaled: stretch as it is, positions by the length, twist by itself or a radian, angles by a
-    radian, multipliers by the largest along the tube.
+    Returns the largest bound, scaled, rounding left out: stretch as it is, positions by the length, twist by itself or a
+    radian, angles by a radian, multipliers by the largest along the tube.
     """
     course, edges, _, _, _, _ = tube
     n = base << (doublings - 1)
     extrapolate_nodes(base, n, tube, load, fine, nodes)
     x, behind, alike = nodes[0], n + 1, is_alike(course)
     fourth = SAFETY / 15.0
-    value, coarse, number, bound = np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5)
-    coarser = fourth * (4.0 * fine[3, 3:6] - fine[3, 6:9]) / 3.0  # how an extrapolated load differs
-    other = (
-        load[0], load[1], load[2], load[3] + coarser[0], load[4] + coarser[1], load[5] + coarser[2], load[6],
-    )  # fmt: skip
-    newton = ROUNDING + LAST_STEP * NEWTON_SHARE * accuracy
+    value, coarse, number, bound, share = np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5), np.empty(5)
+    load, other = extrapolated_loads(load, fine)
+    rounding = ROUNDING + LAST_STEP * max(fine[3, LEFT], 0.0)
     constant, missed, other_constant = 0.0, 0.0, 0.0
     if alike:
         cell = at_point(course, 0, 1.0)
         constant = lagrangian.uniform_tube(nodes[1, n], cell, load)[2]
         other_constant = lagrangian.uniform_tube(nodes[1, n], cell, other)[2]
         missed = lagrangian.uniform_tube(nodes[1, n] + fourth * nodes[1, behind + n // 2], cell, load)[2] - constant
-    steepest = 0.0
+    unit = np.array([1.0, 1.0, x[n], max(1.0, abs(nodes[3, n])), 0.0])
     for k in range(n + 1):
-        steepest = max(steepest, abs(nodes[4, k]))
+        unit[4] = max(unit[4], abs(nodes[4, k]))
     segment, j, first, linear = 0, 0, 0, False
-    worst, most_alpha, tension = 0.0, 0.0, 0.0
+    worst, loose, tension = 0.0, 0.0, 0.0
     for i in range(len(stations)):
         # a station on a jump belongs to the segment before it
         while segment < len(edges) - 2 and x[edges[segment + 1] * n // base] < stations[i]:
@@ -163,8 +177,9 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, accuracy, pr
         while j < high - 1 and x[j + 1] < stations[i]:
             j += 1
         h = x[j + 1] - x[j]
-        linear = h > UNEVEN * min(x[max(j, low + 1)] - x[max(j, low + 1) - 1], x[min(j, high - 2) + 2] - x[min(j, high - 2) + 1])
-        share = (stations[i] - x[j]) / h
+        before, after = max(j, low + 1), min(j, high - 2)
+        linear = h > UNEVEN * min(x[before] - x[before - 1], x[after + 2] - x[after + 1])
+        at = (stations[i] - x[j]) / h
         first = min(max(j - STENCIL // 2 + 1, low), high + 1 - STENCIL)
         weights(x, first, 1, stations[i], value)
         half = min(max(j // 2 - STENCIL // 2 + 1, low // 2), high // 2 + 1 - STENCIL)
@@ -176,14 +191,14 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, accuracy, pr
                 bound[r] += coarse[k] * nodes[r, 2 * half + k * 2]
             bound[r] = abs(bound[r] - number[r]) / 15.0
             if linear:
-                number[r] = nodes[r, j] + share * (nodes[r, j + 1] - nodes[r, j])
+                number[r] = nodes[r, j] + at * (nodes[r, j + 1] - nodes[r, j])
                 bound[r] = abs(nodes[r, j + 1] - nodes[r, j]) if r == 1 or r == 4 else 0.0
             bound[r] += fourth * max(nodes[r, behind + j // 2], nodes[r, behind + (j + 1) // 2])
+            worst = max(worst, bound[r] / unit[r] if r < 4 else 0.0)
+            share[r] = bound[r]
+            bound[r] += rounding * (number[1] if r == 1 else unit[r])
+            share[r] /= bound[r]
         y, flux = number[1], number[4]
-        bound[1] += newton * y
-        bound[2] += newton * x[n]
-        bound[3] += newton * max(1.0, abs(nodes[3, n]))
-        bound[4] += newton * steepest
         cell = at_point(course, segment, (stations[i] - x[low]) / (x[high] - x[low]))
         here = local(y, flux, constant, alike, cell, load)
         by_y = local(y + bound[1], flux, constant, alike, cell, load)
@@ -192,10 +207,11 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, accuracy, pr
         for r in range(3):
             profile[r, i], profile[VALUES + r, i] = number[1 + r], bound[1 + r]
         for r in range(4):
-            wrong = abs(by_y[r] - here[r]) + abs(by_flux[r] - here[r]) + abs(by_load[r] - here[r])
-            profile[3 + r, i], profile[VALUES + 3 + r, i] = here[r], wrong + newton * abs(here[r])
-        worst = max(max(worst, bound[1]), max(bound[2] / x[n], bound[3] / max(1.0, abs(nodes[3, n]))))
-        worst = max(worst, max(profile[VALUES + 3, i], profile[VALUES + 4, i]))
-        most_alpha = max(most_alpha, max(profile[VALUES + 5, i], profile[VALUES + 6, i]))
-        tension = max(tension, max(abs(here[2]), abs(here[3])))
-    return max(worst, most_alpha / tension if tension > 0.0 else 0.0)
+            one, two, three = abs(by_y[r] - here[r]), abs(by_flux[r] - here[r]), abs(by_load[r] - here[r])
+            profile[3 + r, i], profile[VALUES + 3 + r, i] = here[r], one + two + three + rounding * abs(here[r])
+            known = share[1] * one + (1.0 if alike else share[4]) * two + three
+            if r < 2:
+                worst = max(worst, known)
+            else:
+                loose, tension = max(loose, known), max(tension, abs(here[r]))
+    return max(worst, loose / tension if tension > 0.0 else 0.0)

@@ -89,7 +89,7 @@ def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
             return NOT_CONVERGED, 0
     out[2], out[3] = lagrangian.scales(table[ROWS - 1], cell, load, half, nested.SMALLEST_TOLERANCE)
     largest = finish(table, out)
-    finest.leave_loads(table[:, nested.MULTIPLIER], ROWS - 1, 0.0, load, fine)
+    finest.leave_loads(table[:, nested.MULTIPLIER], ROWS - 1, 0.0, load, finest.NO_MESH, fine)
     return (OK if largest <= accuracy else INACCURATE), nested.MAX_DOUBLINGS
 
 

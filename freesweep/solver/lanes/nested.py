@@ -6,7 +6,7 @@ the scalar kernels.
 """
 
 from ...jit import kernel
-from .. import lagrangian
+from .. import finest, lagrangian
 from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..newton import SMALL_STEP
 from . import mesh, middle, newton
@@ -105,7 +105,7 @@ def restart(lost, safe, n, y):
 
 
 @kernel
-def keep(ready, count, coarsest_x, coarsest_y, coarse_x, coarse_y, x, y, kept):
+def keep(ready, count, error, coarsest_x, coarsest_y, coarse_x, coarse_y, x, y, kept):
     """The finest mesh of ``count`` cells, and the two before, of the lanes that are ready, as in :mod:`solver.finest`."""
     for lane in range(WIDTH):
         if (ready >> lane) & 1:
@@ -113,6 +113,7 @@ def keep(ready, count, coarsest_x, coarsest_y, coarse_x, coarse_y, x, y, kept):
             for i in range(count + 1):
                 fine[0, i], fine[1, i] = x[i, lane], y[i, lane]
             behind = count // 2 + 1
+            fine[3, finest.LEFT] = error[0, lane]
             for i in range(behind):
                 fine[2, i], fine[4, i] = coarse_x[i, lane], coarse_y[i, lane]
             for i in range(count // 4 + 1):
@@ -195,10 +196,11 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
         if some(ready):
-            alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
+            alpha_here, beta_here = pushing(here_y, count, cell, load)
             alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
             if len(kept) > 0:
-                keep(bits(ready), count, fine_x, fine_y, half_x, half_y, here_x, here_y, kept)
+                put(sizes, 0, max(error, coarser))
+                keep(bits(ready), count, sizes, fine_x, fine_y, half_x, half_y, here_x, here_y, kept)
                 for lane in range(WIDTH):
                     doublings[lane] = level - 1 if (bits(ready) >> lane) & 1 else doublings[lane]
         met, todo = met | ready, todo & ~ready
