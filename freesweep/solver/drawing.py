@@ -16,13 +16,14 @@ from .profile import at_stations
 @kernel
 def draw(stations, base, doublings, tube, load, fine, nodes, work, accuracy, profile):
     """:func:`profile.at_stations`, refined until its bounds meet the ``accuracy``; returns whether they do."""
-    missed = at_stations(stations, base, doublings, tube, load, fine, nodes, profile)
-    while missed > accuracy and doublings < nested.MAX_DOUBLINGS and fine[3, LEFT] != NO_MESH:
-        if not refine(base, doublings, tube, load, accuracy, fine, work):
-            break
-        doublings += 1
-        missed = at_stations(stations, base, doublings, tube, load, fine, nodes, profile)
-    return missed <= accuracy
+    met, finer = False, True
+    while finer and not met:
+        met = at_stations(stations, base, doublings, tube, load, fine, nodes, profile) <= accuracy
+        finer = not met and doublings < nested.MAX_DOUBLINGS and fine[3, LEFT] != NO_MESH
+        if finer:
+            finer = refine(base, doublings, tube, load, accuracy, fine, work)
+            doublings += 1
+    return met
 
 
 @kernel
@@ -58,7 +59,7 @@ def refine(base, doublings, tube, load, accuracy, fine, work):
             density, fine[0], fine[1], 2 * count, free, own, now, newton.UNKNOWN, tolerance, work
         )
     for i in range(3):
-        fine[3, i] = changes[i] + mu * direction[3 + i]
         fine[3, 3 + i], fine[3, 6 + i] = changes[i], changes[3 + i]
+    fine[3, 0], fine[3, 1], fine[3, 2] = changes[0], changes[1] + mu * direction[4], changes[2] + mu * direction[5]
     fine[3, LEFT] = left
     return status == newton.CONVERGED

@@ -33,5 +33,5 @@ def leave_loads(multipliers, level, multiplier, direction, left, fine):
     """Loads of the meshes from their ``multipliers`` of a direction, the finest's at ``level``, and the one at last."""
     fine[3, LEFT] = left
     for which in range(MESHES):
-        for i in range(3):
-            fine[3, 3 * which + i] = (multipliers[level - which] - multiplier) * direction[3 + i]
+        change, k = multipliers[level - which] - multiplier, 3 * which
+        fine[3, k], fine[3, k + 1], fine[3, k + 2] = change * direction[3], change * direction[4], change * direction[5]

@@ -26,6 +26,7 @@ VALUES = 7  # stretch, axial position, twist, angles after deformation, fiber mu
 FIELDS = 2 * VALUES  # and a bound for each
 STENCIL = 6  # nodes of the interpolating polynomial: its error is of sixth order, the node values' of fourth
 SAFETY = 3.3  # times the difference of two extrapolations, over the 15 that their order allows
+SMALLEST = 1e-300
 SPREAD = 0.5  # of a node's difference that its neighbours have at least: differences pass through zero
 UNEVEN = 30.0  # times the cell beside: what is that long, of a tube that is uniform there, is interpolated linearly
 
@@ -133,12 +134,21 @@ def local(y, flux, constant, alike, cell, load):
 @kernel
 def extrapolated_loads(load, fine):
     """The load to fourth order, and one as far from it as its error may be."""
-    first = (4.0 * fine[3, 0:3] - fine[3, 3:6]) / 3.0
-    wrong = SAFETY / 15.0 * (first - (4.0 * fine[3, 3:6] - fine[3, 6:9]) / 3.0)
-    p, f, m = load[3] + first[0], load[4] + first[1], load[5] + first[2]
+    a, b, c = load_of(0, load, fine), load_of(1, load, fine), load_of(2, load, fine)
+    p, f, m = (4.0 * a[3] - b[3]) / 3.0, (4.0 * a[4] - b[4]) / 3.0, (4.0 * a[5] - b[5]) / 3.0
+    fourth = SAFETY / 15.0
+    other_p = p + fourth * (p - (4.0 * b[3] - c[3]) / 3.0)
+    other_f = f + fourth * (f - (4.0 * b[4] - c[4]) / 3.0)
+    other_m = m + fourth * (m - (4.0 * b[5] - c[5]) / 3.0)
     return (load[0], load[1], load[2], p, f, m, load[6]), (
-        load[0], load[1], load[2], p + wrong[0], f + wrong[1], m + wrong[2], load[6],
-    )  # fmt: skip
+        load[0],
+        load[1],
+        load[2],
+        other_p,
+        other_f,
+        other_m,
+        load[6],
+    )
 
 
 @kernel
@@ -163,7 +173,8 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
         constant = lagrangian.uniform_tube(nodes[1, n], cell, load)[2]
         other_constant = lagrangian.uniform_tube(nodes[1, n], cell, other)[2]
         missed = lagrangian.uniform_tube(nodes[1, n] + fourth * nodes[1, behind + n // 2], cell, load)[2] - constant
-    unit = np.array([1.0, 1.0, x[n], max(1.0, abs(nodes[3, n])), 0.0])
+    unit = np.empty(5)
+    unit[1], unit[2], unit[3], unit[4] = 1.0, x[n], max(1.0, abs(nodes[3, n])), 0.0
     for k in range(n + 1):
         unit[4] = max(unit[4], abs(nodes[4, k]))
     segment, j, first, linear = 0, 0, 0, False
@@ -197,7 +208,7 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
             worst = max(worst, bound[r] / unit[r] if r < 4 else 0.0)
             share[r] = bound[r]
             bound[r] += rounding * (number[1] if r == 1 else unit[r])
-            share[r] /= bound[r]
+            share[r] /= max(bound[r], SMALLEST)
         y, flux = number[1], number[4]
         cell = at_point(course, segment, (stations[i] - x[low]) / (x[high] - x[low]))
         here = local(y, flux, constant, alike, cell, load)
