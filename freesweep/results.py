@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from . import status
-from .atlas.schema import attributes
+from .atlas.schema import PROFILES, attributes
 from .scaling import OUTPUTS, output_scales, wall_volume_inside
 from .strain import warn_beyond_range
 
@@ -29,7 +29,7 @@ def dataset(tube, axes, stations, found, without=()):
         data[name] = (names, value - wall_volume_inside(tube.design()) if name == "volume" else value)
         data[f"{name}_error"] = (names, found["bounds"][..., k] * scale[name])
     data |= found.get("extra", {})
-    for name, array in profiles(tube, found["fields"], found["values"], stations).items():
+    for name, array in profiles(tube, found["fields"], found["values"], found["bounds"], stations).items():
         data[name] = ((*names, "x"), array)
     coordinates = {name: (name, np.atleast_1d(value)) for name, value in axes.items()} | {"x": ("x", stations)}
     result = xr.Dataset(data, coordinates)
@@ -52,22 +52,27 @@ def near_stations(tube, stations, whole):
     return np.unique(near / tube.fiber_surface, return_inverse=True)
 
 
-def profiles(tube, fields, values, stations):
-    """Profiles along x from the kernels' fields; where only half was solved (``fields`` says so), the far half mirrors."""
+def profiles(tube, fields, values, bounds, stations):
+    """Profiles along x and their bounds from the kernels' fields; where only half was solved (``fields`` says so), the far
+    half mirrors.
+    """
     share = stations / tube.length
     alpha, beta = tube.angles(share)
     r = tube.fiber_surface
     fields, whole = fields
     mirrored = (share > 0.5) & (not whole)
-    z = np.where(mirrored, 2.0 * values[..., 0, None] - fields[..., 1, :], fields[..., 1, :])
-    twist = np.where(mirrored, 2.0 * values[..., 2, None] - fields[..., 2, :], fields[..., 2, :])
     tension = 2.0 * np.pi * r**2 * tube.material.c10
-    return {
-        "deformed_radius": r * fields[..., 0, :],
-        "axial_position": r * z,
-        "twist": np.degrees(twist),
-        "alpha_deformed": np.degrees(np.arctan(fields[..., 3, :])),
-        "beta_deformed": np.degrees(np.arctan(fields[..., 4, :])),
-        "fiber_tension_alpha": tension / np.cos(np.radians(alpha)) * fields[..., 5, :],
-        "fiber_tension_beta": tension / np.cos(np.radians(beta)) * fields[..., 6, :],
-    }
+    units = (
+        r, r, np.degrees(1.0), np.degrees(1.0), np.degrees(1.0),
+        tension / np.cos(np.radians(alpha)), tension / np.cos(np.radians(beta)),
+    )  # fmt: skip
+    whole_tube = {1: 0, 2: 2}  # what grows along the tube, and which output it grows to
+    found = {}
+    for k, (name, unit) in enumerate(zip(PROFILES, units)):
+        value, bound = fields[..., k, :], fields[..., len(PROFILES) + k, :]
+        if k in whole_tube:
+            end = whole_tube[k]
+            value = np.where(mirrored, 2.0 * values[..., end, None] - value, value)
+            bound = np.where(mirrored, 2.0 * bounds[..., end, None] + bound, bound)
+        found[name], found[f"{name}_error"] = unit * value, unit * bound
+    return found

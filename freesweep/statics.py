@@ -4,7 +4,7 @@ import numpy as np
 
 from . import profiles, status
 from .actuator import Actuator, ActuatorError
-from .atlas.schema import PROFILES, attributes
+from .atlas.schema import attributes
 from .loads import read_load, read_stations
 from .results import dataset, near_stations
 from .scaling import problem_rows
@@ -30,9 +30,10 @@ def lock(tube: Actuator, *, x=None, accuracy=1e-6):
     result = result.drop_vars(["limit_pressure", "limit_pressure_error", "limit_found", *LOADS])
     for name in ("fiber_tension_alpha", "fiber_tension_beta"):
         # the kernel's locked state is that of the pressure c10
-        result[name] = result[name] / tube.material.c10
-        result[name].attrs = attributes(name)
-        result[name].attrs.update(units="N/Pa", long_name=f"{PROFILES[name][1]} per pressure")
+        for one in (name, f"{name}_error"):
+            result[one] = result[one] / tube.material.c10
+            result[one].attrs = attributes(one)
+            result[one].attrs.update(units="N/Pa", long_name=f"{result[one].attrs['long_name']} per pressure")
     return result
 
 
@@ -106,13 +107,14 @@ def _solve(tube, loads, stations, accuracy):
 
 
 def undeformed(tube, stations):
-    """Fields of the undeformed tube: stretch 1, the stations themselves, no twist, no tension."""
+    """Fields of the undeformed tube: stretch 1, the stations themselves, no twist, no tension, no error."""
     alpha, beta = tube.angles(stations / tube.length)
     # half of a tube was solved: the far half's position is mirrored back later
     far = (stations > 0.5 * tube.length) & (not tube.varies)
     near = np.where(far, tube.length - stations, stations) / tube.fiber_surface
     zero = np.zeros_like(stations)
-    return np.stack([zero + 1.0, near, zero, np.tan(np.radians(alpha)), np.tan(np.radians(beta)), zero, zero])
+    values = [zero + 1.0, near, zero, np.radians(alpha), np.radians(beta), zero, zero]
+    return np.stack([*values, *(zero for _ in values)])
 
 
 def read_course(tube):

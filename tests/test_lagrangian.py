@@ -174,7 +174,7 @@ def test_fiber_tension_of_a_blocked_mckibben_muscle(alpha):
     q = -(tan(radians(alpha)) ** 2)
     f = -p * (1 + 2 / q)  # Eq. 2.16
     cell, load = np.array([0.0, tan(radians(alpha)), 0.8]), (1.0, (0.3, 0.5, 0.1), 1.0, p, f, 0.0, 1.0)
-    for tension in fiber_tensions(alpha, -alpha, lagrangian.fiber_multipliers(1.0, 0.0, cell, load)):
+    for tension in fiber_tensions(alpha, -alpha, lagrangian.fiber_multipliers(1.0, 1.0, cell, load)):
         assert tension == pytest.approx(p * cos(radians(alpha)) / sin(radians(alpha)) ** 2, rel=1e-12)
 
 
@@ -188,7 +188,7 @@ def test_fiber_tensions_balance_the_blocked_tube(alpha, beta):
     f = closed_form.blocked_force(alpha, beta, 1.0, p) / pi
     H, D = half_sum_and_difference(alpha, beta)
     load = (1.0, (0.2, 0.5, 0.1), 1.0, p, float(f), 0.0, 1.0)
-    tension = fiber_tensions(alpha, beta, lagrangian.fiber_multipliers(1.0, 0.0, np.array([H, D, 0.5]), load))
+    tension = fiber_tensions(alpha, beta, lagrangian.fiber_multipliers(1.0, 1.0, np.array([H, D, 0.5]), load))
     sines, cosines = np.sin(np.radians([alpha, beta])), np.cos(np.radians([alpha, beta]))
     assert np.dot(tension, cosines) == pytest.approx(p + f, rel=1e-11)
     assert np.dot(tension, sines) == pytest.approx(0, abs=1e-11 * max(map(abs, tension)))
@@ -211,7 +211,7 @@ def test_blocked_torque_can_need_fibers_that_push(alpha, beta, expected):
     m = float(closed_form.blocked_torque(alpha, beta, 1.0, p)) / pi
     H, D = half_sum_and_difference(alpha, beta)
     load = (1.0, (0.3, 0.5, 0.1), 1.0, p, 0.0, m, 1.0)
-    tau = lagrangian.fiber_multipliers(1.0, 0.0, np.array([H, D, 0.6]), load)
+    tau = lagrangian.fiber_multipliers(1.0, 1.0, np.array([H, D, 0.6]), load)
     assert np.array(tau) / p == pytest.approx(expected, abs=0.0051)
 
 
@@ -221,8 +221,8 @@ def test_fiber_multipliers_solve_the_constrained_problem(seed):
     y, v, cell, load, _ = random_point(rng(2000 + seed))
     _, (c, c2, c3), k, p, f, m, e = load
     H, D, a = cell
-    tau_a, tau_b = lagrangian.fiber_multipliers(y, v, cell, load)
     psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
+    tau_a, tau_b = lagrangian.fiber_multipliers(y, np.sqrt(1 + G_1 - v * v), cell, load)
 
     def priced(G, psi):
         q = 1 + k * psi * psi

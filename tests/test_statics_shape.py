@@ -96,10 +96,19 @@ def close_to_exact(dataset, actuator, values, profiles, stations):
     near, far = dataset.sel(x=stations), dataset.isel(x=slice(None, None, -1)).isel(x=slice(len(stations)))
     length, rotation = dataset["deformed_length"].item(), dataset["rotation"].item()
     radius, z, twist = profiles
+    turns = max(np.degrees(1.0), abs(rotation))
     for part, there, turned in ((near, z, twist), (far, length - z, rotation - twist)):
-        assert np.abs(part["deformed_radius"] - radius).max() < 1e-6 * actuator.radius
-        assert np.abs(part["axial_position"] - there).max() < 1e-6 * actuator.length
-        assert np.abs(part["twist"] - turned).max() < np.degrees(1e-6) * max(1.0, np.radians(abs(rotation)))
+        for name, expected, size in (
+            ("deformed_radius", radius, actuator.radius), ("axial_position", there, actuator.length),
+            ("twist", turned, turns),
+        ):  # fmt: skip
+            error, bound = np.abs(part[name] - expected), part[f"{name}_error"]
+            assert (error <= bound + 1e-11 * size).all(), name
+            assert (bound <= 1.1e-6 * size).all(), name
+    for name in PROFILES:
+        size = np.abs(dataset[name]).max() if "tension" in name else np.degrees(1.0)
+        if name.startswith(("alpha", "beta", "fiber")):
+            assert (dataset[f"{name}_error"] <= 1.1e-6 * size).all(), name
 
 
 def both_halves(actuator, count=24):

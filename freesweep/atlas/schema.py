@@ -145,6 +145,7 @@ def attributes(name: str) -> dict:
         kind = "stable" if name.endswith("stable") else name
         return {"long_name": FLAG_OF[name][0], **flag_attributes(kind)}
     if name.endswith("_error"):
-        of = VARIABLES[name.removesuffix("_error")]
-        return {"units": of.units, "long_name": f"error bound of {name.removesuffix('_error')}"}
+        of = name.removesuffix("_error")
+        units = PROFILES[of][0] if of in PROFILES else VARIABLES[of].units
+        return {"units": units, "long_name": f"error bound of {of}"}
     return {"units": VARIABLES[name].units, "long_name": VARIABLES[name].long_name}

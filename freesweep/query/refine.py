@@ -95,12 +95,12 @@ def profiles(reader, question, x):
         stations = np.atleast_1d(np.asarray(x, float))
     except (TypeError, ValueError):
         raise QueryError(["x: give ascending stations [m], from 0 to the undeformed length"]) from None
-    arrays = {name: np.full((question.size, len(stations)), np.nan) for name in PROFILES}
+    arrays = {name: np.full((question.size, len(stations)), np.nan) for of in PROFILES for name in (of, f"{of}_error")}
     energy = reader.frame.energy
     for k, point in enumerate(points):
         design = dict(zip(reference.COLUMNS, point.tolist()))
         state = _inflated(design, stations, energy, Actuator, rubber_of)
-        for name in PROFILES if state is not None else ():
+        for name in arrays if state is not None else ():
             arrays[name][k] = state[name].values
     dims = (*question.dims, "x")
     data = {name: (dims, array.reshape(*question.shape, -1), attributes(name)) for name, array in arrays.items()}

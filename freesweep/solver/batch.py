@@ -44,32 +44,31 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     found = _nothing(len(problems), len(pressures), stations)
-    pressures, limp = next_to_nothing(problems, first, pressures)
-    _follow(problems, first, pressures, tube, accuracy, stations, lanes, soon, found)
-    found.bounds[limp] += MISSED * np.abs(found.values[limp])
-    return found
-
-
-def _follow(problems, first, pressures, tube, accuracy, stations, lanes, soon, found):
-    """Walk each problem along its path of loads, into what is ``found``."""
     if len(tube[0]) > 0:
         arguments = (
             problems, settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
         )  # fmt: skip
         if not (soon and at_once(len(pressures), follow_many, follow_many, *arguments)):
             follow_many(*arguments)
-        return
-    if not np.any(is_loaded(problems)):
-        _walk(problems, first, pressures, np.zeros(len(pressures), bool), tube, accuracy, stations, lanes, soon, found)
-        return
+        return found
+    pressures, limp = next_to_nothing(problems, first, pressures)
+    how = tube, accuracy, stations, lanes, soon
+    if np.any(is_loaded(problems)):
+        _walk_legs(problems, first, pressures, how, found)
+    else:
+        _walk(problems, first, pressures, np.zeros(len(pressures), bool), *how, found)
+    found.bounds[limp] += MISSED * np.abs(found.values[limp])
+    return found
+
+
+def _walk_legs(problems, first, pressures, how, found):
+    """Walk each loaded problem up and down from the state at which its loads have settled."""
     own = legs(problems, first, pressures)
-    on_the_way = _nothing(len(own.owners), len(own.pressures), stations)
-    _walk(
-        problems[own.owners], own.first, own.pressures, own.rows < 0, tube, accuracy, stations, lanes, soon, on_the_way
-    )
-    asked = own.rows >= 0
+    passing = own.rows < 0
+    on_the_way = _nothing(len(own.owners), len(own.pressures), how[2])
+    _walk(problems[own.owners], own.first, own.pressures, passing, *how, on_the_way)
     for name in STATES:
-        getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
+        getattr(found, name)[own.rows[~passing]] = getattr(on_the_way, name)[~passing]
     found.limits[own.owners[own.upward]] = on_the_way.limits[own.upward]
 
 

@@ -14,7 +14,8 @@ import numpy as np
 
 from ..jit import entry_point, inlined, kernel
 from . import guide, lagrangian, nested
-from .profile import FIELDS, at_stations
+from .drawing import draw
+from .profile import FIELDS
 from .reach import reach
 from .slack import slack_fibers
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
@@ -57,7 +58,7 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
     values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds
     status, slack : (n,) codes; values are NaN unless the status is OK or INACCURATE
     limit : (2,) limit pressure and its bound, NaN if none was met
-    stations, profiles : (m,), (n, FIELDS, m): see :func:`at_stations`; m = 0 for none
+    stations, profiles : (m,), (n, FIELDS, m): see :func:`profile.at_stations`; m = 0 for none
     """
     fine, shapes, guides = space[0], space[4], space[5]
     base = tube[1][len(tube[1]) - 1]
@@ -132,7 +133,8 @@ def walk(problem, tube, pressures, accuracy, space, values, bounds, status, slac
                 values[i, k], bounds[i, k] = out[0, k], out[1, k]
             slack[i] = slack_fibers(fine[0], fine[1], base << doublings, base, tube, load)
             if len(stations) > 0:
-                at_stations(stations, base, doublings, tube, load, fine, space[3], profiles[i])
+                drawn = draw(stations, base, doublings, tube, load, fine, space[3], space[1], accuracy, profiles[i])
+                status[i] = found if drawn else INACCURATE
             before, started, guided, middle = load, True, reached == 1.0, out[0, nested.MIDDLE]
             u[0] = ahead[0]
             for k in range(base + 1):

@@ -6,9 +6,10 @@ from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested
 from .branch import GAMMA, SHEAR, rubber_of
 from .course import copy
+from .drawing import draw
 from .find import HELD_LENGTH, find
 from .march import cylinder_multiplier
-from .profile import FIELDS, at_stations
+from .profile import FIELDS
 from .slack import slack_fibers
 from .status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK, PENDING
 
@@ -132,4 +133,7 @@ def hold_many(
             cells_of_base = tube[1][len(tube[1]) - 1]
             slack[i] = slack_fibers(space[0][0], space[0][1], cells_of_base << doublings, cells_of_base, tube, now)
             if len(stations) > 0:
-                at_stations(stations, cells_of_base, doublings, tube, now, space[0], space[3], profiles[i])
+                drawn = draw(
+                    stations, cells_of_base, doublings, tube, now, space[0], space[3], space[1], accuracy, profiles[i]
+                )
+                status[i] = status[i] if drawn else INACCURATE

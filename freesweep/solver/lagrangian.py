@@ -200,9 +200,10 @@ def conjugate(y, v, cell, load, direction):
 
 
 @kernel
-def fiber_multipliers(y, v, cell, load):
+def fiber_multipliers(y, s, cell, load):
     """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family); a negative one belongs to a fiber that would have to push.
 
+    They take the axial stretch ``s``, not the slope: where the meridian stands upright, that has no digits to spare for it.
     The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of pi r0^2 C10.
     """
     H, D, a = cell[0], cell[1], load[6] * cell[2]
@@ -216,7 +217,7 @@ def fiber_multipliers(y, v, cell, load):
     slope = yeoh_slope(rubber, excess(G_1, (y - 1.0) * (y + 1.0), e * z) + y2 * k * psi * psi)
     w_G = slope * (1.0 - e * e * z) + c * (y2 - q * e * e)
     w_psi = 2.0 * k * psi * (slope * y2 + c * e)
-    total = 0.5 * (load[3] * y2 + f) / sqrt(max(G - v * v, NO_ROOM)) - a * w_G
+    total = 0.5 * (load[3] * y2 + f) / s - a * w_G
     difference = (0.5 * (m - a * w_psi) - total * H * load[0] * load[0]) * z / D
     return 0.5 * (total + difference), 0.5 * (total - difference)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..jit import kernel
-from . import held, lagrangian, neck_shape, nested, quadrature
+from . import finest, held, lagrangian, neck_shape, nested, quadrature
 from .neck_shape import FOLDS, MIDDLE, MU, NECK_FOLDS
 from .status import INACCURATE, NOT_CONVERGED, OK
 from .uniform import between
@@ -136,29 +136,31 @@ def solve(
         count = nodes >> (quadrature.ROWS - 1 - k)
         if not fit(cell, end, direction, target, half, now, free, count, CLOSEST, curve, table[k], spare):
             return NOT_CONVERGED, 0, end
+        if k >= quadrature.ROWS - finest.MESHES:
+            lay(curve, count, half, *finest.mesh_of(quadrature.ROWS - 1 - k, nodes // 2, fine))
     loaded, last = held.loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
     out[2], out[3] = lagrangian.scales(last, cell, loaded, half, nested.SMALLEST_TOLERANCE)
     unit = max(abs(direction[4]), abs(direction[5]))
     out[2, nested.MULTIPLIER] /= max(unit, 1.0)
     out[3, nested.MULTIPLIER] /= unit
     largest = quadrature.finish(table, out)
+    finest.leave_loads(
+        table[:, nested.MULTIPLIER], quadrature.ROWS - 1, out[0, nested.MULTIPLIER], direction, finest.NO_MESH, fine
+    )
     out[0, nested.MULTIPLIER] *= scale
     out[1, nested.MULTIPLIER] *= scale
-    lay(curve, nodes, half, fine)
     return (OK if largest <= accuracy else INACCURATE), doublings, loaded
 
 
 @kernel
-def lay(curve, nodes, half, fine):
-    """Nodes and shape of half a tube from its neck's and its body's, as :func:`nested.solve` leaves them."""
+def lay(curve, nodes, half, x, y):
+    """Nodes and shape of half a tube from its neck's and its body's."""
     body, quarter = nodes // 2, nodes // 4
     x_neck, y_neck = curve[0, body + 1 :], curve[1, body + 1 :]
     to_neck = x_neck[quarter]
     for k in range(quarter + 1):
-        fine[0, k], fine[1, k] = x_neck[k], y_neck[k]
-        fine[0, 2 * quarter - k], fine[1, 2 * quarter - k] = 2.0 * to_neck - x_neck[k], y_neck[k]
+        x[k], y[k] = x_neck[k], y_neck[k]
+        x[2 * quarter - k], y[2 * quarter - k] = 2.0 * to_neck - x_neck[k], y_neck[k]
     for k in range(1, body + 1):
-        fine[0, 2 * quarter + k], fine[1, 2 * quarter + k] = 2.0 * to_neck + curve[0, k], curve[1, k]
-    fine[0, nodes] = half
-    for k in range(nodes // 2 + 1):
-        fine[2, k], fine[4, k] = fine[0, 2 * k], fine[1, 2 * k]
+        x[2 * quarter + k], y[2 * quarter + k] = 2.0 * to_neck + curve[0, k], curve[1, k]
+    x[nodes] = half

@@ -11,7 +11,7 @@ middle, and the multiplier of a held integral.
 """
 
 from ..jit import kernel
-from . import held, mesh, middle, newton
+from . import finest, held, mesh, middle, newton
 from .course import fill
 from .held import loaded
 
@@ -140,6 +140,22 @@ def foresee(fine, n, work):
 
 
 @kernel
+def go_finer(x, n, edges, doublings, fine, work):
+    """Nodes and first guess of the next finer mesh in rows 0, 1 of ``fine``, which hold the solution on this one, after so
+    many ``doublings`` of the base mesh ``x``; row 3 holds that on the coarser one, which becomes the last of three.
+    """
+    count = n << doublings
+    for i in range(count // 2 + 1):
+        fine[2, count + 1 + i], fine[4, count + 1 + i] = fine[0, 2 * i], fine[3, i]
+    for i in range(count + 1):
+        fine[2, i], fine[4, i] = fine[0, i], fine[1, i]
+    split(x, n, edges, 2 << doublings, fine[0])
+    foresee(fine, count, work)
+    for i in range(count + 1):
+        fine[3, i] = fine[4, i]
+
+
+@kernel
 def solve(
     density, conjugate, integrands, scales, x, y, tube, load, goal, direction, target, mu, regrades, accuracy,
     fine, work, table, out,
@@ -149,8 +165,8 @@ def solve(
     ``tube`` is (course, edges, cells, free, middle, places): what varies along the tube and a buffer for it, whether the
     last node is a plane of symmetry, the node of the base mesh that lies in the middle, and where segments begin and end.
     ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
-    call's warm start. ``fine`` is scratch of shape (5, > 2 n) for the finer meshes: (x, y) of the last one in rows 0, 1,
-    of the one before in rows 2, 4. ``out`` is (values, bounds, scales, floors), shape (4, OUTPUTS).
+    call's warm start. ``fine`` is scratch for the finer meshes, left as :mod:`finest` describes. ``out`` is
+    (values, bounds, scales, floors), shape (4, OUTPUTS).
 
     Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
     """
@@ -204,10 +220,12 @@ def solve(
                 unit = max(abs(direction[3]), max(abs(direction[4]), abs(direction[5])))
                 out[2, MULTIPLIER] /= max(unit, 1.0)
                 out[3, MULTIPLIER] /= unit
-            if extrapolate(table, level, out[2], out[3], missed, out[0], out[1]) <= accuracy:
-                return newton.CONVERGED, unstable, level - 1, on_base
-            if level == MAX_DOUBLINGS + 1:
-                return UNREACHED, unstable, MAX_DOUBLINGS, on_base
+            met = extrapolate(table, level, out[2], out[3], missed, out[0], out[1]) <= accuracy
+            if met or level == MAX_DOUBLINGS + 1:
+                finest.leave_loads(
+                    table[:, MULTIPLIER], level, out[0, MULTIPLIER], direction, max(error, coarser), fine
+                )
+                return newton.CONVERGED if met else UNREACHED, unstable, level - 1, on_base
 
         # order of the meshes: base (row 1), half of it (row 0), then double, double again, ...
         if level == 1:
@@ -221,13 +239,6 @@ def solve(
             level, mu = 1, on_base
             for i in range(n + 1):
                 fine[0, i], fine[1, i] = x[i], y[i]
-        # rows 1 and 3 hold the solutions on this mesh and on the coarser one
-        count = n << (level - 1)
-        for i in range(count + 1):
-            fine[2, i], fine[4, i] = fine[0, i], fine[1, i]
-        level, count = level + 1, 2 * count
-        split(x, n, edges, 1 << (level - 1), fine[0])
-        foresee(fine, count // 2, work)
-        for i in range(count // 2 + 1):
-            fine[3, i] = fine[4, i]
-        xs, ys = fine[0], fine[1]
+        go_finer(x, n, edges, level - 1, fine, work)
+        level += 1
+        count, xs, ys = n << (level - 1), fine[0], fine[1]

@@ -1,93 +1,228 @@
-"""What a shape looks like along the tube: values at stations, from the node values of the finest meshes."""
+"""What a shape looks like along the tube: values at stations and their error bounds, from the three finest meshes.
 
-from math import sqrt
+Their node values extrapolate twice to fourth order, and bounds follow as in :mod:`nested`. What nodes carry loses no digit
+where the meridian stands upright, at a clamped end: the stretch y and the flux q = T v/s = -L_v, which follows from the
+discrete Euler-Lagrange equations as the reaction of the tube on one side, smoothly through jumps of the wall. With it::
+
+    s = T sqrt(G)/sqrt(T^2 + q^2)
+
+A tube that is the same all along needs no flux: its first integral ``L - v L_v`` gives s from y and the middle's y_m,
+
+    s = T G/(T sqrt(G) + U(y_m) - U(y)),    U(y) = L(y, 0).
+"""
+
+from math import atan, sqrt
+
+import numpy as np
 
 from ..jit import kernel
 from . import lagrangian
 from .course import at_point, fill
+from .finest import LEFT, MESHES, load_of, mesh_of
+from .lagrangian import LAST_STEP, ROUNDING
 from .mesh import cell_at
 
-FIELDS = 7  # stretch, axial position, twist, tangents of the deformed angles, fiber multipliers
+VALUES = 7  # stretch, axial position, twist, angles after deformation, fiber multipliers
+FIELDS = 2 * VALUES  # and a bound for each
 STENCIL = 6  # nodes of the interpolating polynomial: its error is of sixth order, the node values' of fourth
+SAFETY = 3.3  # times the difference of two extrapolations, over the 15 that their order allows
+SMALLEST = 1e-300
+SPREAD = 0.5  # of a node's difference that its neighbours have at least: differences pass through zero
+UNEVEN = 30.0  # times the cell beside: what is that long, of a tube that is uniform there, is interpolated linearly
 
 
 @kernel
-def extrapolate_nodes(base_cells, doublings, tube, load, fine, nodes):
-    """Stretch, axial position and twist at the nodes of the finer but one mesh, to fourth order; their number.
+def is_alike(course):
+    """Whether a tube is the same all along."""
+    return course.shape[0] == 1 and course.shape[1] == 1
 
-    ``nodes`` is (3, m), in radii and radians from the end.
+
+@kernel
+def axial_stretch(y, constant, cell, load):
+    """s of a tube that is the same all along, from the ``constant`` U(y_m) of its first integral."""
+    meridional, pull, at_rest = lagrangian.uniform_tube(y, cell, load)
+    return meridional * pull / (pull + constant - at_rest)
+
+
+@kernel
+def axial_of_flux(y, flux, cell, load):
+    """s of any tube from its flux q."""
+    meridional, pull, _ = lagrangian.uniform_tube(y, cell, load)
+    T = pull / meridional
+    return pull / sqrt(T * T + flux * flux)
+
+
+@kernel
+def flux_at(x, y, j, n, cells, load):
+    """The flux at node j of a mesh of n cells: the reaction of the cell behind it; at the last node, of the one before."""
+    i = min(j, n - 1)
+    h = x[i + 1] - x[i]
+    _, L_y, L_v, _, _, _ = lagrangian.density(0.5 * (y[i] + y[i + 1]), (y[i + 1] - y[i]) / h, cell_at(cells, i), load)
+    return (0.5 if j < n else -0.5) * h * L_y - L_v
+
+
+@kernel
+def add(nodes, at, mesh, share, numbers):
+    """Add a share of a node's numbers to a column of ``nodes``; the finer ``mesh`` (0) of an extrapolation comes first."""
+    for i in range(len(numbers)):
+        nodes[i, at] = share * numbers[i] + (nodes[i, at] if mesh > 0 else 0.0)
+
+
+@kernel
+def extrapolate_nodes(base, n, tube, load, fine, nodes):
+    """x, y, axial position, twist and flux at the nodes of the mesh of n cells, to fourth order, in rows of ``nodes``; from
+    column n + 1 on, at every second node, by how much those from coarser meshes differ, or spread from beside.
     """
-    n = base_cells << (doublings - 1)
     course, edges, cells, _, _, _ = tube
-    for mesh in range(2):  # the coarser one, then the finer
-        count = n << mesh
-        x, y = (fine[2], fine[4]) if mesh == 0 else (fine[0], fine[1])
-        own = fill(course, edges, x, count, base_cells, cells)
-        share = -1.0 / 3.0 if mesh == 0 else 4.0 / 3.0
-        length, twist = 0.0, 0.0
+    alike, behind = is_alike(course), n + 1
+    for which in range(MESHES):
+        x, y = mesh_of(which, n, fine)
+        now, count = load_of(which, load, fine), len(x) - 1
+        own = fill(course, edges, x, count, base, cells)
+        constant = lagrangian.uniform_tube(y[count], cell_at(own, 0), now)[2] if alike else 0.0
+        z, twist = 0.0, 0.0
         for j in range(count + 1):
-            if j > 0:
-                h = x[j] - x[j - 1]
-                s, _, t, _ = lagrangian.integrands(
-                    0.5 * (y[j - 1] + y[j]), (y[j] - y[j - 1]) / h, cell_at(own, j - 1), load
-                )
-                length += h * s
-                twist += h * t
-            k = j >> mesh
-            if j == k << mesh:
-                nodes[0, k] = share * y[j] + (nodes[0, k] if mesh > 0 else 0.0)
-                nodes[1, k] = share * length + (nodes[1, k] if mesh > 0 else 0.0)
-                nodes[2, k] = share * twist + (nodes[2, k] if mesh > 0 else 0.0)
-    return n + 1
+            numbers = (x[j], y[j], z, twist, 0.0 if alike else flux_at(x, y, j, count, own, now))
+            half = j >> 1
+            if which < MESHES - 1 and j == half << 1:
+                add(nodes, half + (0 if which == 0 else behind), 0, 4.0 / 3.0, numbers)
+            if which > 0:
+                add(nodes, j + (0 if which == 1 else behind), 1, -1.0 / 3.0, numbers)
+            if j < count:
+                cell = cell_at(own, j)
+                h, middle = x[j + 1] - x[j], 0.5 * (y[j] + y[j + 1])
+                s, _, turn, _ = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
+                z += h * (axial_stretch(middle, constant, cell, now) if alike else s)
+                twist += h * turn
+    for k in range(n // 2 + 1):
+        left, right, at = max(2 * k - 2, 0), min(2 * k + 2, n), behind + k
+        moved = (nodes[0, 2 * k] - nodes[0, at]) / (nodes[0, right] - nodes[0, left])
+        for i in range(1, 5):  # at the same x
+            nodes[i, at] = abs(nodes[i, 2 * k] - nodes[i, at] - moved * (nodes[i, right] - nodes[i, left]))
+    for k in range(1, n // 2 + 1):
+        for i in range(1, 5):
+            nodes[i, behind + k] = max(nodes[i, behind + k], SPREAD * nodes[i, behind + k - 1])
+    for k in range(n // 2 - 1, -1, -1):
+        for i in range(1, 5):
+            nodes[i, behind + k] = max(nodes[i, behind + k], SPREAD * nodes[i, behind + k + 1])
 
 
 @kernel
-def weights(x, first, at, value, slope):
-    """Lagrange weights of STENCIL nodes from ``first`` on, for the value and for the slope at ``at``."""
+def weights(x, first, stride, at, out):
+    """Lagrange weights of STENCIL nodes, every ``stride``-th from ``first`` on."""
     for i in range(STENCIL):
-        value[i], slope[i] = 1.0, 0.0
+        out[i] = 1.0
         for k in range(STENCIL):
             if k != i:
-                gap = x[first + i] - x[first + k]
-                slope[i] = slope[i] * (at - x[first + k]) / gap + value[i] / gap
-                value[i] *= (at - x[first + k]) / gap
+                there = x[first + k * stride]
+                out[i] *= (at - there) / (x[first + i * stride] - there)
 
 
 @kernel
-def at_stations(stations, base_cells, doublings, tube, load, fine, nodes, profile):
-    """Write the FIELDS at each of ``stations`` (distance from the end in radii, ascending) into ``profile`` (FIELDS, m).
+def local(y, flux, constant, alike, cell, load):
+    """Angles after deformation [rad], and multipliers of both families with their extension, at one place."""
+    psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
+    meridional = sqrt(1.0 + G_1)
+    s = axial_stretch(y, constant, cell, load) if alike else axial_of_flux(y, flux, cell, load)
+    alpha, beta = lagrangian.fiber_multipliers(y, s, cell, load)
+    return (
+        atan(y * (cell[0] + cell[1] + psi) / meridional), atan(y * (cell[0] - cell[1] + psi) / meridional),
+        load[0] * alpha, load[0] * beta,
+    )  # fmt: skip
 
-    Fields: stretch, axial position [radius], twist [rad], tan(alpha'), tan(beta'), and the multipliers of both families.
+
+@kernel
+def extrapolated_loads(load, fine):
+    """The load to fourth order, and one as far from it as its error may be."""
+    a, b, c = load_of(0, load, fine), load_of(1, load, fine), load_of(2, load, fine)
+    p, f, m = (4.0 * a[3] - b[3]) / 3.0, (4.0 * a[4] - b[4]) / 3.0, (4.0 * a[5] - b[5]) / 3.0
+    fourth = SAFETY / 15.0
+    other_p = p + fourth * (p - (4.0 * b[3] - c[3]) / 3.0)
+    other_f = f + fourth * (f - (4.0 * b[4] - c[4]) / 3.0)
+    other_m = m + fourth * (m - (4.0 * b[5] - c[5]) / 3.0)
+    return (load[0], load[1], load[2], p, f, m, load[6]), (
+        load[0],
+        load[1],
+        load[2],
+        other_p,
+        other_f,
+        other_m,
+        load[6],
+    )
+
+
+@kernel
+def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
+    """Write the FIELDS at each of ``stations`` (distance from the end in radii, ascending) into ``profile`` (FIELDS, m):
+    stretch, axial position [radius], twist [rad], angles of both families [rad], multipliers of both; then their bounds.
+
+    Returns the largest bound, scaled, rounding left out: stretch as it is, positions by the length, twist by itself or a
+    radian, angles by a radian, multipliers by the largest along the tube.
     """
-    extrapolate_nodes(base_cells, doublings, tube, load, fine, nodes)
     course, edges, _, _, _, _ = tube
-    x = fine[2]
-    value, slope = nodes[3], nodes[4]
-    gamma = load[0]
-    factor = 1 << (doublings - 1)
-    segment, j = 0, 0
+    n = base << (doublings - 1)
+    extrapolate_nodes(base, n, tube, load, fine, nodes)
+    x, behind, alike = nodes[0], n + 1, is_alike(course)
+    fourth = SAFETY / 15.0
+    value, coarse, number, bound, share = np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5), np.empty(5)
+    load, other = extrapolated_loads(load, fine)
+    rounding = ROUNDING + LAST_STEP * max(fine[3, LEFT], 0.0)
+    constant, missed, other_constant = 0.0, 0.0, 0.0
+    if alike:
+        cell = at_point(course, 0, 1.0)
+        constant = lagrangian.uniform_tube(nodes[1, n], cell, load)[2]
+        other_constant = lagrangian.uniform_tube(nodes[1, n], cell, other)[2]
+        missed = lagrangian.uniform_tube(nodes[1, n] + fourth * nodes[1, behind + n // 2], cell, load)[2] - constant
+    unit = np.empty(5)
+    unit[1], unit[2], unit[3], unit[4] = 1.0, x[n], max(1.0, abs(nodes[3, n])), 0.0
+    for k in range(n + 1):
+        unit[4] = max(unit[4], abs(nodes[4, k]))
+    segment, j, first, linear = 0, 0, 0, False
+    worst, loose, tension = 0.0, 0.0, 0.0
     for i in range(len(stations)):
         # a station on a jump belongs to the segment before it
-        while segment < len(edges) - 2 and x[edges[segment + 1] * factor] < stations[i]:
+        while segment < len(edges) - 2 and x[edges[segment + 1] * n // base] < stations[i]:
             segment += 1
-        low, high = edges[segment] * factor, edges[segment + 1] * factor
+        low, high = edges[segment] * n // base, edges[segment + 1] * n // base
         j = max(j, low)
         while j < high - 1 and x[j + 1] < stations[i]:
             j += 1
+        h = x[j + 1] - x[j]
+        before, after = max(j, low + 1), min(j, high - 2)
+        linear = h > UNEVEN * min(x[before] - x[before - 1], x[after + 2] - x[after + 1])
+        at = (stations[i] - x[j]) / h
         first = min(max(j - STENCIL // 2 + 1, low), high + 1 - STENCIL)
-        weights(x, first, stations[i], value, slope)
-        y, v, z, twist = 0.0, 0.0, 0.0, 0.0
-        for k in range(STENCIL):
-            y += value[k] * nodes[0, first + k]
-            v += slope[k] * nodes[0, first + k]
-            z += value[k] * nodes[1, first + k]
-            twist += value[k] * nodes[2, first + k]
+        weights(x, first, 1, stations[i], value)
+        half = min(max(j // 2 - STENCIL // 2 + 1, low // 2), high // 2 + 1 - STENCIL)
+        weights(x, 2 * half, 2, stations[i], coarse)
+        for r in range(1, 5):
+            number[r], bound[r] = 0.0, 0.0
+            for k in range(STENCIL):
+                number[r] += value[k] * nodes[r, first + k]
+                bound[r] += coarse[k] * nodes[r, 2 * half + k * 2]
+            bound[r] = abs(bound[r] - number[r]) / 15.0
+            if linear:
+                number[r] = nodes[r, j] + at * (nodes[r, j + 1] - nodes[r, j])
+                bound[r] = abs(nodes[r, j + 1] - nodes[r, j]) if r == 1 or r == 4 else 0.0
+            bound[r] += fourth * max(nodes[r, behind + j // 2], nodes[r, behind + (j + 1) // 2])
+            worst = max(worst, bound[r] / unit[r] if r < 4 else 0.0)
+            share[r] = bound[r]
+            bound[r] += rounding * (number[1] if r == 1 else unit[r])
+            share[r] /= max(bound[r], SMALLEST)
+        y, flux = number[1], number[4]
         cell = at_point(course, segment, (stations[i] - x[low]) / (x[high] - x[low]))
-        psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
-        meridional = sqrt(1.0 + G_1)
-        v = min(max(v, -(1.0 - 1e-12) * meridional), (1.0 - 1e-12) * meridional)
-        profile[0, i], profile[1, i], profile[2, i] = y, z, twist
-        profile[3, i] = y * (cell[0] + cell[1] + psi) / meridional
-        profile[4, i] = y * (cell[0] - cell[1] + psi) / meridional
-        alpha, beta = lagrangian.fiber_multipliers(y, v, cell, load)
-        profile[5, i], profile[6, i] = gamma * alpha, gamma * beta
+        here = local(y, flux, constant, alike, cell, load)
+        by_y = local(y + bound[1], flux, constant, alike, cell, load)
+        by_flux = local(y, flux + bound[4], constant + missed, alike, cell, load)
+        by_load = local(y, flux, other_constant, alike, cell, other)
+        for r in range(3):
+            profile[r, i], profile[VALUES + r, i] = number[1 + r], bound[1 + r]
+        for r in range(4):
+            one, two, three = abs(by_y[r] - here[r]), abs(by_flux[r] - here[r]), abs(by_load[r] - here[r])
+            profile[3 + r, i], profile[VALUES + 3 + r, i] = here[r], one + two + three + rounding * abs(here[r])
+            known = share[1] * one + (1.0 if alike else share[4]) * two + three
+            if r < 2:
+                worst = max(worst, known)
+            else:
+                loose, tension = max(loose, known), max(tension, abs(here[r]))
+    return max(worst, loose / tension if tension > 0.0 else 0.0)

@@ -8,7 +8,7 @@ The first integral gives s without any difference (:mod:`meridian`). Nodes are d
 from math import exp, sqrt
 
 from ..jit import kernel
-from . import beside, lagrangian, meridian, nested, uniform
+from . import beside, finest, lagrangian, meridian, nested, uniform
 from .guide import cell_along
 from .status import INACCURATE, NOT_CONVERGED, OK
 
@@ -80,15 +80,16 @@ def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
         if not total > 0.0 or not u > 0.0:
             return NOT_CONVERGED, 0
         integrate(cell, load, u, rate, half, min(total, half), count, curve, row)
+        if k >= ROWS - finest.MESHES:
+            x, y = finest.mesh_of(ROWS - 1 - k, nodes // 2, fine)
+            for i in range(count + 1):
+                x[i], y[i] = curve[0, i], curve[1, i]
+            x[count] = half
         if traced and not beside.is_near(row[nested.MIDDLE], near):
             return NOT_CONVERGED, 0
     out[2], out[3] = lagrangian.scales(table[ROWS - 1], cell, load, half, nested.SMALLEST_TOLERANCE)
     largest = finish(table, out)
-    curve[0, nodes] = half
-    for k in range(nodes + 1):
-        fine[0, k], fine[1, k] = curve[0, k], curve[1, k]
-        if k % 2 == 0:
-            fine[2, k // 2], fine[4, k // 2] = curve[0, k], curve[1, k]
+    finest.leave_loads(table[:, nested.MULTIPLIER], ROWS - 1, 0.0, load, finest.NO_MESH, fine)
     return (OK if largest <= accuracy else INACCURATE), nested.MAX_DOUBLINGS
 
 

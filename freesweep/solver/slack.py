@@ -2,32 +2,40 @@
 
 from ..jit import kernel
 from . import lagrangian
-from .course import fill
+from .course import at_point, fill
 from .mesh import cell_at
+from .profile import axial_of_flux, axial_stretch, flux_at, is_alike
 
 TENSIONLESS = 1e-9  # of the load: a fiber family without tension does not push
-TENSIONLESS_END = 1e-3  # at a clamped end, where the slope is carried on from the cells beside
+TENSIONLESS_END = 1e-4  # at the clamped end of a tube that varies, whose flux is of second order here
+
+
+@kernel
+def pushing(y, s, share, cell, load):
+    """Bit 1: the alpha family would have to push at a place; bit 2: the beta family."""
+    alpha, beta = lagrangian.fiber_multipliers(y, s, cell, load)
+    least = -share * (load[3] + abs(load[4]))
+    return (1 if alpha < least else 0) | (2 if beta < least else 0)
 
 
 @kernel
 def slack_fibers(x, y, n, base, tube, load):
-    """Bit 1: the alpha family would have to push somewhere; bit 2: the beta family."""
-    course, edges, cells, free, _, _ = tube
-    own = fill(course, edges, x, n, base, cells)
+    """:func:`pushing` anywhere along a tube."""
+    course, edges, cells, _, _, _ = tube
     flag = 0
-    for j in range(-1, n + 1):
-        if 0 <= j < n:
-            v, middle = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (y[j] + y[j + 1])
-        elif j == n and free:
-            continue
-        else:  # a clamped end itself, with the slope carried on from the two cells next to it
-            i, k = (0, 1) if j < 0 else (n - 1, n - 2)
-            near, after = (y[i + 1] - y[i]) / (x[i + 1] - x[i]), (y[k + 1] - y[k]) / (x[k + 1] - x[k])
-            h = x[i + 1] - x[i]
-            v, middle = near + (near - after) * h / (h + x[k + 1] - x[k]), y[0 if j < 0 else n]
-        cell = cell_at(own, min(max(j, 0), n - 1))
+    if is_alike(course):
+        cell = at_point(course, 0, 0.0)
+        constant = lagrangian.uniform_tube(y[n], cell, load)[2]
+        for j in range(n + 1):
+            flag |= pushing(y[j], axial_stretch(y[j], constant, cell, load), TENSIONLESS, cell, load)
+        return flag
+    own = fill(course, edges, x, n, base, cells)
+    for j in range(n):
+        v, middle, cell = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (y[j] + y[j + 1]), cell_at(own, j)
         if v * v < 1.0 + lagrangian.kinematics(middle, cell, load)[3]:
-            alpha, beta = lagrangian.fiber_multipliers(middle, v, cell, load)
-            least = -(TENSIONLESS if 0 <= j < n else TENSIONLESS_END) * (load[3] + abs(load[4]))
-            flag |= (1 if alpha < least else 0) | (2 if beta < least else 0)
+            flag |= pushing(middle, lagrangian.integrands(middle, v, cell, load)[0], TENSIONLESS, cell, load)
+    for j in (0, n):
+        cell = at_point(course, 0 if j == 0 else course.shape[0] - 1, 0.0 if j == 0 else 1.0)
+        flux = flux_at(x, y, j, n, own, load)
+        flag |= pushing(y[j], axial_of_flux(y[j], flux, cell, load), TENSIONLESS_END, cell, load)
     return flag

@@ -6,7 +6,7 @@ the scalar kernels.
 """
 
 from ...jit import kernel
-from .. import lagrangian
+from .. import finest, lagrangian
 from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..newton import SMALL_STEP
 from . import mesh, middle, newton
@@ -105,15 +105,19 @@ def restart(lost, safe, n, y):
 
 
 @kernel
-def keep(ready, count, coarse_x, coarse_y, x, y, kept):
-    """The finest mesh of ``count`` cells, and the one before, of the lanes that are ready."""
+def keep(ready, count, error, coarsest_x, coarsest_y, coarse_x, coarse_y, x, y, kept):
+    """The finest mesh of ``count`` cells, and the two before, of the lanes that are ready, as in :mod:`solver.finest`."""
     for lane in range(WIDTH):
         if (ready >> lane) & 1:
             fine = kept[lane]
             for i in range(count + 1):
                 fine[0, i], fine[1, i] = x[i, lane], y[i, lane]
-            for i in range(count // 2 + 1):
+            behind = count // 2 + 1
+            fine[3, finest.LEFT] = error[0, lane]
+            for i in range(behind):
                 fine[2, i], fine[4, i] = coarse_x[i, lane], coarse_y[i, lane]
+            for i in range(count // 4 + 1):
+                fine[2, behind + i], fine[4, behind + i] = coarsest_x[i, lane], coarsest_y[i, lane]
 
 
 @kernel
@@ -184,7 +188,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
         put(table[level], MIDDLE, middle.stretch(here_y, count, n, u, long, share, room))
         if kept is not None:
             if level == 2:
-                continue  # profiles have no bounds of their own: they keep to the finer mesh
+                continue  # profiles want more of the nodes than the integrals do
         largest = extrapolate(table, level, cell, load, length, max(error, coarser), missed, sizes, found[0], found[1])
         ready = todo & (largest <= accuracy)
         if level == 2:
@@ -193,10 +197,11 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
         if some(ready):
-            alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
+            alpha_here, beta_here = pushing(here_y, count, cell, load)
             alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
             if kept is not None:
-                keep(bits(ready), count, half_x, half_y, here_x, here_y, kept)
+                put(sizes, 0, max(error, coarser))
+                keep(bits(ready), count, sizes, fine_x, fine_y, half_x, half_y, here_x, here_y, kept)
                 for lane in range(WIDTH):
                     doublings[lane] = level - 1 if (bits(ready) >> lane) & 1 else doublings[lane]
         met, todo = met | ready, todo & ~ready

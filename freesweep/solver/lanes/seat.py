@@ -111,9 +111,14 @@ def record(met, alpha, beta, rows, out, values, bounds, status, slack):
 
 
 @kernel
-def draw_profiles(met, rows, columns, base, doublings, kept, stations, tube, nodes, profiles):
-    """Write the profiles of the lanes that are met, from the meshes that were ``kept`` of them."""
+def draw_profiles(met, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles):
+    """Write the profiles of the lanes that are met, from the meshes that were ``kept`` of them; returns those whose bounds
+    meet the accuracy.
+    """
+    drawn = 0
     for lane in range(WIDTH):
         if (met >> lane) & 1:
             load = seat(lane, columns, tube)
-            at_stations(stations, base, doublings[lane], tube, load, kept[lane], nodes, profiles[rows[lane]])
+            missed = at_stations(stations, base, doublings[lane], tube, load, kept[lane], nodes, profiles[rows[lane]])
+            drawn |= (1 if missed <= accuracy else 0) << lane
+    return drawn

@@ -125,6 +125,7 @@ def solve_lanes(
             kept, doublings,
         )  # fmt: skip
         met = met & guide.within(y, base, u, cell, load, half)
-        record(bits(met), bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
+        done = bits(met)
         if stations is not None:
-            draw_profiles(bits(met), rows, columns, base, doublings, kept, stations, tube, nodes, profiles)
+            done = draw_profiles(done, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles)
+        record(done, bits(alpha), bits(beta), rows, out, values, bounds, status, slack)

@@ -62,7 +62,7 @@ def answer(track, space, tube, path, here, ahead, rows, accuracy):
             guess(track, space, here, ahead, p)
             load = loaded(path.origin, path.direction, p)
             status, doublings = plain(space, tube, load, REGRADES, accuracy)
-            record(space, tube, load, status, doublings, rows, i)
+            record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
 @inlined
@@ -85,7 +85,7 @@ def end_at_fold(track, roomy, space, tube, path, here, ahead, rows, limit, accur
             status, doublings = plain(space, tube, load, REGRADES, accuracy)
         if status == NOT_CONVERGED and value == value:
             status, doublings = near_fold(track, space, tube, path, p, here[0], value, accuracy)
-        record(space, tube, load, status, doublings, rows, i)
+        record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
 @kernel

@@ -61,7 +61,7 @@ def lock(problem, tube, space, rows, accuracy):
         if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
             guide.locked(tube, problem[GAMMA], space.ahead)
             status, doublings = cold(space, tube, load, accuracy)
-            record(space, tube, load, status, doublings, rows, i)
+            record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
 @inlined
@@ -75,7 +75,7 @@ def first_states(path, first, tube, space, rows, accuracy):
                 space.u[k] = 1.0
             if guide.follow(tube, space.u, path.origin, load, space.ahead) == 1.0:
                 status, doublings = cold(space, tube, load, accuracy)
-                record(space, tube, load, status, doublings, rows, i)
+                record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
 @kernel

@@ -10,7 +10,8 @@ import numpy as np
 from ...jit import inlined, kernel
 from .. import held, lagrangian, nested, newton
 from ..course import fill
-from ..profile import FIELDS, at_stations
+from ..drawing import draw
+from ..profile import FIELDS
 from ..slack import slack_fibers
 from ..status import INACCURATE, NOT_CONVERGED, OK
 
@@ -100,7 +101,7 @@ def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
 
 
 @kernel
-def record(space, tube, load, status, doublings, rows, i):
+def record(space, tube, load, status, doublings, accuracy, rows, i):
     """Write a state, or why there is none, to row ``i``."""
     rows.status[i] = status
     if status != OK and status != INACCURATE:
@@ -111,7 +112,10 @@ def record(space, tube, load, status, doublings, rows, i):
         rows.values[i, k], rows.bounds[i, k] = share * space.out[0, k], share * space.out[1, k]
     rows.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << doublings, base, tube, load)
     if len(rows.stations) > 0:
-        at_stations(rows.stations, base, doublings, tube, load, space.fine, space.curve, rows.profiles[i])
+        drawn = draw(
+            rows.stations, base, doublings, tube, load, space.fine, space.curve, space.work, accuracy, rows.profiles[i]
+        )
+        rows.status[i] = status if drawn else INACCURATE
 
 
 @kernel
