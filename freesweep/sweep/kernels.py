@@ -23,7 +23,7 @@ TYPICAL = {
     **{"c10": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0, "fiber_extension": 1.0},
 }  # a tube that every kernel solves in no time, in its own radii and C10
 PRESSURE = 0.1
-CHILD = "import sys; sys.path.insert(0, sys.argv[1]); from freesweep.sweep.kernels import compile_idle as do; do(sys.argv[2:])"
+CHILD = "import sys; sys.path.insert(0, sys.argv[1]); from freesweep.sweep.kernels import compile_idle as c; c(sys.argv[2:])"
 SOLVING, THE_REST = ("solve_lanes",), ("carry_lanes", "seek_lanes", "query")  # what takes either process about as long
 ANSWERS = "interpolate"  # of the query's kernels one of the last that is compiled
 
@@ -103,9 +103,7 @@ def compile_idle(words):
                 None,
             )  # fmt: skip
         if "seek_lanes" in words:
-            seek_lanes(
-                problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four
-            )
+            seek_lanes(problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four)
     if "query" in words:
         from ..query.idle import compile_kernels
 
