@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from freesweep.census.designs import quadrature
+from freesweep.scaling import problem_rows
 from freesweep.solver import batch, lagrangian
 from freesweep.solver.lanes import vector
 from freesweep.solver.lanes.vector import WIDTH, bits, get, mask_of, put, select, some, spread
@@ -214,6 +215,32 @@ def test_other_pressures_before_it_change_a_state_within_its_bounds():
     both = np.isfinite(apart)
     assert both.mean() > 0.6
     assert np.all(np.abs(apart)[both] <= allowed[both])
+
+
+def test_what_vectors_leave_they_solve_on_a_finer_mesh(monkeypatch):
+    """The locked states of the main design space that need it: no scalar kernel, bits of their own, the same numbers."""
+    angles = [(60, 70), (62.5, 70), (65, 70), (65, 72.5), (67.5, 72.5), (70, 75), (75, 77.5), (75, 80), (80, 82.5)]
+    sizes = [(105, 4.4), (190, 5.4), (400, 7), (80, 3), (265, 6.1), (140, 4.4), (80, 8), (80, 5.4), (105, 5.4)]
+    angles, sizes = np.array([*angles, (80, 82.5)]), np.array([*sizes, (140, 7)]) * 1e-3
+    nothing, radius = np.zeros(len(angles)), sizes[:, 1]
+    problems = problem_rows(
+        {"alpha": angles[:, 0], "beta": angles[:, 1], "length": sizes[:, 0], "radius": radius, "fiber_radius": radius,
+         "wall": nothing + 1.59e-3, "c10": nothing + 0.17e6, "c01": nothing + 0.08e6, "fiber_extension": nothing + 1.0,
+         "force": nothing, "torque": nothing},
+        "full",
+    )  # fmt: skip
+    first, pressures = np.arange(len(problems) + 1), np.full(len(problems), np.inf)
+    scalar = walked(problems, first, pressures, lanes=False)
+    monkeypatch.setattr(batch, "FINER", 1)
+    monkeypatch.setattr(batch, "walk_many", lambda *arguments: None)
+    assert np.all(walked(problems, first, pressures).status == PENDING)
+    monkeypatch.setattr(batch, "FINER", 2)
+    found = walked(problems, first, pressures)
+    assert np.all(found.status == OK)
+    assert np.all(np.abs(found.values - scalar.values) <= found.bounds + scalar.bounds)
+    alone = walked(problems[3:4], first[:2], pressures[:1])
+    assert np.array_equal(alone.values[0], found.values[3])
+    assert np.array_equal(alone.bounds[0], found.bounds[3])
 
 
 def test_narrow_vectors_give_the_same_numbers_to_rounding(tmp_path):

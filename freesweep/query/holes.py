@@ -140,7 +140,8 @@ def _common(code, other):
 @entry_point
 def cell_codes(codes, shape, strides, labels, cells):
     """Common code of the nodes at each cell's corners into ``cells`` (nodes,), MIXED where they differ."""
-    cells[:] = codes
+    for at in range(len(codes)):
+        cells[at] = codes[at]
     for a in range(len(shape)):
         if not labels[a]:
             count, step = shape[a], strides[a]

@@ -5,9 +5,11 @@ compile: about half the work each.
 """
 
 import contextlib
+import os
 import subprocess
 import sys
 from pathlib import Path
+from threading import Timer
 
 import numpy as np
 
@@ -23,7 +25,11 @@ TYPICAL = {
     **{"c10": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0, "fiber_extension": 1.0},
 }  # a tube that every kernel solves in no time, in its own radii and C10
 PRESSURE = 0.1
-CHILD = "import sys; sys.path.insert(0, sys.argv[1]); from freesweep.sweep.kernels import compile_idle as do; do(sys.argv[2:])"
+PATIENCE = 3.0  # [s]: what takes this process longer is compiled, not loaded
+CHILD = (
+    "import os, sys; sys.path[:] = sys.argv[1].split(os.pathsep);"
+    "from freesweep.sweep import kernels; kernels.compile_idle(sys.argv[2:])"
+)
 SOLVING, THE_REST = ("solve_lanes",), ("carry_lanes", "seek_lanes", "query")  # what takes either process about as long
 ANSWERS = "interpolate"  # of the query's kernels one of the last that is compiled
 
@@ -40,11 +46,15 @@ def load(kinds, sweep, progress=False):
         if progress:
             print("compiling the kernels in two processes, once for each version: 20 seconds if two cores are idle")
         _compile_aside(missing, rubbers)
-    elif progress and sweep.profiles and "walk_many" not in _stored("solver"):
-        print("compiling the kernels of tubes that vary, once for each version: a minute")
     jobs = ((_typical(kind, rubber), sweep.accuracy, not sweep.profiles) for kind in kinds for rubber in rubbers)
-    for _ in in_order(solve_shard, jobs, 1):  # not here: LLVM calls back, and forgets an interrupt that comes then
-        pass
+    waiting = Timer(PATIENCE, print, ["compiling the kernels, once for each version: a minute"])
+    if progress and not missing:
+        waiting.start()
+    try:
+        for _ in in_order(solve_shard, jobs, 1):  # not here: LLVM calls back, and forgets an interrupt that comes then
+            pass
+    finally:
+        waiting.cancel()
 
 
 def _missing(kinds, sweep):
@@ -58,24 +68,28 @@ def _missing(kinds, sweep):
 
 def _stored(room):
     """Names of the entry points of a room whose machine code lies on disk, and all of them where none can."""
+    from numba import config
+
     from ..jit import cache_folder
 
     try:
         folder = Path(cache_folder(room))
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, RuntimeError, TypeError):  # read-only, nobody's home: each process compiles for itself
-        return {*SOLVING, *THE_REST, ANSWERS, "walk_many"}
+        return {*SOLVING, *THE_REST, ANSWERS}
+    if config.DISABLE_JIT:
+        return {*SOLVING, *THE_REST, ANSWERS}
     return {path.name.split(".")[1].split("-")[0] for path in folder.rglob("*.nbc")}
 
 
 def _compile_aside(missing, rubbers):
     """Let two other processes compile what is ``missing``; what they could not do is left to this one."""
     families = ["Yeoh" if rubber else "Mooney-Rivlin" for rubber in rubbers]
-    with contextlib.ExitStack() as running:
+    with contextlib.ExitStack() as running, contextlib.suppress(OSError):
         children = []
         for part in (SOLVING, THE_REST):
             if own := missing.intersection(part):
-                words = [sys.executable, "-c", CHILD, str(Path(__file__).parents[2]), *families, *own]
+                words = [sys.executable, "-c", CHILD, os.pathsep.join(sys.path), *families, *own]
                 silent = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
                 children.append(running.enter_context(subprocess.Popen(words, **silent)))
                 running.callback(children[-1].kill)
