@@ -5,8 +5,9 @@
 * ``nogil``: kernels are driven by a thread pool, never by ``prange`` (its ``workqueue`` layer aborts the process when
   two Python threads enter it).
 
-Entry points are cached on disk. Numba's cache knows only the file of the cached function, so editing the physics in
-another file would run stale code: the cache folder is therefore named after a hash of all sources in the kernel's room.
+Entry points are cached on disk, by a cache of our own (:mod:`kernel_cache`). Numba's knows only the file of the cached
+function, so editing the physics in another file would run stale code: the folder is named after a hash of all sources in
+the kernel's room.
 """
 
 import functools
@@ -16,7 +17,8 @@ import sys
 from pathlib import Path
 
 import numba
-from numba.core import config
+
+from .kernel_cache import KernelCache
 
 _POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
 
@@ -31,14 +33,13 @@ def source_hash(room: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def cache_folder(room: str) -> str:
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+def cache_folder(room: str) -> str | None:
+    """Where the machine code of a room's very sources lies; None: nobody is at home here, nothing is kept."""
+    try:
+        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    except RuntimeError:  # neither HOME nor an entry of this user's
+        return None
     return str(Path(base) / "freesweep" / "kernels" / f"{room}-{source_hash(room)}")
-
-
-def is_compiled(room: str) -> bool:
-    """Whether machine code of a room's very sources lies on disk."""
-    return any(Path(cache_folder(room)).rglob("*.nbc"))
 
 
 def kernel(function):
@@ -53,11 +54,7 @@ def inlined(function):
 
 def entry_point(function):
     """Compile a kernel that Python calls, and keep its machine code on disk."""
-    before = config.CACHE_DIR
-    config.CACHE_DIR = cache_folder(function.__module__.split(".")[1])
-    try:
-        return numba.njit(cache=True, **_POLICY)(function)
-    except RuntimeError:  # no folder can be written here: compile anew in each process
-        return kernel(function)
-    finally:
-        config.CACHE_DIR = before
+    dispatcher = kernel(function)
+    if folder := cache_folder(function.__module__.split(".")[1]):
+        dispatcher._cache = KernelCache(function, folder)
+    return dispatcher

@@ -64,7 +64,7 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
             )  # fmt: skip
         if not np.any(found.status == PENDING):
             return found
-    if not (soon and at_once(count, walk_many, walk_many, *scalar)):
+    if not (soon and at_once(np.count_nonzero(found.status == PENDING), walk_many, walk_many, *scalar)):
         walk_many(*scalar)
     return found
 
