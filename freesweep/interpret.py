@@ -29,8 +29,8 @@ class _Clock(threading.local):
     end = np.inf  # [s]
 
 
-class _TooLong(Exception):  # noqa: N818, no error but a reason to go on otherwise
-    pass
+class _TooLong(Exception):
+    """Plain Python has had its time."""
 
 
 _clock = _Clock()

@@ -70,7 +70,7 @@ def stem(function) -> str:
 
 
 def compiled(folder) -> set:
-    """The :func:`stem` of each function of which a ``folder`` (None: there is none) holds machine code that can be loaded."""
+    """The :func:`stem` of each function of which a ``folder`` holds whole files; None stands for no folder."""
     files = Path(folder).glob("*.nbc") if folder else ()
     return {path.name.rpartition("-")[0] for path in files if _whole(path) is not None}
 
