@@ -1,4 +1,4 @@
-"""What others have beside a sweep's output, or put there while it runs, stays as it is; what changed on disk is not collected."""
+"""What others have beside a sweep's output, or put there, stays as it is; what changed on disk is not collected."""
 
 import errno
 import json
@@ -55,7 +55,9 @@ def test_a_shard_that_changed_between_save_and_collection_is_not_collected(place
 
     with monkeypatch.context() as patch:
         before_collecting(patch, change)
-        with pytest.raises(EnvironmentFault, match=r"free-000001-\w+\.bin: other bytes are read back than were written"):
+        with pytest.raises(
+            EnvironmentFault, match=r"free-000001-\w+\.bin: other bytes are read back than were written"
+        ):
             make(out, SWEEP)
     assert not out.exists()
     solved, solve = [], run.solve_shard

@@ -26,7 +26,17 @@ class EnvironmentFault(OSError):
 
 def is_of_environment(error) -> bool:
     """Whether an OSError tells of the machine (disk, permissions, open files) rather than of a name that was given."""
-    return isinstance(error, EnvironmentFault) or ((error.errno or 0) > 0 and error.errno not in WRONG_NAMES)
+    if isinstance(error, EnvironmentFault | PermissionError):
+        return True
+    return (error.errno or 0) > 0 and error.errno not in WRONG_NAMES
+
+
+def check_environment(path, error):
+    """Raise :class:`EnvironmentFault` if an error of a library that reads ``path`` is the machine's, not the file's."""
+    if isinstance(error, MemoryError):
+        raise error
+    if isinstance(error, OSError) and is_of_environment(error):
+        raise EnvironmentFault(f"cannot read {path}: {os.strerror(error.errno)}") from error
 
 
 def left_behind(folder, name) -> list:

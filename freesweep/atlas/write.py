@@ -11,6 +11,7 @@ from itertools import product
 
 import numpy as np
 
+from . import netcdf
 from .files import WholeFile
 from .schema import attributes
 from .seal import seal
@@ -93,11 +94,9 @@ class AtlasWriter:
 
     def dataset(self):
         """What was put so far as an xarray Dataset, read when it is used; close it before the file is published."""
-        import xarray as xr
-
         self.store.flush()
         self.file.check()
-        return xr.open_dataset(self.file.temporary, engine="netcdf4", decode_times=False)
+        return netcdf.dataset(self.file.temporary)
 
     def describe(self, attrs):
         """Add attributes of the atlas: name -> text."""

@@ -6,6 +6,8 @@ import numpy as np
 
 from .rubber import rubber_attributes
 
+FOLLOWING = ("interpolation_tolerance", "material", "material_source", "largest_stretch")  # only of some specifications
+
 
 def specified(sweep) -> dict:
     """What follows from the specification alone."""
