@@ -175,3 +175,11 @@ def test_a_disk_that_fails_makes_no_bad_file(code, path, monkeypatch, capsys):
             with pytest.raises(OSError, match=os.strerror(code)) as caught:
                 fs.open_atlas(path)
             assert name == "open" or isinstance(caught.value, EnvironmentFault)
+
+
+def test_a_file_that_breaks_off_while_it_is_used_is_one_line(path, monkeypatch, capsys):
+    def failing(*_):
+        raise RuntimeError("NetCDF: HDF error")
+
+    monkeypatch.setattr(fs.Atlas, "status_counts", failing)
+    assert "freesweep verify FILE says whether it is damaged" in refused(capsys, "info", str(path), code=ENVIRONMENT)

@@ -12,7 +12,7 @@ from shards import same_bits
 from freesweep.atlas import files
 from freesweep.atlas.files import EnvironmentFault
 from freesweep.cli import ENVIRONMENT
-from freesweep.sweep import run, shard_file
+from freesweep.sweep import run, shard_file, shards
 from freesweep.sweep.shards import SweepError
 from freesweep.sweep.spec import parse
 
@@ -213,3 +213,14 @@ def test_a_shard_that_cannot_be_read_is_a_fault_of_the_environment(code, referen
         assert f"cannot read {out}.parts/free-00000" in error
         assert os.strerror(code) in error
     same_bits(reference, make(out, SWEEP))
+
+
+def test_a_lock_that_cannot_be_looked_at_is_a_fault_of_the_environment(tmp_path, monkeypatch, capsys):
+    (tmp_path / "spec.toml").write_text(OTHER.text)
+
+    def failing(_):
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    monkeypatch.setattr(shards.os, "fstat", failing)
+    out = str(tmp_path / "atlas.nc")
+    assert "Input/output error" in refused(capsys, "sweep", str(tmp_path / "spec.toml"), "-o", out, code=ENVIRONMENT)

@@ -45,6 +45,13 @@ def main(arguments=None) -> int:
 
         _say(f"freesweep: {error}")
         return ENVIRONMENT if is_of_environment(error) else BAD_INPUT
+    except RuntimeError as error:
+        if not str(error).startswith("NetCDF: "):  # of a number that is read when it is used
+            raise
+        _say(
+            f"freesweep: a file could not be read to its end ({error}); freesweep verify FILE says whether it is damaged"
+        )
+        return ENVIRONMENT
 
 
 def _say(text):

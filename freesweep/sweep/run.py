@@ -96,7 +96,7 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
 def _complete(out, identity, text, overwrite, progress):
     """The atlas at ``out`` if it is this sweep's already; raises if it is another's that is not to be overwritten."""
     if os.path.lexists(out) and not out.is_file():
-        raise SweepError(f"{out} is a folder, a device or a link to nothing; give the name of the atlas to make")
+        raise SweepError(f"{out} is a folder or a device, or a link to nothing; give the name of the atlas to make")
     if overwrite or not out.exists():
         return None
     try:
