@@ -8,6 +8,7 @@ import pytest
 from commands import refused
 from grids import SMALL, make, only, spec
 from shards import same_bits
+from test_sweep_faults import Disk
 
 from freesweep.atlas import files
 from freesweep.atlas.files import EnvironmentFault
@@ -218,9 +219,6 @@ def test_a_shard_that_cannot_be_read_is_a_fault_of_the_environment(code, referen
 def test_a_lock_that_cannot_be_looked_at_is_a_fault_of_the_environment(tmp_path, monkeypatch, capsys):
     (tmp_path / "spec.toml").write_text(OTHER.text)
 
-    def failing(_):
-        raise OSError(errno.EIO, os.strerror(errno.EIO))
-
-    monkeypatch.setattr(shards.os, "fstat", failing)
+    monkeypatch.setattr(shards, "os", Disk("fstat", 1, "for ever", errno.EIO))
     out = str(tmp_path / "atlas.nc")
     assert "Input/output error" in refused(capsys, "sweep", str(tmp_path / "spec.toml"), "-o", out, code=ENVIRONMENT)
