@@ -32,6 +32,7 @@ _HOMES = {
     "run_sweep": "sweep.run",
     "open_atlas": "atlas.store",
     "Atlas": "atlas.store",
+    "UnsealedWarning": "atlas.store",
 }
 __all__ = [*_HOMES, "closed_form"]
 

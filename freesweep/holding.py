@@ -127,7 +127,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     arguments = (
         row, *states, buckled, course, edges, places, float(accuracy), values, bounds, codes, stable, slack, unique, fields
     )  # fmt: skip
-    if not at_once(count, hold_many, hold_many, *arguments):
+    if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
         hold_many(*arguments)
     scale = np.pi * r ** (2 if held_is_length else 3) * c10
     found = {

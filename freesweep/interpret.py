@@ -3,64 +3,92 @@
 The compiler takes twenty seconds, a state in plain Python a tenth of one: who asks for one state need not wait. Every
 kernel has its twin: the same code object, with the twins of all that it calls. Same formulas in the same order; as
 multiplications and additions are not fused, numbers differ by rounding, far within their bounds. Sweeps never do this.
+
+Some states take plain Python minutes: each twin looks at the clock when it is called, and gives up in time.
 """
 
 import sys
+import threading
+import time
 import types
-from pathlib import Path
 
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from .jit import cache_folder
+from .kernel_cache import compiled, stem
 
-FEW = 32  # states in one process: from here on the compiler's time is well spent
-FEWER = 4  # and that of loading its work
+FEW, SECONDS = 32, 3.0  # states, and [s], in one process: from here on the compiler's time is well spent
+FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
-_spent = [0]
+_spent = {}  # awaited entry point -> [states, seconds] in plain Python
 _twins = {}
+
+
+class _Clock(threading.local):
+    end = np.inf  # [s]
+
+
+class _TooLong(Exception):
+    """Plain Python has had its time."""
+
+
+_clock = _Clock()
 
 
 def at_once(states, awaited, entry, *arguments) -> bool:
     """Whether the call ``entry(*arguments)`` of an entry point, for so many states, was done in plain Python.
 
     False, with all arguments as they were, where the ``awaited`` entry point's machine code is at hand, where many states
-    are asked for, fewer if that code need only be loaded, and where plain Python raises an error at a number that kernels
-    take for infinite.
+    are asked for or those asked for take long, fewer and less long if that code need only be loaded, and where plain Python
+    raises an error at a number that kernels take for infinite.
     """
     if not isinstance(awaited, Dispatcher) or awaited.signatures:
         return False
-    on_disk = _on_disk(awaited)
-    _spent[0] += states
-    if _spent[0] > (FEWER if on_disk else FEW):
-        if not on_disk and _spent[0] < NEVER:
-            print("freesweep: compiling the kernels, once for each version: half a minute", file=sys.stderr)
-        _spent[0] = NEVER
-        return False
+    folder = cache_folder(awaited.py_func.__module__.split(".")[1])
+    on_disk = stem(awaited.py_func) in compiled(folder)
+    most, seconds = (FEWER, LESS) if on_disk else (FEW, SECONDS)
+    spent = _spent.setdefault(awaited, [0, 0.0])
+    spent[0] += states
+    if spent[0] <= most and spent[1] < seconds and _is_done(entry, arguments, spent, seconds):
+        return True
+    if not on_disk and spent[0] < NEVER:
+        where = "once for each version" if folder else "in each process, for there is no folder to keep them in"
+        print(f"freesweep: compiling the kernels, {where}: half a minute", file=sys.stderr)
+    spent[0] = NEVER
+    return False
+
+
+def _is_done(entry, arguments, spent, seconds):
+    """Whether plain Python did it before ``seconds`` were spent."""
     copies = [argument.copy() if isinstance(argument, np.ndarray) else argument for argument in arguments]
+    begun = time.perf_counter()
+    _clock.end = begun + seconds - spent[1]
     try:
         with np.errstate(all="ignore"):
             _twin(entry.py_func)(*copies)
-    except (ArithmeticError, ValueError):
+    except (ArithmeticError, ValueError, _TooLong):
         return False
+    finally:
+        spent[1] += time.perf_counter() - begun
     for argument, copy in zip(arguments, copies):
         if isinstance(argument, np.ndarray):
             argument[...] = copy
     return True
 
 
-def _on_disk(entry):
-    """Whether machine code of an entry point need only be loaded."""
-    function = entry.py_func
-    room = Path(cache_folder(function.__module__.split(".")[1]))
-    return any(room.rglob(f"{function.__module__.rpartition('.')[2]}.{function.__name__}-*.nbc"))
-
-
 def _twin(function):
     """A kernel's function, whose names stand for the twins of what it calls."""
     if function not in _twins:
         names = {"__builtins__": function.__globals__["__builtins__"]}
-        _twins[function] = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__)
+        plain = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__)
+
+        def twin(*arguments):
+            if time.perf_counter() > _clock.end:
+                raise _TooLong
+            return plain(*arguments)
+
+        _twins[function] = twin
         known = function.__globals__  # its own name may be among them
         names.update({name: _plain(known[name]) for name in function.__code__.co_names if name in known})
     return _twins[function]

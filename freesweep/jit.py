@@ -7,8 +7,9 @@
 * A literal, or a name that stands for one, is a type of its own to Numba, which compiles what it is handed to once more:
   kernels take it for any other whole number or truth.
 
-Entry points are cached on disk. Numba's cache knows only the file of the cached function, so editing the physics in
-another file would run stale code: the cache folder is therefore named after a hash of all sources in the kernel's room.
+Entry points are cached on disk, by a cache of our own (:mod:`kernel_cache`). Numba's knows only the file of the cached
+function, so editing the physics in another file would run stale code: the folder is named after a hash of all sources in
+the kernel's room.
 """
 
 import functools
@@ -19,6 +20,8 @@ from pathlib import Path
 
 import numba
 from numba.core import config, types
+
+from .kernel_cache import KernelCache
 
 _INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # which a quarter of the compiler's time would go to
 _POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
@@ -34,14 +37,13 @@ def source_hash(room: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def cache_folder(room: str) -> str:
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+def cache_folder(room: str) -> str | None:
+    """Where the machine code of a room's very sources lies; None: nobody is at home here, nothing is kept."""
+    try:
+        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    except RuntimeError:  # neither HOME nor an entry of this user's
+        return None
     return str(Path(base) / "freesweep" / "kernels" / f"{room}-{source_hash(room)}")
-
-
-def is_compiled(room: str) -> bool:
-    """Whether machine code of a room's very sources lies on disk."""
-    return any(Path(cache_folder(room)).rglob("*.nbc"))
 
 
 def kernel(function):
@@ -67,11 +69,7 @@ def inlined(function):
 
 def entry_point(function):
     """Compile a kernel that Python calls, and keep its machine code on disk."""
-    before = config.CACHE_DIR
-    config.CACHE_DIR = cache_folder(function.__module__.split(".")[1])
-    try:
-        return numba.njit(cache=True, **_POLICY)(function)
-    except RuntimeError:  # no folder can be written here: compile anew in each process
-        return numba.njit(**_POLICY)(function)
-    finally:
-        config.CACHE_DIR = before
+    dispatcher = numba.njit(**_POLICY)(function)
+    if folder := cache_folder(function.__module__.split(".")[1]):
+        dispatcher._cache = KernelCache(function, folder)
+    return dispatcher

@@ -11,7 +11,7 @@ from .atlas.guard import Unsafe, check_file, check_structure
 from .atlas.schema import FLAG_OF, VARIABLES, status_of
 from .atlas.seal import seal_fault
 from .atlas.store import AtlasError, open_atlas
-from .status import VALUED
+from .status import BEYOND_LIMIT, VALUED
 
 MANY = 1 << 24  # numbers read at once
 
@@ -61,6 +61,23 @@ def _of_specification(data):
         sweep = parse(text)
     except SpecificationError as error:
         return [f"its specification cannot be read: {error}"]
+    return [*_of_attributes(data, sweep), *_of_grid(data, sweep)]
+
+
+def _of_attributes(data, sweep):
+    """Faults of attributes that follow from the specification: energy and accuracy, the tolerance of answers, profiles."""
+    from .sweep.provenance import FOLLOWING, specified
+
+    wanted = specified(sweep)
+    names = {*wanted, *(name for name in data.attrs if name in FOLLOWING or name.startswith("profile_"))}
+    for name in sorted(names):
+        found, asked = data.attrs.get(name), wanted.get(name)
+        if (found is None) != (asked is None) or not np.array_equal(found, asked):
+            yield f"its attribute {name} is {found!r:.40}; its specification says {asked!r:.40}"
+
+
+def _of_grid(data, sweep):
+    """Faults of the axes and of what is fixed."""
     if sweep.interpolation_tolerance is not None:
         return _of_grown_axes(data, sweep)
     wanted = sweep.fixed | sweep.axes | ((sweep.designs or {}).get("columns", {}))
@@ -104,7 +121,22 @@ def _of_content(data):
             found.append(f"{name}: {wrong:,} numbers where its status says none, or none where it says one")
         if unbounded:
             found.append(f"{name}: {unbounded:,} numbers without a bound, or bounds without a number")
-    return found
+    return found + _of_limits(data)
+
+
+def _of_limits(data):
+    """Faults of limit pressures against statuses: below one there are states, beyond it none."""
+    if "limit_pressure" not in data:
+        return []
+    wrong = 0
+    for part in _parts(data["status"]):
+        codes, limit, bound, pressure = (
+            data[name].isel(part, missing_dims="ignore")
+            for name in ("status", "limit_pressure", "limit_pressure_error", "pressure")
+        )
+        wrong += int((codes.isin(VALUED) & (pressure > limit + bound)).sum())
+        wrong += int(((codes == BEYOND_LIMIT) & (pressure < limit - bound)).sum())
+    return [f"limit_pressure: {wrong:,} states beyond it, or none below it"] if wrong else []
 
 
 def _parts(variable):

@@ -42,7 +42,7 @@ def test_a_failed_write_leaves_the_old_file_and_says_what_is_needed(tmp_path, mo
             make(out, sweep, overwrite=True)
     assert out.read_bytes() == before
     only(tmp_path, "atlas.nc", "atlas.nc.parts")  # what was solved is kept, nothing half-written
-    assert {path.suffix for path in Path(f"{out}.parts").iterdir()} == {".bin", ".json", ""}
+    assert {path.suffix for path in Path(f"{out}.parts").iterdir()} == {".bin", ".json", ".lock"}
 
 
 def test_a_missing_folder_is_a_fault_of_the_environment(tmp_path):

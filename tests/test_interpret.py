@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ import pytest
 
 import freesweep as fs
 from freesweep import interpret, jit
+from freesweep.solver import batch
+from freesweep.solver.lanes import walk as lanes
 
 ROOT = Path(__file__).parent.parent
 
@@ -43,7 +46,7 @@ invert.__module__ = "freesweep.solver.invert"  # kernels live in a room
 def entry(monkeypatch, tmp_path):
     """A fresh installation, and an entry point."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(interpret, "_spent", [0])
+    monkeypatch.setattr(interpret, "_spent", {})
     return jit.kernel(invert)
 
 
@@ -96,3 +99,48 @@ def test_many_states_are_worth_the_compiler(entry, capsys):
 def test_machine_code_is_used_where_it_exists(entry):
     entry(np.ones(1))
     assert not interpret.at_once(1, entry, entry, np.ones(1))
+
+
+@jit.kernel
+def rest(number):
+    return number
+
+
+def dawdle(numbers):
+    numbers[0] = 7.0
+    while numbers[0] > 0.0:
+        numbers[0] = rest(numbers[0])
+
+
+dawdle.__module__ = invert.__module__
+
+
+def test_plain_python_gives_up_in_time(entry, monkeypatch, capsys):
+    """A state that never ends: arguments as they were, the compiler is announced, and no second try is made."""
+    monkeypatch.setattr(interpret, "SECONDS", 0.2)
+    slow, numbers = jit.kernel(dawdle), np.ones(1)
+    begun = time.perf_counter()
+    assert not interpret.at_once(1, slow, slow, numbers)
+    assert 0.2 <= time.perf_counter() - begun < 2.0
+    assert numbers == 1.0
+    assert "compiling the kernels" in capsys.readouterr().err
+    begun = time.perf_counter()
+    assert not interpret.at_once(1, slow, slow, numbers)
+    assert time.perf_counter() - begun < 0.1
+    assert interpret.at_once(1, entry, entry, numbers)  # another kernel has a time of its own
+
+
+def test_only_what_vectors_leave_counts(monkeypatch):
+    """Many states of which vectors solve all but one: plain Python is asked for one."""
+    asked = []
+    monkeypatch.setattr(batch, "at_once", lambda states, awaited, *_: asked.append((states, awaited)) or False)
+
+    def solve_all_but_one(_, __, ___, ____, rows, _____, ______, _______, values, bounds, status, *________):
+        status[rows[1:]] = 0
+
+    monkeypatch.setattr(lanes, "carry_lanes", lambda *given: given[8].fill(1.0))
+    monkeypatch.setattr(lanes, "solve_lanes", solve_all_but_one)
+    monkeypatch.setattr(batch, "walk_many", lambda *_: None)
+    problems = np.zeros((40, 11))
+    batch.walk_all(problems, np.arange(41), np.ones(40), batch.uniform(24), 1e-6, soon=True)
+    assert [states for states, _ in asked] == [40, 1]

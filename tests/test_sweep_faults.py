@@ -18,7 +18,7 @@ from freesweep.atlas.files import EnvironmentFault
 from freesweep.atlas.seal import seal_fault
 from freesweep.atlas.write import chunks_of, packed, parts
 from freesweep.cli import DONE, ENVIRONMENT, main
-from freesweep.sweep import estimate, run
+from freesweep.sweep import estimate, run, shard_file
 from freesweep.sweep.plan import plan
 from freesweep.sweep.records import FREE_STATE, LIMIT
 from freesweep.sweep.shards import Shards, SweepError
@@ -26,7 +26,7 @@ from freesweep.sweep.spec import parse
 
 AXES = {"alpha": [-20.0, 40.0], "beta": [-50.0, 20.0, 70.0], "pressure": [0.0, 1e5]}
 SWEEP = parse(spec(AXES))
-CALLS = ("pwrite", "fsync", "replace", "fchmod", "close", "open")
+CALLS = ("pwrite", "fsync", "replace", "link", "fchmod", "close", "open", "pread")
 
 
 class Disk:
@@ -276,6 +276,7 @@ def test_memory_does_not_grow_with_the_grid(tmp_path, monkeypatch):
 
     monkeypatch.setattr(run, "solve_shard", unsolved)
     monkeypatch.setattr(run, "SHARD_EQUILIBRIA", 8192)
+    monkeypatch.setattr(shard_file, "MOST_KEPT", 1 << 20)
     monkeypatch.setattr(estimate, "MOST_MEASURED", 0)  # tables for answers between the nodes are another matter
     made = {
         count: peak(

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: a sweep ends within seconds, says so and goes on from there, even where nothing hears a signal."""
+"""Ctrl-C, SIGTERM and SIGHUP: a sweep ends within seconds, says so and goes on from there, even if nothing hears them."""
 
 import signal
 import subprocess
@@ -48,7 +48,7 @@ sys.exit(main(["sweep", sys.argv[1], "-o", sys.argv[2], "--quiet", "--threads", 
 @pytest.mark.parametrize(
     ("sent", "where"),
     [
-        (signal.SIGTERM, "between shards"),
+        (signal.SIGHUP, "between shards"),
         (signal.SIGINT, "between shards"),
         (signal.SIGKILL, "between shards"),
         (signal.SIGTERM, "in a shard"),

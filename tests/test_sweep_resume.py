@@ -75,7 +75,7 @@ def test_a_killed_sweep_goes_on_to_the_same_bits(moment, reference, tmp_path, mo
         same_bits(reference, make(out, SWEEP))
 
 
-@pytest.mark.parametrize("left", ["atlas.nc.parts", ".atlas.nc.abcdefgh.part"])
+@pytest.mark.parametrize("left", ["atlas.nc.parts", ".atlas.nc.freesweep-abcdefgh.part"])
 def test_what_a_killed_run_left_is_cleared(left, tmp_path):
     sweep = parse(spec(SMALL))
     out = tmp_path / "atlas.nc"

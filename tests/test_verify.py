@@ -11,6 +11,7 @@ from grids import CHILD_ENVIRONMENT, GRID, SMALL, make, spec, store
 
 from freesweep import open_atlas
 from freesweep.atlas.seal import SIZE, seal_fault, sealed
+from freesweep.resolve import resolve
 from freesweep.sweep import run as sweep_run
 from freesweep.sweep.spec import parse
 from freesweep.verify import faults
@@ -148,6 +149,39 @@ def test_a_sealed_file_of_other_content_is_found(atlas, tmp_path):
         "rotation has no rotation_error"
     )
     assert changed(atlas, tmp_path, lambda data: data) == []
+
+
+def test_attributes_are_held_against_the_specification(atlas, tmp_path):
+    """Sealed anew with another energy, a laxer accuracy or tolerance, a profile or a rubber that nobody asked for."""
+    for name, value in {
+        "energy": "principal",
+        "accuracy": 1e-3,
+        "interpolation_tolerance": 1e-2,
+        "title": "A better sweep",
+        "profile_wall": [0.0, 1e-3, 1.0, 2e-3],
+        "largest_stretch": 9.0,
+    }.items():
+        (fault,) = changed(atlas, tmp_path, lambda data, name=name, value=value: data.assign_attrs({name: value}))
+        assert fault.startswith(f"its attribute {name} is ")
+
+
+def test_limit_pressures_are_held_against_statuses_and_solved_anew(tmp_path):
+    axes = {"alpha": [60.0, 61.0], "pressure": [1e5, 2e5, 3e5]}
+    text = spec(axes, fixed={"beta": 55.0, "length": 0.1904, "c01": 8.5e4}, energy="principal")
+    data = make(tmp_path / "atlas.nc", parse(text))
+    assert data["limit_found"].all()
+    assert faults(tmp_path / "atlas.nc") == []
+
+    def times(factor):
+        limit = data["limit_pressure"] * factor
+        return data.assign(limit_pressure=limit.assign_attrs(data["limit_pressure"].attrs))
+
+    for factor in (0.5, 2.0):
+        store(times(factor), tmp_path / "changed.nc")
+        assert faults(tmp_path / "changed.nc") == ["limit_pressure: 2 states beyond it, or none below it"]
+    for factor, broken in ((1.0, 0), (1.0 + 1e-5, 4)):
+        compared = {compared.name: compared for compared in resolve(times(factor), 100)[0]}
+        assert compared["limit_pressure"].broken.sum() == broken
 
 
 def test_shards_of_an_unfinished_sweep_are_held_against_their_names(tmp_path, monkeypatch, capsys):

@@ -10,6 +10,7 @@ import stat
 import zlib
 from pathlib import Path
 
+from .files import check_environment
 from .heaps import damaged_heap
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -50,15 +51,19 @@ def check_structure(path, unpacked=UNPACKED):
     check_file(path)
     import h5py
 
+    unlocked = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
+    unlocked.set_file_locking(False, True)
     try:
-        file = h5py.h5f.open(str(path).encode(), h5py.h5f.ACC_RDONLY)
+        file = h5py.h5f.open(str(path).encode(), h5py.h5f.ACC_RDONLY, unlocked)
     except Exception as error:  # the library raises many kinds for a damaged file
+        check_environment(path, error)
         raise Unsafe(f"the HDF5 library cannot open it: {error}") from error
     try:
         _Guard(h5py, file, Path(path), unpacked).check()
     except Unsafe:
         raise
     except Exception as error:
+        check_environment(path, error)
         raise Unsafe(f"its structure is damaged: {type(error).__name__}: {error}") from error
     finally:
         file.close()

@@ -23,6 +23,16 @@ def sealed(content) -> bytes:
     return bytes(content) + seal(hashlib.sha256(content))
 
 
+def has_seal(path) -> bool:
+    """Whether a file ends in a seal; whether it is the right one, :func:`seal_fault` says.
+
+    What a library of netCDF adds to a file, or writes anew, goes in the seal's place. Raises OSError.
+    """
+    with Path(path).open("rb") as file:
+        file.seek(max(os.path.getsize(path) - SIZE, 0))
+        return file.read().startswith(MARK)
+
+
 def seal_fault(path) -> str | None:
     """What is wrong with the seal of the file at ``path``, in words; None: every bit is the one that was written.
 

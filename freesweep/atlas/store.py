@@ -1,31 +1,51 @@
 """Atlases as netCDF4 files: opened lazily, once they are known to be harmless."""
 
+import functools
+import warnings
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from ..status import STATUSES
+from . import netcdf
 from .content import faults
+from .files import check_environment
 from .guard import Unsafe, check_structure
 from .schema import STATUS_OF
+from .seal import has_seal
 
 FORMAT = "1"
 MOST_FAULTS = 20  # listed of one file
 READ_AT_ONCE = 1 << 22  # numbers
+UNSEALED = (
+    "has no seal: it was changed after it was written, or freesweep did not write it; no bound in it is vouched for"
+)
 
 
 class AtlasError(ValueError):
     """A file that is no atlas, or not the one asked for."""
 
 
+class UnsealedWarning(UserWarning):
+    """An atlas was changed after it was written, or another program wrote it: its bounds are nobody's word."""
+
+
 @dataclass(frozen=True)
 class Atlas:
-    """A design atlas: ``data`` is the xarray Dataset, ``path`` the file."""
+    """A design atlas: ``data`` is the xarray Dataset, ``path`` the file.
+
+    Pickled, it is the path: it is opened anew where it arrives, once in a process.
+    """
 
     data: object
     path: Path
+
+    def __post_init__(self):
+        object.__setattr__(self, "_place", self.path.absolute())  # wherever the process goes
+
+    def __reduce__(self):
+        return _reopened, (self._place,)
 
     def __repr__(self):
         axes = ", ".join(f"{name} {size}" for name, size in self.data.sizes.items())
@@ -40,7 +60,7 @@ class Atlas:
         counts = sum(np.bincount(slab.values.ravel(), minlength=len(STATUSES)) for slab in slabs)
         return {row.meaning: int(count) for row, count in zip(STATUSES, counts) if count}
 
-    @cached_property
+    @functools.cached_property
     def _reader(self):
         from ..query.query import Reader
 
@@ -85,7 +105,7 @@ class Atlas:
         """
         from ..query.interpolator import Interpolator
 
-        return Interpolator(self._reader, names)
+        return Interpolator(self, names)
 
     def close(self):
         """Let go of the file."""
@@ -102,8 +122,9 @@ def open_atlas(path) -> Atlas:
     """Open an atlas; its numbers are read when they are used.
 
     The file may be anybody's: nothing but this file is read, and it is refused with the reason unless it is an atlas in
-    structure and content (:func:`freesweep.verify.faults` says whether every bit is the one that was written).
-    Raises FileNotFoundError, or :class:`AtlasError` for a file that is no atlas of this program.
+    structure and content (:func:`freesweep.verify.faults` says whether every bit is the one that was written). A file
+    without a seal, as of tools that add an attribute or join atlases, gives an :class:`UnsealedWarning`.
+    Raises FileNotFoundError, EnvironmentFault, or :class:`AtlasError` for a file that is no atlas of this program.
     """
     path = Path(path)
     if not path.exists():
@@ -120,8 +141,22 @@ def open_atlas(path) -> Atlas:
         raise
     except Exception as error:  # the libraries raise many kinds for a damaged file
         data.close()
+        check_environment(path, error)
         raise AtlasError(f"{path} is no readable atlas: {error}") from error
+    if not has_seal(path):
+        warnings.warn(f"{path} {UNSEALED}", UnsealedWarning, stacklevel=2)
     return Atlas(data, path)
+
+
+def _reopened(path) -> Atlas:
+    """An atlas that was pickled as its path."""
+    there = path.stat() if path.exists() else None
+    return _opened(path, there and (there.st_mtime_ns, there.st_size, there.st_ino))
+
+
+@functools.lru_cache(maxsize=1)  # tasks of a worker that bring the same atlas share its tables
+def _opened(path, _) -> Atlas:
+    return open_atlas(path)
 
 
 def open_results(path):
@@ -129,15 +164,14 @@ def open_results(path):
 
     Raises :class:`AtlasError` for a file that cannot be read, or that a stranger may have made to do harm.
     """
-    import xarray as xr
-
     try:
         check_structure(path)
     except Unsafe as refusal:
         raise AtlasError(f"{path} is no readable netCDF4 file: {refusal}") from refusal
     try:
-        return xr.open_dataset(path, engine="netcdf4", decode_times=False)
+        return netcdf.dataset(path)
     except Exception as error:
+        check_environment(path, error)
         raise AtlasError(f"{path} is no readable netCDF4 file: {error}") from error
 
 
@@ -172,6 +206,7 @@ def describe(atlas) -> str:
 
     lines += describe_measured(data)
     apart = ("specification", "title", ATTRIBUTE)
-    lines += ["", "provenance"]
+    seal = "there; freesweep verify holds it against every bit" if has_seal(atlas.path) else UNSEALED
+    lines += ["", "provenance", f"  {'seal':<22}{seal}"]
     lines += [f"  {name:<22}{value}" for name, value in data.attrs.items() if name not in apart]
     return "\n".join(lines)

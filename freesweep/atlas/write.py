@@ -4,7 +4,6 @@ The netCDF library hides a full disk. So it makes the structure in memory; h5py 
 ours, which sees every fault; each chunk is read back before the file appears.
 """
 
-import hashlib
 import math
 import zlib
 from io import SEEK_END
@@ -12,7 +11,8 @@ from itertools import product
 
 import numpy as np
 
-from .files import EnvironmentFault, WholeFile
+from . import netcdf
+from .files import WholeFile
 from .schema import attributes
 from .seal import seal
 from .store import FORMAT
@@ -64,22 +64,24 @@ class AtlasWriter:
             content = _skeleton(sizes, coordinates, variables, attrs)
             self.file.write(content)
             self.file.check()
-            if self.file.digest().digest() != hashlib.sha256(content).digest():
-                raise self._misread()
+            self.file.check_content(content)
             self.store = h5py.File(self.file, "r+")
             self.variables = {name: self.store[name] for name in variables}
         except BaseException:
             self.file.discard()
+            self.file.check()
             raise
 
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, kind, *_):
         try:
             self._close()
         finally:
             self.file.discard()
+        if kind is not None and issubclass(kind, Exception):
+            self.file.check()  # what HDF5 stumbled over
 
     def put(self, name, offset, content):
         """Store one chunk, ``packed``; of a variable without dimensions, the number itself."""
@@ -92,11 +94,9 @@ class AtlasWriter:
 
     def dataset(self):
         """What was put so far as an xarray Dataset, read when it is used; close it before the file is published."""
-        import xarray as xr
-
         self.store.flush()
         self.file.check()
-        return xr.open_dataset(self.file.temporary, engine="netcdf4", decode_times=False)
+        return netcdf.dataset(self.file.temporary)
 
     def describe(self, attrs):
         """Add attributes of the atlas: name -> text."""
@@ -104,20 +104,22 @@ class AtlasWriter:
             self.store.attrs[name] = value
         self.file.check()
 
-    def publish(self):
-        """Finish the file, read it back, and let it appear."""
+    def publish(self, replace=True):
+        """Finish the file, read it back, and let it appear; without ``replace`` only where no file is: FileExistsError."""
         self._close()
         self.file.check()
         if not self._is_as_written():
-            raise self._misread()
+            self.file.check()
+            raise self.file.misread()
         last = seal(self.file.digest())
         place = self.file.seek(0, SEEK_END)
         self.file.write(last)
         self.file.check()
         self.file.seek(place)
         if self.file.read(len(last) + 1) != last:
-            raise self._misread()
-        self.file.publish()
+            self.file.check()
+            raise self.file.misread()
+        self.file.publish(replace)
 
     def _is_as_written(self):
         """Whether every part is read back as it was put in."""
@@ -132,11 +134,6 @@ class AtlasWriter:
         except Exception:  # whatever the HDF5 library makes of a broken structure
             return False
 
-    def _misread(self):
-        return EnvironmentFault(
-            f"cannot write {self.file.path}: other bytes are read back than were written; check the disk"
-        )
-
     def _close(self):
         if self.store is not None:
             store, self.store = self.store, None
@@ -144,7 +141,7 @@ class AtlasWriter:
                 store.close()
             except Exception:  # after a fault HDF5 may meet what it wrote half
                 self.file.check()
-                raise self._misread() from None
+                raise self.file.misread() from None
 
 
 def _part(variable, offset):

@@ -28,20 +28,36 @@ def main(arguments=None) -> int:
         with ends_in_time():
             return options.run(options) or DONE
     except KeyboardInterrupt:
-        print(SENTENCE, file=sys.stderr)
+        _say(SENTENCE)
         return INTERRUPTED
     except BrokenPipeError:
         sys.stderr.close()
         return DONE
-    except (MemoryError, PermissionError) as error:
+    except MemoryError as error:
         short = "not enough memory; close other programs, use fewer --threads, or split the sweep"
-        print(f"freesweep: {str(error) or short}", file=sys.stderr)
+        _say(f"freesweep: {str(error) or short}")
         return ENVIRONMENT
-    except (ValueError, OSError) as error:
-        from ..atlas.files import EnvironmentFault
+    except ValueError as error:
+        _say(f"freesweep: {error}")
+        return BAD_INPUT
+    except OSError as error:
+        from ..atlas.files import is_of_environment
 
-        print(f"freesweep: {error}", file=sys.stderr)
-        return ENVIRONMENT if isinstance(error, EnvironmentFault) else BAD_INPUT
+        _say(f"freesweep: {error}")
+        return ENVIRONMENT if is_of_environment(error) else BAD_INPUT
+    except RuntimeError as error:
+        if not str(error).startswith("NetCDF: "):  # of a number that is read when it is used
+            raise
+        _say(
+            f"freesweep: a file could not be read to its end ({error}); freesweep verify FILE says whether it is damaged"
+        )
+        return ENVIRONMENT
+
+
+def _say(text):
+    """On standard error, if anybody is there: a terminal may be gone."""
+    with contextlib.suppress(OSError):
+        print(text, file=sys.stderr, flush=True)
 
 
 def _joined(words):
@@ -164,7 +180,12 @@ def _info(commands):
 
 
 def _run_info(options):
-    from ..atlas.store import describe, open_atlas
+    import warnings
 
-    with open_atlas(options.atlas) as atlas:
+    from ..atlas.store import UnsealedWarning, describe, open_atlas
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnsealedWarning)  # one of the lines says so
+        atlas = open_atlas(options.atlas)
+    with atlas:
         print(atlas.data.attrs.get("specification", "") if options.specification else describe(atlas))

@@ -1,5 +1,7 @@
 """A bare callable for loops and optimizers: arrays in, arrays out, gradients on request."""
 
+import operator
+
 import numpy as np
 
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
@@ -19,10 +21,12 @@ class Interpolator:
 
     Plain arrays broadcast as in NumPy. Returns an array, shape of the broadcast input, with one axis for the names in front
     unless a single name was asked for. With ``gradient=True`` a pair: values, and derivatives by each of ``f.axes``, which
-    make the first axis after that of the names. NaN where :meth:`freesweep.Atlas.query` would give no number.
+    make the first axis after that of the names. NaN where :meth:`freesweep.Atlas.query` would give no number. Pickled, it is
+    the path of its atlas and the names.
     """
 
-    def __init__(self, reader, names):
+    def __init__(self, atlas, names):
+        self.atlas, reader = atlas, atlas._reader
         self.single = isinstance(names, str)
         self.names = check_names(reader, names)
         wrong = [name for name in self.names if name not in FAMILY_OF]
@@ -38,6 +42,9 @@ class Interpolator:
         self._fixed = {
             name: array for name, array in reader.frame.values.items() if name not in self.axes and len(array) == 1
         }
+
+    def __reduce__(self):
+        return operator.methodcaller("interpolator", self.names[0] if self.single else self.names), (self.atlas,)
 
     def __call__(self, *values, gradient=False):
         """Values, and with ``gradient`` their derivatives; raises :class:`QueryError`."""

@@ -107,7 +107,7 @@ def _walk(problems, first, pressures, passing, tube, accuracy, stations, lanes, 
                 )
         if not np.any(found.status == PENDING):
             return
-    if not (soon and at_once(len(pressures), walk_many, walk_many, *scalar)):
+    if not (soon and at_once(np.count_nonzero(found.status == PENDING), walk_many, walk_many, *scalar)):
         walk_many(*scalar)
 
 

@@ -66,7 +66,7 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
                 )  # fmt: skip
         if not np.any(found.status == PENDING):
             return found
-    if not (soon and at_once(count, block_many, block_many, *scalar)):
+    if not (soon and at_once(np.count_nonzero(found.status == PENDING), block_many, block_many, *scalar)):
         block_many(*scalar)
     return found
 

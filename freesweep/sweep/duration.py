@@ -4,7 +4,6 @@ Sampling needs Numba and machine code, half a second to load: more than a small 
 """
 
 import time
-from pathlib import Path
 
 import numpy as np
 
@@ -49,9 +48,9 @@ def _seconds(sweep, equilibria, each, threads):
 def _is_compiled(kind):
     """Whether the kernels of a kind of states lie on disk: a dry run compiles nothing."""
     from ..jit import cache_folder
+    from ..kernel_cache import compiled
 
-    stored = {path.name.split(".")[1].split("-")[0] for path in Path(cache_folder("solver")).rglob("*.nbc")}
-    return set(KERNELS[kind]) <= stored
+    return set(KERNELS[kind]) <= {stem.rpartition(".")[2] for stem in compiled(cache_folder("solver"))}
 
 
 def _sample(table, accuracy, together):

@@ -10,8 +10,9 @@ from .collect import groups
 from .duration import time_of
 from .plan import FREE, kinds, plan
 from .records import LIMIT, state
+from .shard_file import MOST_KEPT
 
-BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and a few shards
+BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and what is solved at the time
 DESIGN_MEMORY = 80  # [bytes] of each design while a plan is made
 LEAST_MEASURED, MOST_MEASURED = 5_000, 15_000_000  # points of an atlas that measures itself
 MEASURING, POINT_MEMORY = 200_000_000, 110  # [bytes] of its kernels, and of each point in a table
@@ -44,7 +45,7 @@ def memory(sweep) -> int:
     """Bytes of memory, at most."""
     points = max(sweep.points, 2 * min(sweep.points, TWO_TABLES))
     measuring = MEASURING + POINT_MEMORY * points if is_measured(sweep) else 0
-    return BASE_MEMORY + max(DESIGN_MEMORY * max(grids(sweep).values()), measuring)
+    return BASE_MEMORY + max(DESIGN_MEMORY * max(grids(sweep).values()) + MOST_KEPT, measuring)
 
 
 def check_memory(sweep):

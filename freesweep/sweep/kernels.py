@@ -71,15 +71,21 @@ def _stored(room):
     from numba import config
 
     from ..jit import cache_folder
+    from ..kernel_cache import compiled
 
+    folder = cache_folder(room)
+    if folder is None or config.DISABLE_JIT or not _can_keep(folder):  # each process compiles for itself, or nothing is
+        return {*SOLVING, *THE_REST, ANSWERS}
+    return {name.rpartition(".")[2] for name in compiled(folder)}
+
+
+def _can_keep(folder):
+    """Whether a folder takes files."""
     try:
-        folder = Path(cache_folder(room))
-        folder.mkdir(parents=True, exist_ok=True)
-    except (OSError, RuntimeError, TypeError):  # read-only, nobody's home: each process compiles for itself
-        return {*SOLVING, *THE_REST, ANSWERS}
-    if config.DISABLE_JIT:
-        return {*SOLVING, *THE_REST, ANSWERS}
-    return {path.name.split(".")[1].split("-")[0] for path in folder.rglob("*.nbc")}
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
 
 
 def _compile_aside(missing, rubbers):

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ..status import NOT_CONVERGED
+
 FREE_STATE = np.dtype([("values", "<f8", 5), ("bounds", "<f4", 5), ("status", "i1"), ("slack", "i1")])
 LIMIT = np.dtype([("limit", "<f8"), ("bound", "<f8")])  # of each problem
 HELD_STATE = np.dtype([("value", "<f8"), ("bound", "<f4"), ("status", "i1"), ("stable", "i1")])
@@ -27,3 +29,39 @@ def unsolved(dtype, status):
     if "status" in dtype.names:
         record["status"] = status
     return record
+
+
+class Records:
+    """Records of one kind of state, read from its shards where they are needed.
+
+    ``parts`` are the problems (first, last + 1) of each shard, ``first`` where each problem's states begin, ``paths`` the
+    files, None where a shard killed its workers; ``contents`` gives the bytes of a file.
+    """
+
+    def __init__(self, kind, parts, first, paths, contents):
+        self.dtype, self.paths, self.contents = state(kind), paths, contents
+        self.problems = np.array([a for a, _ in parts] + [parts[-1][1] if parts else 0], np.int64)
+        self.rows = first[self.problems]
+
+    def states(self, rows):
+        """Records of states ``rows``, of any shape."""
+        return self._read(rows, self.rows, self.dtype, np.zeros(len(self.paths), np.int64))
+
+    def limits(self, problems):
+        """Records of the limits of ``problems`` (n,)."""
+        return self._read(problems, self.problems, LIMIT, np.diff(self.rows) * self.dtype.itemsize)
+
+    def _read(self, numbers, edges, dtype, starts):
+        """Records of that type with those ``numbers``; a shard holds those between two ``edges``, from a byte on."""
+        wanted, index = np.unique(numbers, return_inverse=True)
+        found = np.empty(len(wanted), dtype)
+        cuts = np.searchsorted(wanted, edges)
+        for shard in np.flatnonzero(np.diff(cuts)).tolist():
+            mine = slice(cuts[shard], cuts[shard + 1])
+            if self.paths[shard] is None:
+                found[mine] = unsolved(dtype, NOT_CONVERGED)
+                continue
+            count = int(edges[shard + 1] - edges[shard])
+            content = self.contents[self.paths[shard]]
+            found[mine] = np.frombuffer(content, dtype, count, int(starts[shard]))[wanted[mine] - edges[shard]]
+        return found[index.reshape(np.shape(numbers))]

@@ -13,7 +13,8 @@ from pathlib import Path
 from ..atlas.files import EnvironmentFault
 from .identity import code_sha256
 from .jobs import as_done
-from .shards import SweepError, key_of, save
+from .shard_file import key_of, save
+from .shards import SweepError
 from .solve import solve_shard
 
 IN_FLIGHT = 512  # shards that are handed to an executor at a time, 100 kB each or so; it may have as many workers

@@ -1,7 +1,7 @@
 """Run a sweep: shards of distinct problems on threads, resumed after any interruption, collected into an atlas."""
 
 import contextlib
-import platform
+import os
 import time
 import warnings
 from pathlib import Path
@@ -19,9 +19,12 @@ from .grid import coordinates
 from .identity import fingerprint, identify
 from .jobs import bar, in_order
 from .plan import plan as make_plan
+from .provenance import provenance
+from .records import Records
 from .remote import solve_remotely
-from .rubber import rubber_attributes, warn_beyond_range
-from .shards import Records, Shards, SweepError
+from .rubber import warn_beyond_range
+from .shard_file import Contents
+from .shards import Shards, SweepError
 from .solve import solve_shard
 from .spec import Sweep, read_file
 
@@ -53,7 +56,7 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
         raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
     identity, shards = identify(sweep), Shards(out)
     if atlas := _complete(out, identity, sweep.text, overwrite, progress):
-        shards.tidy()
+        shards.tidy(identity)
         return atlas
     estimate.check_memory(sweep)
     shards.hold()
@@ -70,8 +73,13 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
         records = _solve_all(sweep, tables, split_up, done, shards, threads, executor, progress)
         solved = time.perf_counter()
         lost = _lost(tables, split_up, done)
-        attrs = _provenance(sweep, tables, identity, shards.started) | ({"not_solved": lost} if lost else {})
-        _write(sweep, tables, records, out, attrs, needed, threads, progress)
+        attrs = provenance(sweep, tables, identity, shards.started) | ({"not_solved": lost} if lost else {})
+        try:
+            _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite)
+        except FileExistsError:  # it appeared meanwhile, perhaps from the same sweep on a network disk
+            if not (atlas := _complete(out, identity, sweep.text, overwrite, False)):
+                raise
+            atlas.close()
         shards.clear()
     finally:
         shards.release()
@@ -87,8 +95,8 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
 
 def _complete(out, identity, text, overwrite, progress):
     """The atlas at ``out`` if it is this sweep's already; raises if it is another's that is not to be overwritten."""
-    if out.exists() and not out.is_file():
-        raise SweepError(f"{out} is a folder or a device; give the name of the atlas to make")
+    if os.path.lexists(out) and not out.is_file():
+        raise SweepError(f"{out} is a folder or a device, or a link to nothing; give the name of the atlas to make")
     if overwrite or not out.exists():
         return None
     try:
@@ -120,29 +128,6 @@ def split(table, sweep):
     return found
 
 
-def _provenance(sweep, tables, identity, started):
-    tolerance = sweep.interpolation_tolerance
-    of_query = {} if tolerance is None else {"interpolation_tolerance": tolerance}
-    of_profiles = {f"profile_{name}": np.ravel(pairs) for name, pairs in sweep.profiles.items()}
-    return {
-        "title": sweep.title,
-        "Conventions": "CF-1.11",
-        "source": f"freesweep {identity['version']}",
-        "specification": sweep.text,
-        **identity,
-        "started": started,
-        "energy": sweep.energy,
-        "accuracy": sweep.accuracy,
-        **of_profiles,
-        **of_query,
-        **rubber_attributes(sweep),
-        "distinct_problems": sum(table.count for table in tables.values()),
-        "distinct_equilibria": sum(table.equilibria for table in tables.values()),
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-    }
-
-
 def _solve_all(sweep, tables, split_up, done, shards, threads, executor, progress):
     """Records of all shards, those found on disk among them: kind -> Records; ``done`` gets the file of each, or None."""
     todo = [(kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done]
@@ -157,8 +142,9 @@ def _solve_all(sweep, tables, split_up, done, shards, threads, executor, progres
         for key, path, count in solved:
             done[key] = path
             shown.update(count)
+    contents = Contents(shards.plan)
     return {
-        kind: Records(kind, own, tables[kind].first, [done[kind, k] for k in range(len(own))])
+        kind: Records(kind, own, tables[kind].first, [done[kind, k] for k in range(len(own))], contents)
         for kind, own in split_up.items()
     }
 
@@ -181,7 +167,7 @@ def _lost(tables, split_up, done):
     return f"{states:,} states of problems that killed their workers: {where}" if parts else ""
 
 
-def _write(sweep, tables, records, out, attrs, needed, threads, progress):
+def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite):
     """The atlas, chunk by chunk: made and compressed on threads, written here."""
     made = groups(sweep)
     steps = max(len(tables["free"].pressure), 1)
@@ -203,6 +189,8 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
                 for chunk in chunks:
                     writer.put(*chunk)
                 shown.update(1)
+        for each in records.values():
+            each.contents.forget()
         if estimate.is_measured(sweep):
             from ..query.measure import measure
 
@@ -211,7 +199,7 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress):
             with writer.dataset() as data:
                 found = measure(data)
             writer.describe(found)
-        writer.publish()
+        writer.publish(replace=overwrite)
 
 
 def summary(atlas, tables, solving, total) -> str:

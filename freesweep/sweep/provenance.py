@@ -1,0 +1,40 @@
+"""What an atlas says of where it comes from: its attributes."""
+
+import platform
+
+import numpy as np
+
+from .rubber import rubber_attributes
+
+FOLLOWING = ("interpolation_tolerance", "material", "material_source", "largest_stretch")  # only of some specifications
+
+
+def specified(sweep) -> dict:
+    """What follows from the specification alone."""
+    tolerance = sweep.interpolation_tolerance
+    return {
+        "title": sweep.title,
+        "specification": sweep.text,
+        "specification_sha256": sweep.sha256,
+        "energy": sweep.energy,
+        "accuracy": sweep.accuracy,
+        **{f"profile_{name}": np.ravel(pairs) for name, pairs in sweep.profiles.items()},
+        **({} if tolerance is None else {"interpolation_tolerance": tolerance}),
+        **rubber_attributes(sweep),
+    }
+
+
+def provenance(sweep, tables, identity, started) -> dict:
+    """All of it; ``identity`` of specification and code, ``started`` when the sweep was begun."""
+    return {
+        "title": sweep.title,
+        "Conventions": "CF-1.11",
+        "source": f"freesweep {identity['version']}",
+        **specified(sweep),
+        **identity,
+        "started": started,
+        "distinct_problems": sum(table.count for table in tables.values()),
+        "distinct_equilibria": sum(table.equilibria for table in tables.values()),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+    }
