@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
@@ -44,7 +45,7 @@ def entry(monkeypatch, tmp_path):
     """A fresh installation, and an entry point."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(interpret, "_spent", [0])
-    return jit.kernel(invert)
+    return numba.njit(invert)
 
 
 def test_first_states_of_a_fresh_installation_need_no_compiler(tmp_path):
