@@ -47,19 +47,20 @@ def cache_folder(room: str) -> str | None:
 
 
 def kernel(function):
-    """Compile a kernel that other kernels call."""
-    return _blind_to_literals(numba.njit(**_INNER, **_POLICY)(function))
-
-
-def _blind_to_literals(dispatcher):
-    """Let a call's literal arguments count as what they are: Numba asks here for machine code for such types."""
+    """Compile a kernel that other kernels call. Called from Python, as by a test, it hands on to one that has a door."""
+    inner = numba.njit(**_INNER, **_POLICY)(function)
     if config.DISABLE_JIT:
-        return dispatcher
-    ask = dispatcher.get_call_template
-    dispatcher.get_call_template = lambda given, named: ask(
+        return inner
+    ask = inner.get_call_template  # by another kernel, with the types of a call
+    inner.get_call_template = lambda given, named: ask(
         tuple(map(types.unliteral, given)), {name: types.unliteral(kind) for name, kind in named.items()}
     )
-    return dispatcher
+    inner._insert = lambda *_, **__: None  # nothing that Python could call
+    inner._compile_for_args = lambda *_, **__: _with_door(function)
+    return inner
+
+
+_with_door = functools.cache(numba.njit(**_POLICY))
 
 
 def inlined(function):

@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
@@ -47,7 +48,7 @@ def entry(monkeypatch, tmp_path):
     """A fresh installation, and an entry point."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(interpret, "_spent", {})
-    return jit.kernel(invert)
+    return numba.njit(invert)
 
 
 def test_first_states_of_a_fresh_installation_need_no_compiler(tmp_path):

@@ -29,6 +29,8 @@ def calls(n, yes):
 def test_a_literal_makes_no_machine_code_of_its_own():
     assert calls(5, True) == (1 + 5 + 2) + (5 - 1 + 5) + 0
     assert len(added.signatures) == 1
+    assert added(1.0, 2.0, (3, 4), True) == 10.0  # from Python: machine code of its own
+    assert len(added.signatures) == 1
 
 
 def kernels(tree):
