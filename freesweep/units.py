@@ -53,7 +53,9 @@ _KINDS = {
 }
 _SPELLINGS = str.maketrans({"µ": "u", "μ": "u", "º": "°", "²": "2", "^": None})
 _PRODUCT = re.compile(r"(?<=[A-Za-z])\s*[\s·⋅*.-]\s*(?=[A-Za-z])")
-_GAUGE = re.compile(r"(.+?)\s*(?:g|G|\(g\)|\(G\)|\(?gauge\)?)")  # psig, bar(g): above the atmosphere, as all pressures here
+_GAUGE = re.compile(
+    r"(.+?)\s*(?:g|G|\(g\)|\(G\)|\(?gauge\)?)"
+)  # psig, bar(g): above the atmosphere, as all pressures here
 _ABSOLUTE = re.compile(r"(.+?)\s*(?:a|A|\(a\)|\(A\)|\(?abs(?:olute)?\)?)")  # psia, bara
 _QUANTITY = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(.*)", re.DOTALL)
 

@@ -11,9 +11,11 @@ import numpy as np
 from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
 from ..status import STATUSES
+from ..unit_warnings import warn_of
 from . import estimate, kernels
 from .changes import changes
 from .collect import groups
+from .doubts import doubts_of
 from .grade import graded
 from .grid import coordinates
 from .identity import fingerprint, identify
@@ -51,6 +53,7 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
     out = Path(out)
     if threads is not None and threads < 1:
         raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
+    warn_of(doubts_of(sweep), stacklevel=2)
     identity, shards = identify(sweep), Shards(out)
     if atlas := _complete(out, identity, sweep.text, overwrite, progress):
         shards.tidy()
