@@ -15,6 +15,7 @@ from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .statics import inflate, read_course
+from .thick_wall import thin_wall_attributes
 
 HALF_CELLS = 48  # of half a tube that is the same all along
 MANY = 200  # states among which it is worth to look first for those that nothing holds
@@ -146,6 +147,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     }
     result = dataset(tube, axes, stations, found, without=(held_name,))
     result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy, "buckled": int(buckled)}
+    result.attrs |= thin_wall_attributes(tube)
     return result
 
 

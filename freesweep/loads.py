@@ -12,7 +12,7 @@ STATIONS = 201
 
 
 def read_load(name, value, unit, faults, **domain):
-    """The load as a float or a 1-D float array; what is wrong with it goes to ``faults``; ``domain`` as of ``read_column``."""
+    """The load as a float or a 1-D float array; None after noting what is wrong; ``domain`` as of ``read_column``."""
     array = read_column(name, value, unit, faults, **domain)
     if array is None or array.ndim == 0:
         return None if array is None else array.item()

@@ -2,9 +2,9 @@
 
 A profile is a list of pairs ``(x/l, value)``, linear between them, where a repeated x/l is a jump; or a callable of x/l
 (array in, array out). Between the places where some profile jumps or bends, H, D and a are smooth: cubic splines on equal
-pieces of each such segment. They are compared with the profile at many irregular places; where it changes within a few cells
-of the mesh, segments are cut, where it cannot be followed it is refused. What is narrower than 1/8000 of the tube may be missed
-in a callable: that is what pairs are for.
+pieces of each such segment. They are compared with the profile at many irregular places; where it changes within a few
+cells of the mesh, segments are cut, where it cannot be followed it is refused. What is narrower than 1/8000 of the tube may
+be missed in a callable: that is what pairs are for.
 """
 
 from itertools import pairwise
@@ -184,8 +184,8 @@ def _places(*profiles, middle=None):
     if np.any(gaps < SHORTEST):
         k = int(np.argmin(gaps))
         raise ProfileError(
-            f"profiles jump or bend at x/l {float(found[k])!r} and {float(found[k + 1])!r}, less than {SHORTEST:g} apart; give"
-            " them the same place"
+            f"profiles jump or bend at x/l {float(found[k])!r} and {float(found[k + 1])!r}, less than {SHORTEST:g} apart;"
+            " give them the same place"
         )
     return found
 

@@ -10,6 +10,7 @@ from .loads import read_load, read_stations, warn_of_loads
 from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
+from .thick_wall import thin_wall_attributes
 
 BASE_CELLS = 96  # four times a sweep's: profiles are wanted as exact as scalars
 LOADS = ("force", "torque", "pressure")
@@ -49,7 +50,9 @@ def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy
     x, accuracy : as in :func:`lock`
 
     Returns a Dataset. What physics forbids is NaN with a ``status``: beyond ``limit_pressure`` the branch that starts at
-    the undeformed cylinder has ended. Raises :class:`ActuatorError` for invalid input.
+    the undeformed cylinder has ended. Where the wall is thicker than a tenth of the radius, the attributes
+    ``thin_wall_ratio`` and ``thin_wall_note`` say what the thin wall of the model leaves out. Raises
+    :class:`ActuatorError` for invalid input.
     """
     faults = []
     loads = {
@@ -106,6 +109,8 @@ def _solve(tube, loads, stations, accuracy):
     }
     result = dataset(tube, {name: loads[name] for name in LOADS}, stations, found)
     result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy}
+    if not np.any(np.isinf(loads["pressure"])):  # the locked shape does not see the wall
+        result.attrs |= thin_wall_attributes(tube)
     return result
 
 

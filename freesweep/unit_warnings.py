@@ -1,7 +1,7 @@
 """Numbers that are allowed but look like slips of units, as sentences: of single tubes and of sweeps, in shell and Python.
 
-A millimetre taken for a metre is a factor of 1000, a degree for a radian 57, a psi for a pascal 6895. What is told lies beyond
-any tube that is made; each limit leaves room for what only a theorist would ask.
+A millimetre taken for a metre is a factor of 1000, a radian for a degree 57, a psi for a pascal 6895. What is told lies
+beyond any tube that is made; each limit leaves room for what only a theorist would ask.
 """
 
 import warnings

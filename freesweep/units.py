@@ -137,8 +137,8 @@ def _factor(unit, units, text):
     if kept is None and (absolute := _ABSOLUTE.fullmatch(unit)) and (name := folded.get(absolute.group(1).lower())):
         atmosphere = 101325.0 / float(_PRESSURE[name])
         raise ValueError(
-            f"{expects}, found {shown(text)}, an absolute pressure; gauge pressure counts here, what is above the surroundings: subtract"
-            f" the atmosphere, {atmosphere:.6g} {name} by standard, and write {name!r}"
+            f"{expects}, found {shown(text)}, an absolute pressure; gauge pressure counts here, what is above the"
+            f" surroundings: subtract the atmosphere, {atmosphere:.6g} {name} by standard, and write {name!r}"
         )
     if kept is None:
         raise ValueError(f"{expects}, found {shown(text)}: unknown unit {_nearest(unit, units)}")

@@ -139,9 +139,9 @@ def test_a_map_that_cannot_be_written_is_refused_before_anything_is_solved(speci
     ("old", "new", "says"),
     [
         ("", "", None),
-        ("wall = 0.00159", "wall = 1.59", "walls up to 1.59 m are thicker than the inner radius, 0.00476 m at least"),
-        ("wall = 0.00159", "wall = [[0, 1e-3], [1, 6e-3]]", "walls up to 0.006 m are thicker"),
-        ("radius = 0.00476", "radius = 4.76", "the radius reaches 4.76 m; plain numbers are in SI units"),
+        ("wall = 0.00159", "wall = 1.59", "wall 1.59 m is thicker than the inner radius 0.00476 m"),
+        ("wall = 0.00159", "wall = [[0, 1e-3], [1, 6e-3]]", "wall 0.006 m is thicker"),
+        ("radius = 0.00476", "radius = 4.76", "the radius is 4.76 m; plain numbers are in SI units"),
         ("c10 = 170000.0", "c10 = 0.17", "the pressure reaches 50000 Pa, far beyond a c10 of 0.17 Pa; plain numbers"),
         ("20000.0, 50000.0]", "20.0, 50.0]", "no pressure exceeds 50 Pa, which hardly deforms a c10 of 170000 Pa"),
         ("20000.0, 50000.0]", "]", None),

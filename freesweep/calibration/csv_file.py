@@ -9,8 +9,9 @@ import numpy as np
 
 from ..actuator import Actuator, ActuatorError, MooneyRivlin
 from ..atlas.schema import PARAMETERS
+from ..given import described
 from ..units import quantity, shown
-from .measured import COLUMNS, Measurement, default_measured, measured_faults
+from .measured import COLUMNS, Measurement, default_measured, measured_faults, read_names
 
 TUBE = (
     "alpha",
@@ -39,12 +40,18 @@ def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full"
 
     Raises FileNotFoundError, or :class:`ActuatorError` with every fault.
     """
-    paths = [paths] if isinstance(paths, (str, Path)) else list(paths)
-    measured = (measured,) if isinstance(measured, str) else tuple(measured)
+    faults = []
+    paths = list(paths) if isinstance(paths, (list, tuple)) else [paths]
+    measured = read_names("measured", measured, faults)
+    faults += [
+        f"paths: found {described(path)}; give paths of CSV files"
+        for path in paths
+        if not isinstance(path, (str, Path))
+    ]
     unknown = sorted(set(tube) - set(TUBE))
-    faults = [f"{name}: no such part of an actuator; known: {', '.join(TUBE)}" for name in unknown]
+    faults += [f"{name}: no such part of an actuator; known: {', '.join(TUBE)}" for name in unknown]
     made, seen = [], set()
-    for path in [] if unknown else paths:
+    for path in [] if faults else paths:
         try:
             columns = _read(path)
             seen |= set(columns)

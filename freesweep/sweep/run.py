@@ -1,6 +1,7 @@
 """Run a sweep: shards of distinct problems on threads, resumed after any interruption, collected into an atlas."""
 
 import contextlib
+import numbers
 import platform
 import time
 import warnings
@@ -51,7 +52,7 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
     begun = time.perf_counter()
     sweep = spec if isinstance(spec, Sweep) else read_file(spec)
     out = Path(out)
-    if threads is not None and threads < 1:
+    if threads is not None and not (isinstance(threads, numbers.Integral) and threads >= 1):
         raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
     warn_of(doubts_of(sweep), stacklevel=2)
     identity, shards = identify(sweep), Shards(out)
