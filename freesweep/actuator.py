@@ -7,7 +7,7 @@ import numpy as np
 
 from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
 from .faults import ActuatorError
-from .given import read_number
+from .given import described, read_number
 from .profiles import ProfileError, as_profile, is_profile, together
 from .unit_warnings import doubts, warn_of
 
@@ -82,7 +82,7 @@ class Actuator:
                 " Yeoh(c1, c2, c3), in [Pa], or material(name)"
             )
         if not isinstance(self.energy, str) or self.energy not in ENERGIES:
-            faults.append(f"energy: found {self.energy!r:.40}; choose one of {', '.join(map(repr, ENERGIES))}")
+            faults.append(f"energy: found {described(self.energy)}; choose one of {', '.join(map(repr, ENERGIES))}")
         for name, value in read.items():
             object.__setattr__(self, name, value)
         if not faults:

@@ -73,7 +73,7 @@ def test_every_fault_is_listed_at_once():
     assert "found -1 m" in faults[3]
     assert "found 0.99; it has to be 1 or more" in faults[5]
     assert "found float; give MooneyRivlin(c10, c01), NeoHookean(c10) or Yeoh(c1, c2, c3), in [Pa]" in faults[7]
-    assert faults[8] == "energy: found 'Full'; choose one of 'full', 'principal'"
+    assert faults[8] == "energy: found str 'Full'; choose one of 'full', 'principal'"
 
 
 def test_numbers_that_are_fine_alone_but_impossible_are_all_listed_too():

@@ -239,7 +239,7 @@ def test_a_wrong_model_is_said_to_miss():
         ({"pressure": 1e5, "force": 1.0, "deformed_length": 0.1}, ["measured: deformed_length and force are given; say"]),
         ({"pressure": 1e5, "force": 1.0, "torque": 1.0, "measured": ["force", "torque"]}, ["measured: torque beside force"]),
         ({"pressure": 1e5, "force": 1.0, "rotation": 1.0, "measured": "force"}, ["rotation: given and not measured"]),
-        ({"pressure": 1e5, "force": [1.0, np.nan]}, ["force: entry 2 is not finite"]),
+        ({"pressure": 1e5, "force": [1.0, np.nan]}, ["force: entry 2: found nan; give a finite number"]),
         ({"pressure": 1e5, "force": 1.0, "sigma": {"force": 0.0, "torque": 1.0}},
          ["sigma of force: found 0", "sigma: 'torque' is not measured"]),
         ({"pressure": 1e5, "deformed_length": 0.0}, ["deformed_length: found 0; it has to be above 0"]),
