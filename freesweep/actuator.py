@@ -1,36 +1,37 @@
 """What a person describes: the actuator, checked, in SI units and degrees."""
 
 import math
-import warnings
-from dataclasses import dataclass, fields
-from numbers import Real
+from dataclasses import dataclass
 
 import numpy as np
 
 from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
-from .faults import ActuatorError, number_fault
+from .faults import ActuatorError
+from .given import described, read_number
 from .profiles import ProfileError, as_profile, is_profile, together
+from .unit_warnings import doubts, warn_of
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
 SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
+LARGEST_EXTENSION = 10.0  # of fibers: a stretch, not a percentage
 ENERGIES = ("full", "principal")
+HASHED = np.linspace(0.0, 1.0, 9)  # places of profiles whose values go into a hash
+VARYING = {"alpha": "degree", "beta": "degree", "wall": "m"}
 
 
-def _along_fault(name, value, unit, positive=False):
-    """A sentence on what is wrong with a number or a profile along the tube, or None."""
+def _read_along(name, value, unit, faults, positive=False):
+    """A float, pairs of floats or a callable; None after noting what is wrong with a number or a profile along the tube."""
     if not is_profile(value):
-        return number_fault(name, value, unit, positive)
+        return read_number(name, value, unit, faults, positive=positive)
     try:
-        samples = as_profile(value).samples()
+        profile = as_profile(value, unit)
+        samples = profile.samples()
     except ProfileError as error:
-        return f"{name}: {error}"
-    except Exception as error:  # whatever a person's callable raises
-        return f"{name}: the callable failed: {type(error).__name__}: {error}"
-    if not np.all(np.isfinite(samples)):
-        return f"{name}: the profile has values that are not finite; give finite numbers in [{unit}]"
+        faults.append(f"{name}: {error}")
+        return None
     if positive and not np.all(samples > 0.0):
-        return f"{name}: the profile falls to {samples.min():g} {unit}; it has to be above 0"
-    return None
+        faults.append(f"{name}: the profile falls to {samples.min():g} {unit}; it has to be above 0")
+    return value if callable(value) else tuple(zip(profile.x.tolist(), profile.values.tolist()))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +42,7 @@ class Actuator:
     ----------
     alpha, beta : fiber angles from the axis [degree], between -90 and 90, at least 0.5 apart; a number, or a profile
         along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump) or a callable of x/l (array in, array out)
-    length, radius : undeformed length, inner radius [m]
+    length, radius : undeformed length, inner radius [m]; numbers, texts with units ("4.76 mm") or what carries units
     wall : wall thickness [m], number or profile
     material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or a rubber of the library,
         :func:`freesweep.material`
@@ -49,8 +50,9 @@ class Actuator:
     fiber_radius : radius at which the fibers lie [m], from the inner to the outer one; None: the inner one, as in Eq. 2.20
     energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed
 
-    Raises :class:`ActuatorError`, which lists every fault. Warns where the wall is thicker than the radius: the model is
-    a thin wall's.
+    Raises :class:`ActuatorError`, which lists every fault. Warns of what looks like a slip of units, and where the wall is
+    thicker than the radius: the model is a thin wall's. Equal actuators have equal hashes; callables are equal if they are
+    the same.
     """
 
     alpha: object
@@ -64,39 +66,43 @@ class Actuator:
     energy: str = "full"
 
     def __post_init__(self):
-        if faults := self._faults():
-            raise ActuatorError(faults)
-        for item in fields(self):  # NumPy scalars and integers become floats
-            value = getattr(self, item.name)
-            if isinstance(value, Real):
-                object.__setattr__(self, item.name, float(value))
-        wall = self.wall if not is_profile(self.wall) else float(np.max(as_profile(self.wall).samples()))
-        if wall > self.radius:
-            warnings.warn(
-                f"wall {wall:g} m is thicker than the inner radius {self.radius:g} m: the model takes a thin wall",
-                stacklevel=3,
-            )
-
-    def _faults(self):
-        faults = [_along_fault(name, getattr(self, name), "degree") for name in ("alpha", "beta")]
-        faults += [number_fault(name, getattr(self, name), "m", positive=True) for name in ("length", "radius")]
-        faults.append(_along_fault("wall", self.wall, "m", positive=True))
-        faults.append(number_fault("fiber_extension", self.fiber_extension, "1", least=1.0))
+        faults = []
+        read = {name: _read_along(name, getattr(self, name), "degree", faults) for name in ("alpha", "beta")}
+        for name in ("length", "radius"):
+            read[name] = read_number(name, getattr(self, name), "m", faults, positive=True)
+        read["wall"] = _read_along("wall", self.wall, "m", faults, positive=True)
+        read["fiber_extension"] = read_number(
+            "fiber_extension", self.fiber_extension, "1", faults, least=1.0, most=LARGEST_EXTENSION
+        )
         if self.fiber_radius is not None:
-            faults.append(number_fault("fiber_radius", self.fiber_radius, "m", positive=True))
+            read["fiber_radius"] = read_number("fiber_radius", self.fiber_radius, "m", faults, positive=True)
         if not isinstance(self.material, ELASTOMERS):
             faults.append(
                 f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01), NeoHookean(c10) or"
                 " Yeoh(c1, c2, c3), in [Pa], or material(name)"
             )
-        if self.energy not in ENERGIES:
-            faults.append(f"energy: found {self.energy!r}; choose one of {', '.join(map(repr, ENERGIES))}")
-        faults = [fault for fault in faults if fault]
-        return faults or self._impossible()
+        if not isinstance(self.energy, str) or self.energy not in ENERGIES:
+            faults.append(f"energy: found {described(self.energy)}; choose one of {', '.join(map(repr, ENERGIES))}")
+        for name, value in read.items():
+            object.__setattr__(self, name, value)
+        if not faults:
+            try:
+                faults = self._impossible()
+            except ProfileError as error:
+                faults = [f"alpha, beta, wall: {error}"]
+        if faults:
+            raise ActuatorError(faults)
+        numbers = self.design() | {name: self.profile(name).samples() for name in VARYING}
+        warn_of(doubts(**{name: numbers[name] for name in (*VARYING, "length", "radius", "c10")}), stacklevel=3)
+
+    def __hash__(self):
+        fields = (self.length, self.radius, self.material, self.fiber_extension, self.fiber_radius, self.energy)
+        varying = tuple(tuple(self.profile(name).at(HASHED).tolist()) for name in VARYING)
+        return hash((*fields, varying))
 
     def _impossible(self):
         """Faults of numbers that are each fine alone."""
-        alpha, beta = together(as_profile(self.alpha), as_profile(self.beta))
+        alpha, beta = together(self.profile("alpha"), self.profile("beta"))
         faults = [
             f"{name}: found {angle[np.argmax(np.abs(angle))]:g} degree; it has to lie between -90 and 90, both excluded"
             for name, angle in (("alpha", alpha), ("beta", beta))
@@ -114,7 +120,7 @@ class Actuator:
                 " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"
                 " keep alpha above beta all along, or below"
             )
-        outer = self.radius + float(np.min(as_profile(self.wall).samples()))
+        outer = self.radius + float(np.min(self.profile("wall").samples()))
         if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):
             faults.append(
                 f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
@@ -134,11 +140,15 @@ class Actuator:
     @property
     def varies(self) -> bool:
         """Whether a fiber angle or the wall is a profile along the tube."""
-        return any(is_profile(value) for value in (self.alpha, self.beta, self.wall))
+        return any(is_profile(getattr(self, name)) for name in VARYING)
 
     def angles(self, share):
         """Both fiber angles [degree] at shares x/l of the length; on a jump the left ones."""
-        return as_profile(self.alpha).at(share), as_profile(self.beta).at(share)
+        return self.profile("alpha").at(share), self.profile("beta").at(share)
+
+    def profile(self, name):
+        """Fiber angle [degree] or wall [m] along the tube, as a :class:`freesweep.profiles.Profile`, numbers too."""
+        return as_profile(getattr(self, name), VARYING[name])
 
     @property
     def fiber_surface(self) -> float:
@@ -153,7 +163,7 @@ class Actuator:
             "beta": beta.item(),
             "length": self.length,
             "radius": self.radius,
-            "wall": as_profile(self.wall).at(0.5).item(),
+            "wall": self.profile("wall").at(0.5).item(),
             "fiber_radius": self.fiber_surface,
             "fiber_extension": self.fiber_extension,
             "c10": self.material.c10,

@@ -1,6 +1,7 @@
 """Closed forms of the uniform tube: locked state, blocked force and torque, regions of the design space.
 
-Angles in degrees, arrays broadcast. With H = (tan(alpha) + tan(beta))/2 and D = (tan(alpha) - tan(beta))/2::
+Angles in degrees, arrays broadcast, units are read as everywhere (:mod:`freesweep.given`). With
+H = (tan(alpha) + tan(beta))/2 and D = (tan(alpha) - tan(beta))/2::
 
     y_L^2 = (A + sqrt(A^2 - 3 gamma^4 D^2 H^2))/(3 D^2),   A = gamma^2 (1 + H^2 + D^2)       (Eq. 2.12)
     tan(alpha') tan(beta') = -2                                                               the locked manifold
@@ -11,10 +12,50 @@ The forces are positive in tension: opposite to Eq. 2.11, as in the source's plo
 meaning (a straight fiber cannot stretch; alpha = -beta cannot rotate; region I has no blocked force) the result is NaN.
 """
 
+import functools
+import inspect
+
 import numpy as np
 
+from .faults import ActuatorError
+from .given import described, numbers
+
+UNITS = {
+    **{"alpha": "degree", "beta": "degree", "fiber_extension": "1", "stretch": "1"},
+    **{"length": "m", "radius": "m", "wall": "m", "pressure": "Pa", "c10": "Pa", "c01": "Pa"},
+}
 REGIONS = ("AF", "DF", "I", "IIa", "IIb", "LM")
 ANGLE_TOLERANCE = 1e-9  # [degree] and, for the product of tangents, relative: what counts as lying on a line
+
+
+def _formula(function):
+    """Let a formula take numbers as every public function does; raises :class:`ActuatorError` with every fault."""
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def formula(*given, **named):
+        bound = signature.bind(*given, **named)
+        faults, shapes = [], {}
+        for name in bound.arguments.keys() & UNITS.keys():
+            try:
+                array = numbers(bound.arguments[name], UNITS[name])
+                bound.arguments[name], shapes[name] = array[()], array.shape
+            except ValueError as error:
+                faults.append(f"{name}: {error}")
+        try:
+            np.broadcast_shapes(*shapes.values())
+        except ValueError:
+            found = ", ".join(f"{name} {shape}" for name, shape in sorted(shapes.items()) if shape)
+            faults.append(f"the arrays do not broadcast: {found}; give equal lengths")
+        energy = bound.arguments.get("energy", "full")
+        if not isinstance(energy, str) or energy not in ("full", "principal"):
+            faults.append(f"energy: found {described(energy)}; choose one of 'full', 'principal'")
+        if faults:
+            raise ActuatorError(sorted(faults))
+        with np.errstate(all="ignore"):  # poles, and what has no meaning: NaN or infinite
+            return function(*bound.args, **bound.kwargs)
+
+    return formula
 
 
 def _tangents(alpha, beta):
@@ -22,6 +63,7 @@ def _tangents(alpha, beta):
     return np.tan(np.radians(alpha)), np.tan(np.radians(beta))
 
 
+@_formula
 def locked_stretch(alpha, beta, fiber_extension=1.0):
     """Circumferential stretch of the locked uniform tube [-]; NaN on the line alpha = beta."""
     ta, tb = _tangents(alpha, beta)
@@ -29,8 +71,7 @@ def locked_stretch(alpha, beta, fiber_extension=1.0):
     g2 = np.asarray(fiber_extension, float) ** 2
     a = g2 * (1.0 + half_sum**2 + half_difference**2)
     root = np.sqrt(np.maximum(a**2 - 3.0 * (g2 * half_difference * half_sum) ** 2, 0.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        stretch = np.sqrt((a + root) / (3.0 * half_difference**2))
+    stretch = np.sqrt((a + root) / (3.0 * half_difference**2))
     return np.where(_on(alpha, beta), np.nan, stretch)
 
 
@@ -38,6 +79,7 @@ def _on(alpha, beta):
     return np.abs(np.subtract(alpha, beta)) < ANGLE_TOLERANCE
 
 
+@_formula
 def uniform_state(alpha, beta, stretch, fiber_extension=1.0):
     """Axial stretch [-], twist [radian per radius of undeformed length] and deformed angles [degree] of a uniform tube.
 
@@ -59,35 +101,37 @@ def uniform_state(alpha, beta, stretch, fiber_extension=1.0):
     )
 
 
+@_formula
 def locked_angles(alpha, beta, fiber_extension=1.0):
     """Fiber angles of the locked uniform tube [degree], ``(alpha', beta')``: a point of the locked manifold."""
     return uniform_state(alpha, beta, locked_stretch(alpha, beta, fiber_extension), fiber_extension)[2:]
 
 
+@_formula
 def locked_manifold(alpha):
     """The beta [degree] that makes ``tan(alpha) tan(beta) = -2``: such a design does not move under pressure."""
-    with np.errstate(divide="ignore"):
-        return np.degrees(np.arctan(-2.0 / np.tan(np.radians(np.asarray(alpha, float)))))
+    return np.degrees(np.arctan(-2.0 / np.tan(np.radians(np.asarray(alpha, float)))))
 
 
+@_formula
 def blocked_force(alpha, beta, radius, pressure):
     """Force [N] that keeps the length at pressure [Pa] with the ends free to rotate (Eq. 2.16); ``radius`` [m]."""
     ta, tb = _tangents(alpha, beta)
     product = ta * tb
-    with np.errstate(divide="ignore", invalid="ignore"):
-        force = -np.pi * np.asarray(radius) ** 2 * pressure * (1.0 + 2.0 / product)
+    force = -np.pi * np.asarray(radius) ** 2 * pressure * (1.0 + 2.0 / product)
     return np.where((product < 0.0) & ~_on(alpha, beta), force, np.nan)
 
 
+@_formula
 def blocked_torque(alpha, beta, radius, pressure):
     """Torque [N m] that keeps the rotation at pressure [Pa] with the length free (Eqs. 2.19, 2.20); ``radius`` [m]."""
     ta, tb = _tangents(alpha, beta)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        torque = np.pi * np.asarray(radius) ** 3 * pressure * (2.0 + ta * tb) / (ta + tb)
+    torque = np.pi * np.asarray(radius) ** 3 * pressure * (2.0 + ta * tb) / (ta + tb)
     on_af = np.abs(np.add(alpha, beta)) < ANGLE_TOLERANCE
     return np.where(on_af | _on(alpha, beta), np.nan, torque)
 
 
+@_formula
 def critical_pressure(alpha, beta, length, radius, wall, c10, c01=0.0, energy="full"):
     """Pressure [Pa] from which a cylinder whose rotation is held buckles: its first mode is antisymmetric.
 
@@ -100,10 +144,10 @@ def critical_pressure(alpha, beta, length, radius, wall, c10, c01=0.0, energy="f
     sheared = half_sum**2 if energy == "full" else 0.0
     stiffness = 8.0 * (1.0 + c01 / c10) * (1.0 + q + q**2 + sheared)
     bracket = 8.0 + 4.0 * half_sum**2 - 8.0 * half_difference**2 - q**2 - (2.0 * np.pi * radius / length) ** 2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(bracket > 0.0, c10 * area * stiffness / bracket, np.inf)[()]
+    return np.where(bracket > 0.0, c10 * area * stiffness / bracket, np.inf)[()]
 
 
+@_formula
 def region(alpha, beta):
     """Name of the region of the design space (Figure 1-2) as an array of strings, one of REGIONS.
 

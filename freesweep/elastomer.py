@@ -10,7 +10,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from .faults import ActuatorError, number_fault
+from .faults import ActuatorError
+from .given import described, read_number
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,7 @@ class MooneyRivlin:
     source: str = field(default="", repr=False, compare=False, kw_only=True)
 
     def __post_init__(self):
-        _check(
-            number_fault("c10", self.c10, "Pa", positive=True),
-            number_fault("c01", self.c01, "Pa", least=0.0),
-            _range_fault(self.largest_stretch),
-        )
+        _read(self, c10={"positive": True}, c01={"least": 0.0})
 
 
 @dataclass(frozen=True)
@@ -68,12 +65,7 @@ class Yeoh:
     source: str = field(default="", repr=False, compare=False, kw_only=True)
 
     def __post_init__(self):
-        _check(
-            number_fault("c1", self.c1, "Pa", positive=True),
-            number_fault("c2", self.c2, "Pa"),
-            number_fault("c3", self.c3, "Pa"),
-            _range_fault(self.largest_stretch),
-        )
+        _read(self, c1={"positive": True}, c2={}, c3={})
         limit = float(convex_to(self.c1, self.c2, self.c3))
         if limit < (math.inf if self.largest_stretch is None else strip_strain(self.largest_stretch)):
             warnings.warn(
@@ -129,13 +121,19 @@ def _strip(strain):
     return float(np.max(np.roots([1.0, 0.0, -(strain + 3.0), 2.0]).real))
 
 
-def _check(*faults):
-    if faults := [fault for fault in faults if fault]:
+def _read(rubber, **constants):
+    """Make floats of a rubber's constants, each with its domain, and of its range; raises :class:`ActuatorError`."""
+    faults = []
+    read = {
+        name: read_number(name, getattr(rubber, name), "Pa", faults, **domain) for name, domain in constants.items()
+    }
+    if rubber.largest_stretch is not None:
+        stretch = read["largest_stretch"] = read_number("largest_stretch", rubber.largest_stretch, "1", faults)
+        if stretch is not None and not stretch > 1.0:
+            faults.append(f"largest_stretch: found {stretch:g}; it has to be above 1")
+    if not isinstance(rubber.source, str):
+        faults.append(f"source: found {described(rubber.source)}; give a text")
+    if faults:
         raise ActuatorError(faults)
-
-
-def _range_fault(stretch):
-    if stretch is None:
-        return None
-    fault = number_fault("largest_stretch", stretch, "1")
-    return fault or (None if stretch > 1.0 else f"largest_stretch: found {stretch:g}; it has to be above 1")
+    for name, number in read.items():
+        object.__setattr__(rubber, name, number)

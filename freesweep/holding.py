@@ -7,11 +7,15 @@ to the value asked for.
 
 import numpy as np
 
-from .actuator import Actuator, ActuatorError
-from .loads import read_load, read_stations
+from .actuator import Actuator
+from .faults import ActuatorError
+from .given import described, numbers
+from .loads import read_load, read_stations, warn_of_loads
+from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .statics import inflate, read_course
+from .thick_wall import thin_wall_attributes
 
 HALF_CELLS = 48  # of half a tube that is the same all along
 MANY = 200  # states among which it is worth to look first for those that nothing holds
@@ -67,8 +71,8 @@ def blocked_torque(
     """
     if deformed_length is not None:
         raise ActuatorError([f"deformed_length: {BOTH_HELD}"])
-    if not isinstance(buckled, bool):
-        raise ActuatorError([f"buckled: found {buckled!r:.40}; give True or False"])
+    if not isinstance(buckled, (bool, np.bool_)):
+        raise ActuatorError([f"buckled: found {described(buckled)}; give True or False"])
     if isinstance(tube, Actuator):
         alpha, beta = tube.angles(np.linspace(0.0, 1.0, 257))
         if np.all(alpha == -beta):
@@ -91,23 +95,20 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     faults = []
     units = {"deformed_length": "m", "rotation": "degree", "force": "N", "torque": "N m", "pressure": "Pa"}
     axes = {
-        name: read_load(name, value, units[name], faults)
+        name: read_load(name, value, units[name], faults, positive=name in ("pressure", "deformed_length"))
         for name, value in ((held_name, held), (load_name, load), ("pressure", pressure))
     }
-    for name in ("pressure", "deformed_length"):
-        value = axes.get(name)
-        if value is not None and not np.all(np.asarray(value) > 0.0):
-            faults.append(f"{name}: found {np.min(value):g}; it has to be above 0")
-    stations = read_stations(tube, x, accuracy, faults)
+    stations, accuracy = read_stations(tube, x, accuracy, faults)
+    warn_of_loads(tube, **{name: axes[name] for name in (load_name, "pressure")}, stacklevel=4)
     grid = np.meshgrid(*axes.values(), indexing="ij")
     shape, count = grid[0].shape, grid[0].size
     targets, others, pressures = (array.ravel() for array in grid)
     r, c10 = tube.fiber_surface, tube.material.c10
     design = {name: np.full(1, value) for name, value in tube.design().items()}
     row = problem_rows(design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy)[0]
-    whole = tube.varies or buckled
+    whole, error = tube.varies or buckled, 0.0
     if tube.varies:
-        course, edges, places = read_course(tube)
+        (course, edges, places), error = read_course(tube, accuracy)
     else:
         segments = 2 if buckled else 1
         course = np.zeros((segments, 1, 3, 4))
@@ -125,10 +126,12 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     if count >= MANY and not whole:
         refuse(row, *states, codes)
     arguments = (
-        row, *states, buckled, course, edges, places, float(accuracy), values, bounds, codes, stable, slack, unique, fields
+        row, *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error, values, bounds, codes, stable,
+        slack, unique, fields,
     )  # fmt: skip
     if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
         hold_many(*arguments)
+    bounds = widened(values, bounds, error)
     scale = np.pi * r ** (2 if held_is_length else 3) * c10
     found = {
         "status": codes.reshape(shape),
@@ -143,7 +146,8 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         },
     }
     result = dataset(tube, axes, stations, found, without=(held_name,))
-    result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": float(accuracy), "buckled": int(buckled)}
+    result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy, "buckled": int(buckled)}
+    result.attrs |= thin_wall_attributes(tube)
     return result
 
 
@@ -178,4 +182,4 @@ def corrected_torque(tube: Actuator, pressure):
     volume_v = -(stretch**2) * slope / s
     twist_y = CubicSpline(xi, -2.0 * half_sum / stretch**3, axis=-1).integrate(xi[0], xi[-1])
     ends = volume_v[..., -1] - volume_v[..., 0]
-    return -np.asarray(pressure) * np.pi * tube.fiber_surface**3 * (volume_y - ends) / twist_y
+    return -numbers(pressure, "Pa") * np.pi * tube.fiber_surface**3 * (volume_y - ends) / twist_y

@@ -2,33 +2,20 @@
 
 import numpy as np
 
-from .actuator import Actuator, ActuatorError, number_fault
+from .actuator import Actuator
+from .faults import ActuatorError
+from .given import described, numbers, read_column, read_number
 from .scaling import ACCURACIES
+from .unit_warnings import doubts, warn_of
 
 STATIONS = 201
 
 
-def read_load(name, value, unit, faults):
-    """The load as a float or a 1-D float array; what is wrong with it goes to ``faults``."""
-    if np.ndim(value) == 0 and not isinstance(value, np.ndarray):
-        fault = number_fault(name, value, unit)
-        faults += [fault] if fault else []
-        return None if fault else float(value)
-    try:
-        array = np.asarray(value)
-    except ValueError:  # ragged
-        array = np.array(None)
-    if array.dtype.kind not in "iuf":
-        faults.append(f"{name}: found {value!r:.60}; give a number or a 1-D array of numbers in [{unit}]")
-        return None
-    array = array.astype(float)
-    if array.ndim == 0:
-        return read_load(name, array.item(), unit, faults)
-    if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
-        faults.append(
-            f"{name}: found an array of shape {array.shape}; give finite numbers in one dimension, in [{unit}]"
-        )
-        return None
+def read_load(name, value, unit, faults, **domain):
+    """The load as a float or a 1-D float array; None after noting what is wrong; ``domain`` as of ``read_column``."""
+    array = read_column(name, value, unit, faults, **domain)
+    if array is None or array.ndim == 0:
+        return None if array is None else array.item()
     if len(np.unique(array)) != array.size:
         faults.append(f"{name}: a value is given twice; give each once")
         return None
@@ -36,23 +23,28 @@ def read_load(name, value, unit, faults):
 
 
 def read_stations(tube, x, accuracy, faults):
-    """Stations as an array [m]; raises if there are faults."""
+    """Stations as an array [m], and the accuracy; raises if there are faults."""
     if not isinstance(tube, Actuator):
-        raise ActuatorError([f"tube: found {type(tube).__name__}; give an Actuator"])
-    fault = number_fault("accuracy", accuracy, "1", positive=True)
-    if not fault and not ACCURACIES[0] <= accuracy <= ACCURACIES[1]:
-        fault = f"accuracy: found {accuracy:g}; give a value from {ACCURACIES[0]:g} to {ACCURACIES[1]:g}"
-    faults += [fault] if fault else []
-    if x is None:
-        stations = np.linspace(0.0, tube.length, STATIONS)
-    else:
+        raise ActuatorError([f"tube: found {described(tube)}; give an Actuator", *faults])
+    accuracy = read_number("accuracy", accuracy, "1", faults, positive=True)
+    if accuracy is not None and not ACCURACIES[0] <= accuracy <= ACCURACIES[1]:
+        faults.append(f"accuracy: found {accuracy:g}; give a value from {ACCURACIES[0]:g} to {ACCURACIES[1]:g}")
+    stations = np.linspace(0.0, tube.length, STATIONS)
+    if x is not None:
         try:
-            stations = np.atleast_1d(np.asarray(x, dtype=float))
-        except (TypeError, ValueError):
-            stations = np.array([np.nan])
+            stations = np.atleast_1d(numbers(x, "m"))
+        except ValueError as error:
+            faults.append(f"x: {error}")
         inside = np.all((stations >= 0.0) & (stations <= tube.length * (1.0 + 1e-12)))
         if stations.ndim != 1 or stations.size == 0 or not inside or np.any(np.diff(stations) <= 0.0):
             faults.append(f"x: give ascending stations from 0 to the undeformed length {tube.length:g} m, in [m]")
     if faults:
         raise ActuatorError(faults)
-    return stations
+    return stations, accuracy
+
+
+def warn_of_loads(tube, stacklevel=3, **loads):
+    """Warn of loads that look like slips of units for this tube."""
+    design = tube.design()
+    own = {name: design[name] for name in ("alpha", "beta", "length", "radius", "wall", "c10")}
+    warn_of(doubts(**own, **loads), stacklevel)

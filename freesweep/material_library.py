@@ -10,6 +10,8 @@ from collections.abc import Mapping
 
 from .elastomer import MooneyRivlin, Yeoh
 from .faults import ActuatorError
+from .given import described
+from .units import shown
 
 _TABLE_1 = (
     "source, Table 1 (natural rubber latex, Kent Elastomer), adjusted there to the measured lengths of the McKibben muscle"
@@ -70,6 +72,8 @@ def material(name):
         found = materials.get(name.strip().lower().replace(" ", "-").replace("_", "-"))
         if found is not None:
             return found
-    near = difflib.get_close_matches(str(name).lower()[:40], list(materials), n=1, cutoff=0.4)
+    text = name.lower()[:40] if isinstance(name, str) else ""
+    near = difflib.get_close_matches(text, list(materials), n=1, cutoff=0.4)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    raise ActuatorError([f"material: found {name!r:.60}; {hint}The library holds {', '.join(materials)}"])
+    found = shown(name) if isinstance(name, str) else described(name)
+    raise ActuatorError([f"material: found {found}; {hint}The library holds {', '.join(materials)}"])

@@ -2,16 +2,28 @@
 
 A profile is a list of pairs ``(x/l, value)``, linear between them, where a repeated x/l is a jump; or a callable of x/l
 (array in, array out). Between the places where some profile jumps or bends, H, D and a are smooth: cubic splines on equal
-pieces of each such segment, fine enough that nothing is lost.
+pieces of each such segment. They are compared with the profile at many irregular places; where it changes within a few
+cells of the mesh, segments are cut, where it cannot be followed it is refused. What is narrower than 1/8000 of the tube may
+be missed in a callable: that is what pairs are for.
 """
 
 from itertools import pairwise
 
 import numpy as np
 
+from .given import numbers
+
 PIECES = (16, 64, 256, 1024, 4096)  # of a segment, until the splines fit
-FIT = 1e-10  # relative error of a spline that no output feels
+FINE, FIT = 1e-12, 1e-9  # relative errors of splines that suffice, and that are allowed: they enter the bounds
+SENSITIVITY = 10.0  # of outputs to relative changes of H, D and a, at most, but close to a limit pressure
 SAMPLES = 257  # of a profile, where its values are checked
+DENSE = 1 << 14  # of a callable along the tube: what is narrower than two gaps may be missed
+IN_EACH = 4  # places at least where each piece of a spline is checked
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)  # multiples modulo 1 are the evenest of irregular places
+SEEN = 0.05  # relative error of a spline over the cells of a base mesh: they see what is there
+MOST_SEGMENTS = 48  # into which callables are cut, each with its share of the mesh
+SHORTEST = 1e-6  # of the length: of what lies between two places where something jumps or bends
+SAME = 1e-9  # places of different profiles that only rounding parts, as 0.3 and 0.1 + 0.2
 CELLS = 240  # of a base mesh, shared by its segments, LEAST_CELLS and MOST_CELLS of each
 LEAST_CELLS, MOST_CELLS = 16, 48
 
@@ -23,24 +35,39 @@ class ProfileError(ValueError):
 class Profile:
     """One quantity along the tube: ``breaks`` in x/l, and its values within each segment between them."""
 
-    def __init__(self, value):
+    def __init__(self, value, unit="1"):
+        self.unit = unit
         self.function = value if callable(value) else None
         if self.function:
             self.breaks = np.array([0.0, 1.0])
         else:
-            self.x, self.values = _pairs(value)
+            self.x, self.values = _pairs(value, unit)
             self.breaks = np.unique(self.x)
 
     def within(self, low, high, share):
         """Values at ``low + (high - low) share``, as seen from inside that interval."""
         at = low + (high - low) * np.asarray(share, float)
         if self.function:
-            values = np.asarray(self.function(at), dtype=float)
-            if values.shape != at.shape:
-                raise ProfileError(f"the callable made shape {values.shape} of shape {at.shape}; array in, array out")
-            return values
+            return self._called(at)
         k = np.searchsorted(self.x, 0.5 * (low + high)) - 1
         return self.values[k] + (at - self.x[k]) / (self.x[k + 1] - self.x[k]) * (self.values[k + 1] - self.values[k])
+
+    def _called(self, at):
+        """Values of the callable, whatever a person's may do."""
+        try:
+            with np.errstate(all="ignore"):
+                found = self.function(at)
+        except Exception as error:
+            raise ProfileError(f"the callable failed: {type(error).__name__}: {error}") from None
+        try:
+            values = numbers(found, self.unit)
+        except ValueError as error:
+            raise ProfileError(f"of the callable {error}") from None
+        if values.shape != at.shape:
+            raise ProfileError(f"the callable made shape {values.shape} of shape {at.shape}; array in, array out")
+        if not np.all(np.isfinite(values)):
+            raise ProfileError(f"the profile has values that are not finite; give finite numbers in [{self.unit}]")
+        return values
 
     def at(self, share):
         """Values at shares of the length; on a jump the left one."""
@@ -53,23 +80,37 @@ class Profile:
 
     def samples(self):
         """Values at enough places to check them."""
-        inner = np.linspace(0.0, 1.0, SAMPLES)
-        return np.concatenate([self.within(low, high, inner) for low, high in pairwise(self.breaks)])
+        pieces = pairwise(self.breaks)
+        return np.concatenate([self.within(low, high, _shares(high - low, self)) for low, high in pieces])
 
 
-def _pairs(value):
+def _pairs(value, unit):
+    if isinstance(value, np.ndarray) and value.dtype.kind in "iuf":
+        pairs = [tuple(row) if np.ndim(row) else () for row in value.tolist()] if value.ndim == 2 else []
+    else:
+        pairs = value
     try:
-        pairs = np.array([[float(x), float(y)] for x, y in value])
-    except (TypeError, ValueError):
+        x, y = zip(*((share, number) for share, number in pairs))
+    except Exception:
         raise ProfileError("give pairs (x/l, value), or a callable of x/l") from None
-    if len(pairs) < 2 or not np.all(np.isfinite(pairs)):
+    try:
+        x, y = numbers(list(x), "1"), numbers(list(y), unit)
+    except ValueError as error:
+        raise ProfileError(f"{error}; give pairs (x/l, value), or a callable of x/l") from None
+    if x.ndim != 1 or y.ndim != 1 or len(x) < 2 or not np.all(np.isfinite(x)) or not np.all(np.isfinite(y)):
         raise ProfileError("give two or more pairs (x/l, value) of finite numbers")
-    x = pairs[:, 0]
     if x[0] != 0.0 or x[-1] != 1.0 or np.any(np.diff(x) < 0.0):
         raise ProfileError("x/l has to rise from 0 to 1; a repeated x/l is a jump")
     if np.any((x[2:] == x[1:-1]) & (x[1:-1] == x[:-2])) or x[0] == x[1] or x[-1] == x[-2]:
         raise ProfileError("a jump takes two pairs at one x/l, inside the tube")
-    return x, pairs[:, 1]
+    gaps = np.diff(np.unique(x))
+    if np.any(gaps < SHORTEST):
+        near = float(np.unique(x)[np.argmin(gaps)])
+        raise ProfileError(
+            f"x/l {near!r} and the next are {gaps.min():.1g} apart; give places at least {SHORTEST:g} apart, or twice the"
+            " same for a jump"
+        )
+    return x, y
 
 
 def is_profile(value) -> bool:
@@ -77,28 +118,30 @@ def is_profile(value) -> bool:
     return callable(value) or isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
 
 
-def as_profile(value) -> Profile:
-    """A profile of anything that may vary, numbers included."""
-    return Profile(value) if is_profile(value) else Profile([(0.0, value), (1.0, value)])
+def as_profile(value, unit="1") -> Profile:
+    """A profile of anything that may vary, numbers included; ``unit`` is that of what pairs and callables give."""
+    return Profile(value if is_profile(value) else [(0.0, value), (1.0, value)], unit)
 
 
 def together(first, second):
     """Values of two profiles at the same places: everywhere along the tube, both sides of each jump among them."""
-    breaks = np.unique(np.concatenate([first.breaks, second.breaks]))
-    inner = np.linspace(0.0, 1.0, SAMPLES)
+    pieces = list(pairwise(_places(first, second)))
+    inner = [_shares(high - low, first, second) for low, high in pieces]
     return tuple(
-        np.concatenate([profile.within(low, high, inner) for low, high in pairwise(breaks)])
+        np.concatenate([profile.within(*piece, share) for piece, share in zip(pieces, inner)])
         for profile in (first, second)
     )
 
 
 def course(tube):
-    """``(course, edges, places)`` of a tube that varies, as the kernels take them; lengths in radii.
+    """``((course, edges, places), error)`` of a tube that varies: the first as the kernels take them, lengths in radii; the
+    largest relative error of its splines.
 
     Raises :class:`ProfileError` where a profile changes too fast to be followed.
     """
-    alpha, beta, wall = (as_profile(value) for value in (tube.alpha, tube.beta, tube.wall))
-    breaks = np.unique(np.concatenate([alpha.breaks, beta.breaks, wall.breaks, [0.5]]))
+    profiles = alpha, beta, wall = (
+        as_profile(tube.alpha, "degree"), as_profile(tube.beta, "degree"), as_profile(tube.wall, "m")
+    )  # fmt: skip
 
     def numbers(low, high, share):
         ta = np.tan(np.radians(alpha.within(low, high, share)))
@@ -106,29 +149,82 @@ def course(tube):
         area = ((tube.radius + wall.within(low, high, share)) ** 2 - tube.radius**2) / tube.fiber_surface**2
         return np.stack([0.5 * (ta + tb), 0.5 * (ta - tb), area])
 
+    def splines(low, high, pieces):
+        return _splines(numbers, low, high, pieces, _shares(high - low, *profiles, least=IN_EACH * pieces))
+
+    breaks = _places(*profiles, middle=0.5)
+    if any(profile.function for profile in profiles):
+        breaks = _cut(breaks, lambda low, high: splines(low, high, LEAST_CELLS)[1])
     for pieces in PIECES:
-        segments, error = zip(*(_splines(numbers, low, high, pieces) for low, high in pairwise(breaks)))
-        if max(error) < FIT:
+        segments, errors = zip(*(splines(low, high, pieces) for low, high in pairwise(breaks)))
+        if max(errors) < FINE:
             break
-    else:
-        raise ProfileError(
-            f"a profile changes too fast to be followed (error {max(error):.1e} with {pieces} pieces); where it jumps, give"
-            " pairs with a repeated x/l"
-        )
+    if not max(errors) < FIT:
+        raise ProfileError(_TOO_FAST.format(places=_span(breaks, int(np.argmax(errors)))))
     each = min(max(2 * round(CELLS / len(segments) / 2), LEAST_CELLS), MOST_CELLS)
     edges = np.arange(len(breaks), dtype=np.int64) * each
-    return np.stack(segments), edges, breaks * tube.length / tube.fiber_surface
+    return (np.stack(segments), edges, breaks * tube.length / tube.fiber_surface), max(errors)
 
 
-def _splines(numbers, low, high, pieces):
-    """Coefficients (pieces, 3, 4) in rising powers of one segment, and the largest relative error between the nodes."""
+_TOO_FAST = (
+    "a profile changes too fast to be followed, between x/l = {places}; where it jumps or bends, give pairs with a repeated"
+    " x/l instead of a callable"
+)
+
+
+def _span(breaks, k):
+    return f"{breaks[k]:.6g} and {breaks[k + 1]:.6g}"
+
+
+def _places(*profiles, middle=None):
+    """Places x/l where some profile jumps or bends, ascending, and the ``middle``; what only rounding parts is one place."""
+    found = np.unique(np.concatenate([profile.breaks for profile in profiles] + ([] if middle is None else [[middle]])))
+    found = found[np.concatenate([[True], np.diff(found) > SAME])]
+    gaps = np.diff(found)
+    if np.any(gaps < SHORTEST):
+        k = int(np.argmin(gaps))
+        raise ProfileError(
+            f"profiles jump or bend at x/l {float(found[k])!r} and {float(found[k + 1])!r}, less than {SHORTEST:g} apart;"
+            " give them the same place"
+        )
+    return found
+
+
+def _shares(width, *profiles, least=SAMPLES):
+    """Places within a piece of the tube, 0 to 1, where profiles are looked at: irregular, so that nothing that repeats is
+    missed, and where there is a callable so dense that nothing is that takes more than two gaps.
+    """
+    count = max(least, int(DENSE * width) if any(profile.function for profile in profiles) else 0)
+    return np.concatenate([[0.0], np.sort(np.arange(1, count) * GOLDEN % 1.0), [1.0]])
+
+
+def _cut(breaks, missed):
+    """``breaks`` with pieces cut in halves until the cells of a base mesh see what is in each of them."""
+    found, ahead = [breaks[0]], list(breaks[:0:-1])
+    while ahead:
+        low, high = found[-1], ahead[-1]
+        if missed(low, high) < SEEN:
+            found.append(ahead.pop())
+        elif high - low < 2.0 * SHORTEST or len(found) + len(ahead) > MOST_SEGMENTS:
+            raise ProfileError(_TOO_FAST.format(places=_span([low, high], 0)))
+        else:
+            ahead.append(0.5 * (low + high))
+    return np.array(found)
+
+
+def _splines(numbers, low, high, pieces, between):
+    """Coefficients (pieces, 3, 4) in rising powers of one segment, and the largest relative error ``between`` the nodes."""
     from scipy.interpolate import CubicSpline
 
     nodes = np.arange(pieces + 1) / pieces
     spline = CubicSpline(nodes, numbers(low, high, nodes), axis=1)
-    between = nodes[:-1] + 0.37 / pieces
     exact = numbers(low, high, between)
     scale = np.max(np.abs(exact), axis=1, keepdims=True) + 1e-6
     error = float(np.max(np.abs(spline(between) - exact) / scale))
     powers = spline.c[::-1] * (1.0 / pieces) ** np.arange(4).reshape(4, 1, 1)
     return np.ascontiguousarray(powers.transpose(1, 2, 0)), error
+
+
+def widened(values, bounds, error):
+    """Bounds of dimensionless ``values`` with what an ``error`` of the course, relative, can add to them."""
+    return bounds + SENSITIVITY * error * np.maximum(np.abs(values), 1.0)

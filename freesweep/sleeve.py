@@ -11,11 +11,13 @@ Forces measured on a sleeve (Figure 3-13) are lower than these by almost half: a
 actuator pulls with, and no model here knows it. Take the values for upper bounds.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
-from .actuator import Actuator, ActuatorError, number_fault
+from .actuator import Actuator
+from .faults import ActuatorError
+from .given import described, numbers, read_number
 
 MEASURED = (
     "string model: measured loads are lower by almost half (Figure 3-13), as a side load reduces the blocked force"
@@ -35,17 +37,15 @@ class Helix:
     turns: float
 
     def __post_init__(self):
-        units = {"length": "m", "height": "m", "turns": "turns"}
-        faults = [number_fault(name, getattr(self, name), unit, positive=True) for name, unit in units.items()]
-        faults = [fault for fault in faults if fault]
+        faults = []
+        for name, unit in {"length": "m", "height": "m", "turns": "1"}.items():
+            object.__setattr__(self, name, read_number(name, getattr(self, name), unit, faults, positive=True))
         if not faults and not self.height < self.length:
             faults.append(
                 f"height: found {self.height:g} m; an actuator of {self.length:g} m winds less high than that"
             )
         if faults:
             raise ActuatorError(faults)
-        for item in fields(self):
-            object.__setattr__(self, item.name, float(getattr(self, item.name)))
 
     @classmethod
     def around(cls, radius, length, height):
@@ -54,11 +54,12 @@ class Helix:
         The source takes the arm's radius; add the actuator's outer radius for its middle line. Raises
         :class:`ActuatorError`.
         """
-        faults = [
-            number_fault(name, value, "m", positive=True)
+        faults = []
+        radius, length, height = (
+            read_number(name, value, "m", faults, positive=True)
             for name, value in (("radius", radius), ("length", length), ("height", height))
-        ]
-        if faults := [fault for fault in faults if fault]:
+        )
+        if faults:
             raise ActuatorError(faults)
         hoops = max((length - height) * (length + height), 0.0) ** 0.5
         turns = (
@@ -102,8 +103,10 @@ class Helix:
         The tension is the same all along: friction along the winding (a capstan's) is left out. Raises
         :class:`ActuatorError`.
         """
-        if fault := number_fault("coefficient", coefficient, "1", least=0.0):
-            raise ActuatorError([fault])
+        faults = []
+        coefficient = read_number("coefficient", coefficient, "1", faults, least=0.0)
+        if faults:
+            raise ActuatorError(faults)
         return coefficient * self.normal_force(force)
 
     @property
@@ -113,7 +116,10 @@ class Helix:
 
 def _tension(force):
     """A string cannot push: it is slack."""
-    return np.maximum(np.asarray(force, dtype=float), 0.0)[()]
+    try:
+        return np.maximum(numbers(force, "N"), 0.0)[()]
+    except ValueError as error:
+        raise ActuatorError([f"force: {error}"]) from None
 
 
 def constriction(tube: Actuator, helix: Helix, pressure, *, friction=0.0, accuracy=1e-6):
@@ -133,9 +139,8 @@ def constriction(tube: Actuator, helix: Helix, pressure, *, friction=0.0, accura
     """
     from .holding import blocked_force
 
-    faults = [] if isinstance(helix, Helix) else [f"helix: found {type(helix).__name__}; give a Helix"]
-    if fault := number_fault("friction", friction, "1", least=0.0):
-        faults.append(fault)
+    faults = [] if isinstance(helix, Helix) else [f"helix: found {described(helix)}; give a Helix"]
+    friction = read_number("friction", friction, "1", faults, least=0.0)
     if faults:
         raise ActuatorError(faults)
     blocked = blocked_force(tube, pressure, helix.length, x=0.0, accuracy=accuracy)

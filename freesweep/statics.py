@@ -3,11 +3,14 @@
 import numpy as np
 
 from . import profiles, status
-from .actuator import Actuator, ActuatorError
+from .actuator import Actuator
 from .atlas.schema import attributes
-from .loads import read_load, read_stations
+from .faults import ActuatorError
+from .loads import read_load, read_stations, warn_of_loads
+from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
+from .thick_wall import thin_wall_attributes
 
 BASE_CELLS = 96  # four times a sweep's: profiles are wanted as exact as scalars
 LOADS = ("force", "torque", "pressure")
@@ -25,7 +28,7 @@ def lock(tube: Actuator, *, x=None, accuracy=1e-6):
     Returns a Dataset of scalars, their ``_error`` bounds and profiles along ``x``; fiber tensions per pressure [N/Pa].
     Raises :class:`ActuatorError` for invalid input.
     """
-    stations = read_stations(tube, x, accuracy, [])
+    stations, accuracy = read_stations(tube, x, accuracy, [])
     result = _solve(tube, {"force": 0.0, "torque": 0.0, "pressure": np.inf}, stations, accuracy)
     result = result.drop_vars(["limit_pressure", "limit_pressure_error", "limit_found", *LOADS])
     for name in ("fiber_tension_alpha", "fiber_tension_beta"):
@@ -48,15 +51,18 @@ def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy
     x, accuracy : as in :func:`lock`
 
     Returns a Dataset. What physics forbids is NaN with a ``status``: beyond ``limit_pressure`` the branch that starts at
-    the undeformed cylinder has ended. Raises :class:`ActuatorError` for invalid input.
+    the undeformed cylinder has ended. Where the wall is thicker than a tenth of the radius, the attributes
+    ``thin_wall_ratio`` and ``thin_wall_note`` say what the thin wall of the model leaves out. Raises
+    :class:`ActuatorError` for invalid input.
     """
     faults = []
-    loads = {}
-    for name, value, unit in (("force", force, "N"), ("torque", torque, "N m"), ("pressure", pressure, "Pa")):
-        loads[name] = read_load(name, value, unit, faults)
-    if "pressure" in loads and loads["pressure"] is not None and np.any(np.asarray(loads["pressure"]) < 0.0):
-        faults.append("pressure: found a negative value; the model needs 0 or more (vacuum is another problem)")
-    stations = read_stations(tube, x, accuracy, faults)
+    loads = {
+        "force": read_load("force", force, "N", faults),
+        "torque": read_load("torque", torque, "N m", faults),
+        "pressure": read_load("pressure", pressure, "Pa", faults, least=0.0),
+    }
+    stations, accuracy = read_stations(tube, x, accuracy, faults)
+    warn_of_loads(tube, **loads)
     return _solve(tube, loads, stations, accuracy)
 
 
@@ -71,11 +77,11 @@ def _solve(tube, loads, stations, accuracy):
     count, steps = len(force), len(pressure)
     design = {name: np.full(count, value) for name, value in tube.design().items()}
     rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy)
-    course = read_course(tube) if tube.varies else uniform(BASE_CELLS)
+    course, error = read_course(tube, accuracy) if tube.varies else (uniform(BASE_CELLS), 0.0)
     unique, index = near_stations(tube, stations, tube.varies)
     first = np.arange(count + 1, dtype=np.int64) * steps
     pressures = np.tile(pressure[order] / tube.material.c10, count)
-    walks = walk_all(rows, first, pressures, course, float(accuracy), unique, soon=True)
+    walks = walk_all(rows, first, pressures, course, accuracy - SENSITIVITY * error, unique, soon=True)
 
     back = np.argsort(order)
 
@@ -87,13 +93,14 @@ def _solve(tube, loads, stations, accuracy):
     force, torque, pressure = np.meshgrid(*(loads[name] for name in LOADS), indexing="ij")
     at_rest = (force == 0.0) & (torque == 0.0) & (pressure == 0.0)
     fields[at_rest] = undeformed(tube, stations)
-    limits = walks.limits.reshape(*shape[:2], 2) * tube.material.c10
+    limits = np.stack([walks.limits[:, 0], widened(walks.limits[:, 0], walks.limits[:, 1], error)], axis=-1)
+    limits = limits.reshape(*shape[:2], 2) * tube.material.c10
     found = {
         "status": grid(walks.status),
         "stable": np.isin(grid(walks.status), status.VALUED),  # the walk keeps to stable states
         "slack_fiber": grid(walks.slack),
         "values": grid(walks.values),
-        "bounds": grid(walks.bounds),
+        "bounds": grid(widened(walks.values, walks.bounds, error)),
         "fields": (fields, tube.varies),
         "extra": {
             "limit_pressure": (LOADS[:2], limits[..., 0]),
@@ -102,7 +109,9 @@ def _solve(tube, loads, stations, accuracy):
         },
     }
     result = dataset(tube, {name: loads[name] for name in LOADS}, stations, found)
-    result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": float(accuracy)}
+    result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy}
+    if not np.any(np.isinf(loads["pressure"])):  # the locked shape does not see the wall
+        result.attrs |= thin_wall_attributes(tube)
     return result
 
 
@@ -117,9 +126,16 @@ def undeformed(tube, stations):
     return np.stack([*values, *(zero for _ in values)])
 
 
-def read_course(tube):
-    """The course along a tube that varies, as the kernels take it; raises :class:`ActuatorError`."""
+def read_course(tube, accuracy):
+    """The course along a tube that varies, as the kernels take it, and its error; raises :class:`ActuatorError`."""
     try:
-        return profiles.course(tube)
-    except profiles.ProfileError as error:
-        raise ActuatorError([f"alpha, beta, wall: {error}"]) from None
+        course, error = profiles.course(tube)
+    except profiles.ProfileError as fault:
+        raise ActuatorError([f"alpha, beta, wall: {fault}"]) from None
+    if SENSITIVITY * error > 0.5 * accuracy:
+        raise ActuatorError(
+            [
+                f"accuracy: found {accuracy:g}; the profiles of this tube can be followed to {2.0 * SENSITIVITY * error:.1g}"
+            ]
+        )
+    return course, error

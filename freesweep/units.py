@@ -10,6 +10,7 @@ import re
 from decimal import Context, Decimal
 
 MAX_CHARACTERS = 64  # a longer text is no quantity
+NEAR = 0.75  # likeness of two units from which one may be a slip for the other
 _DECIMAL = Context(prec=40, traps=[])  # no traps: overflow becomes infinity, which is refused below
 
 # Factor of each unit to the unit its kind is kept in. Case counts: mN and MN differ by nine orders of magnitude.
@@ -20,7 +21,9 @@ _LENGTH = {
 _PRESSURE = {
     **{"Pa": "1", "hPa": "1e2", "kPa": "1e3", "MPa": "1e6", "GPa": "1e9", "mbar": "1e2", "bar": "1e5"},
     **{"N/m2": "1", "N/mm2": "1e6", "kgf/cm2": "98066.5"},
-    **{"psi": "6894.757293168361", "ksi": "6894757.293168361", "atm": "101325", "mmHg": "133.322387415"},
+    **{"psi": "6894.757293168361", "ksi": "6894757.293168361", "atm": "101325", "at": "98066.5"},
+    **{"mmHg": "133.322387415", "cmHg": "1333.22387415", "inHg": "3386.388640341", "Torr": "133.32236842105263158"},
+    **{"mmH2O": "9.80665", "cmH2O": "98.0665", "mH2O": "9806.65", "inH2O": "249.08891"},
 }
 _FORCE = {
     **{"N": "1", "uN": "1e-6", "mN": "1e-3", "kN": "1e3", "gf": "9.80665e-3", "kgf": "9.80665"},
@@ -35,6 +38,7 @@ _DEGREES = "57.295779513082320876798154814105"  # in one radian
 _ANGLE = {
     **{"deg": "1", "degree": "1", "degrees": "1", "°": "1", "rad": _DEGREES},
     "mrad": "0.057295779513082320876798154814105",
+    **{"radian": _DEGREES, "radians": _DEGREES},
 }
 _NUMBER = {"1": "1", "%": "0.01"}
 
@@ -49,6 +53,10 @@ _KINDS = {
 }
 _SPELLINGS = str.maketrans({"µ": "u", "μ": "u", "º": "°", "²": "2", "^": None})
 _PRODUCT = re.compile(r"(?<=[A-Za-z])\s*[\s·⋅*.-]\s*(?=[A-Za-z])")
+_GAUGE = re.compile(
+    r"(.+?)\s*(?:g|G|\(g\)|\(G\)|\(?gauge\)?)"
+)  # psig, bar(g): above the atmosphere, as all pressures here
+_ABSOLUTE = re.compile(r"(.+?)\s*(?:a|A|\(a\)|\(A\)|\(?abs(?:olute)?\)?)")  # psia, bara
 _QUANTITY = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(.*)", re.DOTALL)
 
 
@@ -82,8 +90,7 @@ def quantity(value: str | float, units: str) -> float:
     A number, or a text without unit, is taken to be in ``units`` already. Raises ValueError with a sentence that says
     what was found, what is allowed and what to write instead.
     """
-    kind, example, _ = _KINDS[units]
-    expects = f"expects {kind} such as {example!r}"
+    expects = _expects(units)
     if isinstance(value, str):
         result = _from_text(value, units, expects)
     elif isinstance(value, numbers.Real) and not isinstance(value, bool):
@@ -98,6 +105,11 @@ def quantity(value: str | float, units: str) -> float:
     return result + 0.0  # -0.0 becomes 0.0
 
 
+def _expects(units):
+    kind, example, _ = _KINDS[units]
+    return f"expects {kind} such as {example!r}"
+
+
 def _from_text(text, units, expects):
     if len(text) > MAX_CHARACTERS:
         raise ValueError(f"{expects}, found a text of {len(text)} characters; {MAX_CHARACTERS} are allowed")
@@ -107,18 +119,38 @@ def _from_text(text, units, expects):
     number, unit = match.groups()
     if re.match(r",[0-9]", unit):
         raise ValueError(f"{expects}, found {shown(text)}: write the decimal comma as a point")
+    return float(_DECIMAL.multiply(_DECIMAL.create_decimal(number), _factor(unit, units, text)))
+
+
+def factor(unit: str, units: str) -> float:
+    """What a number in a ``unit`` is multiplied with, to be in ``units``; no unit at all: 1. Raises ValueError as above."""
+    return float(_factor(unit, units, unit))
+
+
+def _factor(unit, units, text):
+    expects = _expects(units)
     unit = _PRODUCT.sub(" ", unit.strip().translate(_SPELLINGS))
-    kept, factor = _KNOWN.get(unit, (None, None)) if unit else (units, Decimal(1))
+    kept, value = _KNOWN.get(unit, (None, None)) if unit else (units, Decimal(1))
+    if kept is None and (gauge := _GAUGE.fullmatch(unit)) and gauge.group(1) in _PRESSURE:
+        kept, value = _KNOWN[gauge.group(1)]
+    folded = {name.lower(): name for name in _PRESSURE}  # PSIA is no slip for psi either
+    if kept is None and (absolute := _ABSOLUTE.fullmatch(unit)) and (name := folded.get(absolute.group(1).lower())):
+        atmosphere = 101325.0 / float(_PRESSURE[name])
+        raise ValueError(
+            f"{expects}, found {shown(text)}, an absolute pressure; gauge pressure counts here, what is above the"
+            f" surroundings: subtract the atmosphere, {atmosphere:.6g} {name} by standard, and write {name!r}"
+        )
     if kept is None:
         raise ValueError(f"{expects}, found {shown(text)}: unknown unit {_nearest(unit, units)}")
     if kept != units:
         raise ValueError(f"{expects}, got {shown(text)}, {_KINDS[kept][0]}")
-    return float(_DECIMAL.multiply(_DECIMAL.create_decimal(number), factor))
+    return value
 
 
 def _nearest(unit, units):
+    """An unknown unit, and the one meant where hardly a letter differs: inches of mercury are no slip for millimetres."""
     names = {name.lower(): name for name, (kept, _) in _KNOWN.items() if kept == units}
-    near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=0.5)
+    near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=NEAR)
     meant = f", did you mean {names[near[0]]!r}?" if near else "."
     return f"{shown(unit)}{meant} Known here: {', '.join(_KINDS[units][2])}"
 

@@ -239,7 +239,7 @@ def test_a_wrong_model_is_said_to_miss():
         ({"pressure": 1e5, "force": 1.0, "deformed_length": 0.1}, ["measured: deformed_length and force are given; say"]),
         ({"pressure": 1e5, "force": 1.0, "torque": 1.0, "measured": ["force", "torque"]}, ["measured: torque beside force"]),
         ({"pressure": 1e5, "force": 1.0, "rotation": 1.0, "measured": "force"}, ["rotation: given and not measured"]),
-        ({"pressure": 1e5, "force": [1.0, np.nan]}, ["force: entry 2 is not finite"]),
+        ({"pressure": 1e5, "force": [1.0, np.nan]}, ["force: entry 2: found nan; give a finite number"]),
         ({"pressure": 1e5, "force": 1.0, "sigma": {"force": 0.0, "torque": 1.0}},
          ["sigma of force: found 0", "sigma: 'torque' is not measured"]),
         ({"pressure": 1e5, "deformed_length": 0.0}, ["deformed_length: found 0; it has to be above 0"]),
@@ -273,3 +273,35 @@ def test_every_fault_of_a_calibration_is_named(arguments, faults):
     assert [found.startswith(fault) for found, fault in zip(error.value.faults, faults, strict=True)] == [True] * len(
         faults
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "says", "never"),
+    [
+        (
+            "pressure [kPa],force [N]\n10,1,\n20,2,\n",
+            "line 2: 3 cells under 2 names; it ends with a separator",
+            "point",
+        ),
+        ("pressure [kPa],force [N],\n10,1,\n20,2,\n", "column 3: has no name; name it or remove it", "did you mean"),
+        (
+            "pressure [kPa],force [N]\n10,1\n20,\n",
+            "line 3, force: the cell is empty; leave such states out",
+            "write a number",
+        ),
+        ("pressure [kPa],force [N],time [s]\n10,1,0\n", "column 'time [s]': unknown; remove it", "did you mean"),
+        (
+            "pressure [kPa],force [N]\n1,0,1\n",
+            "a separator too many, or a decimal comma where a point belongs",
+            "missing",
+        ),
+    ],
+)
+def test_a_bench_file_is_refused_for_what_is_wrong_with_it(text, says, never, tmp_path):
+    (tmp_path / "bench.csv").write_text(text)
+    with pytest.raises(ActuatorError) as caught:
+        read_measurements(
+            tmp_path / "bench.csv", measured="force", alpha=30, beta=-30, length=0.2, radius=5e-3, wall="1 mm"
+        )
+    assert any(says in fault for fault in caught.value.faults)
+    assert never not in str(caught.value)

@@ -10,7 +10,7 @@ from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED
 from freesweep.solver import block, branch
 from freesweep.solver.lanes import hold, walk
 from freesweep.sweep import duration
-from freesweep.sweep.doubts import doubts
+from freesweep.sweep.doubts import doubts_of
 from freesweep.sweep.spec import parse
 
 TINY = spec(
@@ -139,9 +139,9 @@ def test_a_map_that_cannot_be_written_is_refused_before_anything_is_solved(speci
     ("old", "new", "says"),
     [
         ("", "", None),
-        ("wall = 0.00159", "wall = 1.59", "walls up to 1.59 m are thicker than the inner radius, 0.00476 m at least"),
-        ("wall = 0.00159", "wall = [[0, 1e-3], [1, 6e-3]]", "walls up to 0.006 m are thicker"),
-        ("radius = 0.00476", "radius = 4.76", "the radius reaches 4.76 m; plain numbers are in SI units"),
+        ("wall = 0.00159", "wall = 1.59", "wall 1.59 m is thicker than the inner radius 0.00476 m"),
+        ("wall = 0.00159", "wall = [[0, 1e-3], [1, 6e-3]]", "wall 0.006 m is thicker"),
+        ("radius = 0.00476", "radius = 4.76", "the radius is 4.76 m; plain numbers are in SI units"),
         ("c10 = 170000.0", "c10 = 0.17", "the pressure reaches 50000 Pa, far beyond a c10 of 0.17 Pa; plain numbers"),
         ("20000.0, 50000.0]", "20.0, 50.0]", "no pressure exceeds 50 Pa, which hardly deforms a c10 of 170000 Pa"),
         ("20000.0, 50000.0]", "]", None),
@@ -158,9 +158,9 @@ def test_numbers_that_look_like_slips_of_units_are_told(old, new, says, specific
 def test_each_named_design_has_its_own_wall_and_radius():
     designs = [{"name": "a", "radius": 5e-3, "wall": 4e-3}, {"name": "b", "radius": 2e-3, "wall": 1e-3}]
     axes = {"alpha": [20.0], "beta": [-50.0], "pressure": [1e5]}
-    assert doubts(parse(spec(axes, designs))) == []
+    assert doubts_of(parse(spec(axes, designs))) == []
     designs[1]["wall"] = 3e-3
-    assert [text[:15] for text in doubts(parse(spec(axes, designs)))] == ["walls up to 0.0"]
+    assert [text[:15] for text in doubts_of(parse(spec(axes, designs)))] == ["wall 0.003 m is"]
 
 
 def test_a_specification_is_neither_overwritten_nor_taken_for_an_address(specification, tmp_path, capsys):

@@ -67,7 +67,7 @@ def test_latex_of_table_1():
         ),
         (lambda: material(7), ["material: found 7; The library holds natural-latex"]),
         (lambda: MooneyRivlin(1e5, largest_stretch=0.9), ["largest_stretch: found 0.9; it has to be above 1"]),
-        (lambda: NeoHookean(1e5, largest_stretch="2"), ["largest_stretch: found the text"]),
+        (lambda: NeoHookean(1e5, largest_stretch="2 mm"), ["largest_stretch: expects a number"]),
     ],
 )
 def test_every_fault_of_a_rubber_is_named(made, faults):

@@ -9,7 +9,8 @@ from held_tubes import by_collocation
 
 from freesweep import Actuator, ActuatorError, MooneyRivlin, closed_form, inflate, lock
 from freesweep.atlas.schema import PROFILES
-from freesweep.profiles import as_profile
+from freesweep.profiles import as_profile, widened
+from freesweep.statics import read_course
 from freesweep.status import OK
 
 RUBBER = MooneyRivlin(c10=0.1716e6, c01=0.08e6)  # of the source's rotator
@@ -244,6 +245,17 @@ def failing(_):
         ({"wall": [(0, 1e-3), (1, -1e-3)]}, "wall", "falls to -0.001 m; it has to be above 0"),
         ({"alpha": [(0, 10)]}, "alpha", "give two or more pairs"),
         ({"alpha": [10, 20]}, "alpha", r"give pairs \(x/l, value\), or a callable of x/l"),
+        (
+            {"wall": [(0, 1e-3), (0.5, 1e-3), (np.nextafter(0.5, 1), 2e-3), (1, 2e-3)]},
+            "wall",
+            "or twice the same for a jump",
+        ),
+        (
+            {"beta": lambda share: np.where(np.abs(share - 0.3337) < 2e-4, 25, -50)},
+            "alpha, beta",
+            "cross along the tube",
+        ),
+        ({"beta": lambda share: np.where(share > 0, -50, 1 / share)}, "beta", r"give finite numbers in \[degree\]"),
         ({"alpha": [(0, 10), (1, np.nan)]}, "alpha", "finite numbers"),
         ({"alpha": lambda share: np.where(share > 0.5, np.nan, 20.0)}, "alpha", r"give finite numbers in \[degree\]"),
         ({"beta": lambda share: -30.0}, "beta", r"made shape \(\) of shape \(.*; array in, array out"),
@@ -280,8 +292,59 @@ def test_a_short_piece_that_makes_no_tube_is_refused_too(given):
 
 @pytest.mark.parametrize("fast", [lambda share: 20 + 5 * np.sign(share - 0.3), lambda share: 20 + np.sin(3e4 * share)])
 def test_a_profile_that_changes_too_fast_is_refused_with_what_to_do(fast):
-    with pytest.raises(ActuatorError, match=r"alpha.*changes too fast.*give pairs with a repeated x/l"):
+    with pytest.raises(ActuatorError, match=r"alpha.*changes too fast.*give pairs with a repeated"):
         inflate(tube(fast, -50), 1e4)
+
+
+RING = 10.685 / 32  # where a ring lies between the nodes of 16 pieces of either half, and between their middles
+
+
+@pytest.mark.parametrize("half_width", [9e-3, 1e-3, 2e-4])
+def test_a_ring_that_a_callable_makes_by_jumps_is_refused_where_it_lies(half_width):
+    """It was dropped: the length came out as .17987 m for .18033 m, with a bound of a nanometre."""
+    ring = tube(30, -30, 0.2, wall=lambda share: WALL * np.where(np.abs(share - RING) < half_width, 2.9, 1.0))
+    with pytest.raises(
+        ActuatorError, match=r"changes too fast to be followed, between x/l = 0\.3.* repeated x/l instead"
+    ):
+        course_of(ring)
+
+
+def course_of(actuator):
+    return read_course(actuator, 1e-6)
+
+
+def test_a_narrow_ring_with_smooth_flanks_is_followed_on_a_mesh_that_sees_it():
+    def ring(share):
+        return WALL * (1.0 + 1.9 * np.exp(-(((share - RING) / 4e-3) ** 2)))
+
+    (course, edges, places), error = course_of(tube(30, -30, 0.2, wall=ring))
+    share = places * R0 / 0.2
+    here = int(np.searchsorted(share, RING)) - 1
+    assert (share[here + 1] - share[here]) / (edges[here + 1] - edges[here]) < 2e-3  # a cell, of a ring 8e-3 wide
+    at = np.linspace(share[here], share[here + 1], 1001)[:-1]
+    piece, t = np.divmod(np.linspace(0.0, course.shape[1], 1001)[:-1], 1.0)
+    area = ((course[here, piece.astype(int), 2]) * t[:, None] ** np.arange(4)).sum(axis=1)
+    exact = (1.0 + ring(at) / R0) ** 2 - 1.0
+    assert np.max(np.abs(area - exact)) <= 2.0 * error * exact.max()
+    assert error < 1e-9
+
+
+def test_places_that_only_rounding_parts_are_one():
+    actuator = tube([(0, 20), (0.3, 25), (1, 30)], -50, wall=[(0, 1e-3), (0.1 + 0.2, 1.5e-3), (1, 1e-3)])
+    assert 0.3 != 0.1 + 0.2
+    (_, edges, _), _ = course_of(actuator)
+    assert len(edges) == 4  # to 0.3, to the middle, to the end
+    with pytest.raises(ActuatorError, match=r"jump or bend at x/l 0\.3 and 0\.30000001, less than 1e-06 apart"):
+        course_of(dataclasses.replace(actuator, wall=[(0, 1e-3), (0.30000001, 1.5e-3), (1, 1e-3)]))
+
+
+def test_the_error_of_splines_enters_the_bounds():
+    assert widened(np.array([3.0, 0.1]), np.array([1e-9, 1e-9]), 1e-10) == pytest.approx([4e-9, 2e-9])
+    rough = tube(30, -30, 0.2, wall=lambda share: WALL * (1.0 + 0.3 * np.tanh((share - 0.4) / 1e-4)))
+    _, error = course_of(rough)
+    with pytest.raises(ActuatorError, match="accuracy: found 1e-10; the profiles of this tube can be followed to"):
+        read_course(rough, 1e-10)
+    assert 5e-12 < error < 1e-9
 
 
 def test_a_wall_thicker_than_the_radius_somewhere_is_warned_of():

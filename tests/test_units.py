@@ -27,6 +27,13 @@ from freesweep.units import quantity, shown
         ("1.5 bar", "Pa", 150000.0),
         ("30 mbar", "Pa", 3000.0),
         ("1 atm", "Pa", 101325.0),
+        ("15 psig", "Pa", 103421.35939752542),
+        ("1.5 barg", "Pa", 150000.0),
+        ("1.5 bar(g)", "Pa", 150000.0),
+        ("50 kPa (g)", "Pa", 50000.0),
+        ("15 psi gauge", "Pa", 103421.35939752542),
+        ("10 inHg", "Pa", 33863.88640341),
+        ("2 mH2O", "Pa", 19613.3),
         ("0.17 N/mm²", "Pa", 170000.0),
         ("0.17 N/mm^2", "Pa", 170000.0),
         ("3 lbf", "N", 13.3446648457815),
@@ -75,6 +82,24 @@ def test_conversion_is_decimal_so_texts_equal_the_literal_a_person_would_write()
 def test_minus_zero_is_zero():
     assert math.copysign(1.0, quantity("-0 deg", "degree")) == 1.0
     assert math.copysign(1.0, quantity(-0.0, "degree")) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("text", "gauge"),
+    [("15 psia", "14.6959 psi"), ("2 bara", "1.01325 bar"), ("2 bar(a)", "1.01325 bar"), ("15 PSIA", "14.6959 psi")],
+)
+def test_an_absolute_pressure_is_refused_with_the_atmosphere_to_subtract(text, gauge):
+    with pytest.raises(ValueError, match="an absolute pressure; gauge pressure counts here") as caught:
+        quantity(text, "Pa")
+    assert f"subtract the atmosphere, {gauge} by standard" in str(caught.value)
+    assert "did you mean" not in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["3 ftH2O", "3 dyn", "3 inAq", "3 lbf/ft2"])
+def test_a_unit_that_is_another_one_is_not_taken_for_a_slip(text):
+    with pytest.raises(ValueError, match="unknown unit") as caught:
+        quantity(text, "Pa")
+    assert "did you mean" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..actuator import Actuator, ActuatorError, MooneyRivlin
 from ..atlas.schema import PARAMETERS
-from ..units import quantity, shown
-from .measured import COLUMNS, Measurement, default_measured, measured_faults
+from ..given import described
+from ..units import NEAR, quantity, shown
+from .measured import COLUMNS, Measurement, default_measured, measured_faults, read_names
 
 TUBE = (
     "alpha",
@@ -39,12 +40,18 @@ def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full"
 
     Raises FileNotFoundError, or :class:`ActuatorError` with every fault.
     """
-    paths = [paths] if isinstance(paths, (str, Path)) else list(paths)
-    measured = (measured,) if isinstance(measured, str) else tuple(measured)
+    faults = []
+    paths = list(paths) if isinstance(paths, (list, tuple)) else [paths]
+    measured = read_names("measured", measured, faults)
+    faults += [
+        f"paths: found {described(path)}; give paths of CSV files"
+        for path in paths
+        if not isinstance(path, (str, Path))
+    ]
     unknown = sorted(set(tube) - set(TUBE))
-    faults = [f"{name}: no such part of an actuator; known: {', '.join(TUBE)}" for name in unknown]
+    faults += [f"{name}: no such part of an actuator; known: {', '.join(TUBE)}" for name in unknown]
     made, seen = [], set()
-    for path in [] if unknown else paths:
+    for path in [] if faults else paths:
         try:
             columns = _read(path)
             seen |= set(columns)
@@ -119,10 +126,17 @@ def _table(path, faults):
     heads, *rows = [[cell.strip() for cell in row] for row in cells]
     for (number, _), row in zip(lines[1:], rows):
         if len(row) != len(heads) and len(faults) < MOST_FAULTS:
-            faults.append(
-                f"line {number}: {len(row)} cells under {len(heads)} names; write the decimal comma as a point"
-            )
+            faults.append(f"line {number}: {len(row)} cells under {len(heads)} names; {_uneven(row, len(heads))}")
     return heads, [(number, row) for (number, _), row in zip(lines[1:], rows)]
+
+
+def _uneven(row, count):
+    """What may have made a row longer or shorter than the ``count`` of names."""
+    if len(row) < count:
+        return "cells are missing at its end"
+    if not any(row[count:]):
+        return "it ends with a separator too many; remove that"
+    return "a separator too many, or a decimal comma where a point belongs"
 
 
 def _columns(heads, rows, faults):
@@ -133,10 +147,12 @@ def _columns(heads, rows, faults):
         name = re.sub(r"\W+", "_", match.group(1).lower()) if match else head
         unit = (match.group(2) or match.group(3) or "").strip() if match else ""
         kept = _units(name)
-        if kept is None:
+        if not head:
+            faults.append(f"column {k + 1}: has no name; name it or remove it")
+        elif kept is None:
             known = ["pressure", *COLUMNS, *(f"{name}{SIGMA}" for name in COLUMNS), *TUBE]
-            near = difflib.get_close_matches(name[:40], known, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+            near = difflib.get_close_matches(name[:40], known, n=1, cutoff=NEAR)
+            hint = f"did you mean {near[0]}?" if near else f"remove it, as all but {', '.join(known)}"
             faults.append(f"column {shown(head)}: unknown; {hint}")
         elif name in columns:
             faults.append(f"column {shown(head)}: given twice")
@@ -172,5 +188,5 @@ def _numbers(name, cells, unit, kept, faults):
             numbers.append(quantity(f"{cell} {unit}", kept))
         except ValueError as error:
             if len(faults) < MOST_FAULTS:
-                faults.append(f"line {line}, {name}: {error}")
+                faults.append(f"line {line}, {name}: {error if cell else 'the cell is empty; leave such states out'}")
     return np.array(numbers)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..actuator import ActuatorError
 from .identify import covariance_of, notes_of, relative
-from .measured import Measurement
+from .measured import Measurement, read_names
 from .problem import EXTENSION, Problem
 
 FIRST_SIGMA = 0.01  # of the range of what was measured
@@ -126,7 +126,8 @@ def _scatter(residuals, slopes, rows, here):
 
 def _checked(measurements, fit):
     """Measurements as a tuple, and the names to fit."""
-    measurements = (measurements,) if isinstance(measurements, Measurement) else tuple(measurements)
+    if not isinstance(measurements, (list, tuple)):
+        measurements = (measurements,)
     strangers = [
         f"measurements: found {type(m).__name__}; give Measurement objects"
         for m in measurements
@@ -141,13 +142,13 @@ def _checked(measurements, fit):
             f"measurements: materials differ in kind, {' and '.join(sorted(t.__name__ for t in materials))}; give one"
         )
     known = [*measurements[0].tube.material.constants, EXTENSION]
-    names = known if fit is None else [fit] if isinstance(fit, str) else list(fit)
+    names = known if fit is None else read_names("fit", fit, faults)
     faults += [f"fit: found {name!r:.40}; choose among {', '.join(known)}" for name in names if name not in known]
-    if not names:
+    if not names and not faults:
         faults.append(f"fit: nothing to fit; choose among {', '.join(known)}")
     if faults:
         raise ActuatorError(faults)
-    return measurements, [name for name in known if name in names]
+    return tuple(measurements), [name for name in known if name in names]
 
 
 def _effects(problem, derivative, rows):

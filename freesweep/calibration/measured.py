@@ -1,14 +1,17 @@
 """What a test bench measured: states of actuators under pressure, as arrays in SI units and degrees."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
-from ..actuator import Actuator, ActuatorError
+from ..actuator import Actuator
+from ..faults import ActuatorError
+from ..given import described, read_column
 
 COLUMNS = {"deformed_length": "m", "rotation": "degree", "mid_radius": "m", "force": "N", "torque": "N m"}
-LEAST = {"pressure": 0.0, "deformed_length": 1e-12, "mid_radius": 1e-12}  # [Pa, m, m]
+DOMAINS = {"pressure": {"least": 0.0}, "deformed_length": {"positive": True}, "mid_radius": {"positive": True}}
 
 
 class Bench(NamedTuple):
@@ -53,24 +56,27 @@ class Measurement:
     sigma: dict = field(default_factory=dict)
 
     def __post_init__(self):
-        faults = (
-            [] if isinstance(self.tube, Actuator) else [f"tube: found {type(self.tube).__name__}; give an Actuator"]
-        )
-        arrays = {"pressure": _array("pressure", self.pressure, "Pa", faults)}
+        faults = [] if isinstance(self.tube, Actuator) else [f"tube: found {described(self.tube)}; give an Actuator"]
+        arrays = {"pressure": read_column("pressure", self.pressure, "Pa", faults, **DOMAINS["pressure"])}
         for name, units in COLUMNS.items():
             if getattr(self, name) is not None:
-                arrays[name] = _array(name, getattr(self, name), units, faults)
-        measured = (self.measured,) if isinstance(self.measured, str) else tuple(self.measured)
+                arrays[name] = read_column(name, getattr(self, name), units, faults, **DOMAINS.get(name, {}))
+        measured = read_names("measured", self.measured, faults)
         measured = measured or default_measured(arrays)
         faults += measured_faults(measured, arrays)
         sigma = {}
-        for name, value in dict(self.sigma).items():
-            if name not in measured:
+        if not isinstance(self.sigma, Mapping):
+            faults.append(
+                f"sigma: found {described(self.sigma)}; give standard uncertainties by name, such as"
+                f" {{{(measured or ('deformed_length',))[0]!r}: 5e-4}}"
+            )
+        for name, value in self.sigma.items() if isinstance(self.sigma, Mapping) else ():
+            if name not in measured or name not in COLUMNS:
                 faults.append(f"sigma: {name!r:.40} is not measured; measured: {', '.join(measured) or 'nothing'}")
             else:
-                sigma[name] = _array(f"sigma of {name}", value, COLUMNS.get(name, "1"), faults, above=0.0)
-        columns = {name: len(array) for name, array in arrays.items() if array is not None}
-        columns |= {f"sigma of {name}": len(array) for name, array in sigma.items() if array is not None}
+                sigma[name] = read_column(f"sigma of {name}", value, COLUMNS[name], faults, positive=True)
+        columns = {name: array.size for name, array in arrays.items() if array is not None}
+        columns |= {f"sigma of {name}": array.size for name, array in sigma.items() if array is not None}
         if len({n for n in columns.values() if n > 1}) > 1:
             faults.append(f"columns differ in length: {', '.join(f'{name} {n}' for name, n in columns.items())}")
         if faults:
@@ -89,6 +95,15 @@ class Measurement:
         if getattr(self, name) is not None and name not in self.measured:
             return getattr(self, name)
         return np.full(len(self), self.tube.length if name == "deformed_length" else 0.0)
+
+
+def read_names(what, names, faults) -> tuple:
+    """A name or several as a tuple; what else is given goes to ``faults``."""
+    names = (names,) if isinstance(names, str) else names
+    if not isinstance(names, (list, tuple)) or not all(isinstance(name, str) for name in names):
+        faults.append(f"{what}: found {described(names)}; give a name or a list of names")
+        return ()
+    return tuple(names)
 
 
 def default_measured(given) -> tuple:
@@ -121,24 +136,6 @@ def measured_faults(measured, given) -> list:
         for name in given
         if name not in measured and name not in bench.imposed
     ]
-
-
-def _array(name, value, units, faults, above=None):
-    try:
-        array = np.atleast_1d(np.asarray(value))
-    except ValueError:  # ragged
-        array = np.array(None)
-    if array.dtype.kind not in "iuf" or array.ndim != 1 or array.size == 0:
-        faults.append(f"{name}: found {value!r:.60}; give a number or a 1-D array of numbers in [{units}]")
-        return None
-    array = array.astype(float)
-    if not np.all(np.isfinite(array)):
-        faults.append(f"{name}: entry {np.argmin(np.isfinite(array)) + 1} is not finite; leave such states out")
-    elif above is not None and not np.all(array > above):
-        faults.append(f"{name}: found {array.min():g}; it has to be above {above:g}")
-    elif name in LEAST and np.any(array < LEAST[name]):
-        faults.append(f"{name}: found {array.min():g}; it has to be {'above 0' if LEAST[name] else '0 or more'}")
-    return array
 
 
 def _read_only(array, count):

@@ -129,7 +129,6 @@ def _address(text):
 def _run_sweep(options):
     from pathlib import Path
 
-    from ..sweep.doubts import doubts
     from ..sweep.spec import read_file
 
     sweep = read_file(options.spec)
@@ -140,11 +139,12 @@ def _run_sweep(options):
         raise ValueError(f"--out: {out} is the specification itself; give the name of the atlas to make")
     if options.map:
         check_map(sweep, options.map)
-    for doubt in doubts(sweep):
-        print(f"freesweep: warning: {doubt}", file=sys.stderr)
     if options.dry_run:
+        from ..sweep.doubts import doubts_of
         from ..sweep.estimate import dry_run
+        from ..unit_warnings import warn_of
 
+        warn_of(doubts_of(sweep), stacklevel=1)
         print(dry_run(sweep, out, options.threads))
         return
     from ..sweep.run import run_sweep

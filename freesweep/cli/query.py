@@ -98,6 +98,9 @@ def _read_points(path, faults):
         faults.append(f"--points: {path} holds {len(rows) - 1} points; give a header and 1 to {MAX_ROWS:,} lines")
         return {}
     head, *lines = rows
+    if len(head) == 1 and (other := next((mark for mark in (";", "\t") if mark in head[0]), None)):
+        faults.append(f"--points: {path} parts its columns by {other!r}; write commas")
+        return {}
     names = [_column(cell, path, faults) for cell in head]
     if len(set(names)) < len(names):
         faults.append(f"--points: {path} names a column twice")
@@ -112,7 +115,7 @@ def _read_points(path, faults):
                 try:
                     columns[name].append(quantity(f"{cell} {units[1]}" if units[1] else cell, units[0]))
                 except ValueError as error:
-                    faults.append(f"--points: line {number}, {name}: {error}")
+                    faults.append(f"--points: line {number}, {name}: {error if cell else 'the cell is empty'}")
         if len(faults) > MOST_FAULTS:
             faults.append("and so on")
             break

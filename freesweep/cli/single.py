@@ -1,5 +1,7 @@
 """The commands for one actuator: lock, inflate, block. They parse and call; a table goes to the screen."""
 
+import sys
+
 CONSTANTS = ("c10", "c01", "c20", "c30")
 
 
@@ -195,6 +197,8 @@ def _show(dataset, options):
     from ..report import table
 
     print(table(dataset))
+    if note := dataset.attrs.get("thin_wall_note"):
+        print(f"freesweep: note: {note}", file=sys.stderr)
     if options.out:
         write_whole(options.out, dataset.to_netcdf(engine="netcdf4"))
         print(options.out)

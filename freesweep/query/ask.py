@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..units import shown
+from ..given import numbers
 from .faults import QueryError, unknown
 
 MAX_POINTS = 100_000_000  # of one question: 16 GB of answers for ten variables
@@ -66,25 +66,21 @@ def _numbers(faults, name, value, frame):
     if dims is not None and not hasattr(value, "values"):
         faults.append(f"{name}: found {type(value).__name__}; give a number, an array or a DataArray")
         return None
-    try:
-        array = np.asarray(value.values if dims is not None else value)
-    except Exception:  # ragged lists, foreign array types
-        faults.append(f"{name}: found {type(value).__name__}, which is no array of numbers")
-        return None
     if name == "design":
-        return _designs(faults, dims, array, frame)
-    if array.dtype.kind not in "iuf":
-        unit = PARAMETERS[name].units
-        if array.dtype.kind == "U" and array.ndim == 0:
-            faults.append(f"{name}: found the text {shown(str(array))}; the Python API takes a number in [{unit}]")
-        else:
-            faults.append(f"{name}: found {type(value).__name__} of {array.dtype}; give numbers in [{unit}]")
+        return _designs(faults, dims, value.values if dims is not None else value, frame)
+    try:
+        return dims, numbers(value, PARAMETERS[name].units)
+    except ValueError as error:
+        faults.append(f"{name}: {error}")
         return None
-    return dims, array.astype(float)
 
 
-def _designs(faults, dims, array, frame):
+def _designs(faults, dims, value, frame):
     names = frame.values["design"].tolist()
+    try:
+        array = np.asarray(value)
+    except Exception:  # ragged lists, foreign array types
+        array = np.array(None)
     if array.dtype.kind != "U":
         faults.append("design: found no text; give a name or an array of names")
         return None

@@ -4,6 +4,8 @@ import operator
 
 import numpy as np
 
+from ..atlas.schema import PARAMETERS
+from ..given import numbers
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import reference
 from .answer import Inquiry
@@ -51,8 +53,9 @@ class Interpolator:
         if len(values) != len(self.axes):
             raise QueryError([f"found {len(values)} values; give {len(self.axes)}: {', '.join(self.axes)}"])
         try:
-            arrays = np.broadcast_arrays(*(np.asarray(value, float) for value in values))
-        except (TypeError, ValueError) as error:
+            read = [numbers(value, PARAMETERS[name].units) for name, value in zip(self.axes, values)]
+            arrays = np.broadcast_arrays(*read)
+        except ValueError as error:
             raise QueryError([f"{', '.join(self.axes)}: {error}"]) from None
         shape = arrays[0].shape
         flat = {name: np.ascontiguousarray(array).ravel() for name, array in zip(self.axes, arrays)}

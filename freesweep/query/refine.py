@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..given import numbers
 from ..status import NOT_INTERPOLABLE, VALUED
 from . import reference
 from .answer import Inquiry
@@ -92,9 +93,9 @@ def profiles(reader, question, x):
     values = reader.complete(question.values, question.size)
     points = as_points(reader, "state", values)
     try:
-        stations = np.atleast_1d(np.asarray(x, float))
-    except (TypeError, ValueError):
-        raise QueryError(["x: give ascending stations [m], from 0 to the undeformed length"]) from None
+        stations = np.atleast_1d(numbers(x, "m"))
+    except ValueError as error:
+        raise QueryError([f"x: {error}; ascending stations, from 0 to the undeformed length"]) from None
     arrays = {name: np.full((question.size, len(stations)), np.nan) for of in PROFILES for name in (of, f"{of}_error")}
     energy = reader.frame.energy
     for k, point in enumerate(points):

@@ -1,32 +1,21 @@
-"""Numbers of a sweep that are allowed but look like slips of units: told once, before anything is solved."""
+"""What of a sweep looks like a slip of units: all its values as :mod:`freesweep.unit_warnings` takes them."""
 
 import numpy as np
 
-LARGEST_RADIUS = 1.0  # [m]: beyond any tube that is wound by hand or machine
-USUAL = 1e-3, 1e3  # of the highest pressure over c10, which is a hundredth to a few
-HINT = 'plain numbers are in SI units, others need theirs, as in "4.76 mm" or "0.17 MPa"'
+from ..unit_warnings import doubts
+
+DESIGN = ("alpha", "beta", "length", "radius", "wall", "c10")
+LOAD = ("pressure", "force", "torque")
 
 
-def doubts(sweep) -> list:
-    """Sentences about a sweep's tubes and pressures; none for most."""
-    radius, wall, c10, pressure = (_values(sweep, name) for name in ("radius", "wall", "c10", "pressure"))
-    columns = (sweep.designs or {}).get("columns", {})
-    thick = wall > radius if {"wall", "radius"} <= set(columns) else wall.max(keepdims=True) > radius.min()
-    found = []
-    if np.any(thick):
-        found.append(
-            f"walls up to {wall.max():g} m are thicker than the inner radius, {radius.min():g} m at least: the model takes a"
-            " thin wall"
-        )
-    if radius.max() > LARGEST_RADIUS:
-        found.append(f"the radius reaches {radius.max():g} m; {HINT}")
-    low, high = USUAL
-    highest, softest = pressure.max(), c10.min()
-    if 0.0 < highest < low * softest:
-        found.append(f"no pressure exceeds {highest:g} Pa, which hardly deforms a c10 of {softest:g} Pa; {HINT}")
-    if highest > high * softest:
-        found.append(f"the pressure reaches {highest:g} Pa, far beyond a c10 of {softest:g} Pa; {HINT}")
-    return found
+def doubts_of(sweep) -> list:
+    """Sentences about a sweep's tubes and loads; none for most."""
+    design = {name: _values(sweep, name) for name in DESIGN}
+    wall, radius = design["wall"], design["radius"]
+    columns = (sweep.designs or {}).get("columns", {})  # each with its own; else each with each
+    thickness = wall / radius if {"wall", "radius"} <= set(columns) else np.divide.outer(wall, radius)
+    loads = {name: _values(sweep, name) for name in LOAD}
+    return doubts(**design, thickness=thickness) + doubts(**design, thickness=thickness, **loads)
 
 
 def _values(sweep, name):

@@ -62,7 +62,7 @@ def tubes(grid, at):
         numbers = dict(zip(names, design)) | profiles
         numbers["fiber_surface"] = numbers.pop("fiber_radius")
         try:
-            found.append(course(SimpleNamespace(**numbers)))
+            found.append(course(SimpleNamespace(**numbers))[0])  # of pairs: exact to the last digits
         except ProfileError:
             found.append(None)
     return found, which

@@ -1,6 +1,7 @@
 """Run a sweep: shards of distinct problems on threads, resumed after any interruption, collected into an atlas."""
 
 import contextlib
+import numbers
 import os
 import time
 import warnings
@@ -11,9 +12,11 @@ import numpy as np
 from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
 from ..status import STATUSES
+from ..unit_warnings import warn_of
 from . import estimate, kernels
 from .changes import changes
 from .collect import groups
+from .doubts import doubts_of
 from .grade import graded
 from .grid import coordinates
 from .identity import fingerprint, identify
@@ -52,8 +55,9 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
     begun = time.perf_counter()
     sweep = spec if isinstance(spec, Sweep) else read_file(spec)
     out = Path(out)
-    if threads is not None and threads < 1:
+    if threads is not None and not (isinstance(threads, numbers.Integral) and threads >= 1):
         raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
+    warn_of(doubts_of(sweep), stacklevel=2)
     identity, shards = identify(sweep), Shards(out)
     if atlas := _complete(out, identity, sweep.text, overwrite, progress):
         shards.tidy(identity)

@@ -1,0 +1,74 @@
+"""Numbers that are allowed but look like slips of units, as sentences: of single tubes and of sweeps, in shell and Python.
+
+A millimetre taken for a metre is a factor of 1000, a radian for a degree 57, a psi for a pascal 6895. What is told lies
+beyond any tube that is made; each limit leaves room for what only a theorist would ask.
+"""
+
+import warnings
+
+import numpy as np
+
+LARGEST = {"length": 20.0, "radius": 1.0}  # [m]: beyond any tube that is wound by hand or machine
+SMALLEST = {"length": 1e-4, "radius": 1e-5}  # [m]
+SLENDER = 2e4  # length over radius
+THINNEST = 1e-4  # wall over radius
+RADIANS = 0.5 * np.pi  # [degree]: if no fiber is steeper, angles are likely given in radians
+SOFTEST, HARDEST = 10.0, 1e9  # [Pa] of c10: gels, hard plastics
+USUAL = 1e-3, 1e4  # of the largest pressure over c10 wall/radius, which is a tenth to a hundred
+LOAD = 1e4  # largest force over radius^2 c10, torque over radius^3 c10
+HINT = 'plain numbers are in SI units and degrees, others need theirs, as in "4.76 mm" or "0.17 MPa"'
+
+
+def doubts(alpha, beta, length, radius, wall, c10, thickness=None, pressure=None, force=0.0, torque=0.0) -> list:
+    """Sentences on the values of designs and loads, numbers or arrays [degree, m, Pa, N, N m]; none for most.
+
+    ``thickness`` is wall over radius of each design, where these are more than one. Without ``pressure`` the design alone is
+    looked at, with it the load alone.
+    """
+    given = {"alpha": alpha, "beta": beta, "length": length, "radius": radius, "wall": wall, "c10": c10}
+    given["thickness"] = np.divide(wall, radius) if thickness is None else thickness
+    given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in given.items()}
+    return _of_design(**given) if pressure is None else _of_load(**given, pressure=pressure, force=force, torque=torque)
+
+
+def warn_of(found, stacklevel):
+    """Warn of each doubt ``found``."""
+    for doubt in found:
+        warnings.warn(doubt, stacklevel=stacklevel + 1)
+
+
+def _of_design(alpha, beta, length, radius, wall, c10, thickness):
+    found = []
+    if thickness.max() > 1.0:
+        found.append(
+            f"wall {wall.max():g} m is thicker than the inner radius {radius.min():g} m: the model takes a thin wall"
+        )
+    for name, values in (("length", length), ("radius", radius)):
+        if values.max() > LARGEST[name]:
+            found.append(f"the {name} is {values.max():g} m; {HINT}")
+        elif values.max() < SMALLEST[name]:
+            found.append(f"the {name} is only {values.max():g} m; {HINT}")
+    if length.min() > SLENDER * radius.max():
+        found.append(f"a length of {length.min():g} m is {length.min() / radius.max():.2g} radii; {HINT}")
+    if thickness.max() < THINNEST:
+        found.append(f"the wall is only {wall.max():g} m for a radius of {radius.min():g} m; {HINT}")
+    steepest = max(np.abs(alpha).max(), np.abs(beta).max())
+    if steepest < RADIANS:
+        found.append(f"no fiber angle exceeds {steepest:g} degree, as if they were radians; {HINT}")
+    if c10.max() < SOFTEST or c10.min() > HARDEST:
+        found.append(f"no rubber has a c10 of {c10.max():g} Pa; {HINT}")
+    return found
+
+
+def _of_load(pressure, force, torque, radius, c10, thickness, **_):
+    found = []
+    low, high = USUAL
+    highest, softest = np.max(pressure), c10.min()
+    if 0.0 < highest < low * softest * thickness.min():
+        found.append(f"no pressure exceeds {highest:g} Pa, which hardly deforms a c10 of {softest:g} Pa; {HINT}")
+    if highest > high * softest * thickness.max():
+        found.append(f"the pressure reaches {highest:g} Pa, far beyond a c10 of {softest:g} Pa; {HINT}")
+    for name, values, unit, power in (("force", force, "N", 2), ("torque", torque, "N m", 3)):
+        if (largest := np.max(np.abs(values))) > LOAD * radius.max() ** power * c10.max():
+            found.append(f"a {name} of {largest:g} {unit} is far beyond what this tube can bear; {HINT}")
+    return found

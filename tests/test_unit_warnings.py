@@ -1,0 +1,114 @@
+"""Slips of units are told, in single solves as in sweeps, and nothing else is."""
+
+import warnings
+
+import numpy as np
+import pytest
+from commands import run
+
+from freesweep import Actuator, MooneyRivlin, inflate
+from freesweep.closed_form import region
+from freesweep.statics import thin_wall_attributes
+from freesweep.thick_wall import softer
+from freesweep.unit_warnings import doubts
+
+USUAL = {"alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1.59e-3, "c10": 0.11e6}
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({}, []),
+        ({"length": 131.0}, ["the length is 131 m", "a length of 131 m is 2.8e+04 radii"]),
+        ({"length": 131.0, "radius": 4.76, "wall": 1.59}, ["the length is 131 m", "the radius is 4.76 m"]),
+        ({"length": 192.0, "wall": 1e-3}, ["the length is 192 m", "a length of 192 m is 4e+04 radii"]),
+        ({"radius": 4.76e-6, "wall": 1.59e-6}, ["the radius is only", "a length of 0.192 m is 4e+04 radii"]),
+        ({"wall": 1.59e-7}, ["the wall is only 1.59e-07 m"]),
+        ({"wall": 5e-3}, ["wall 0.005 m is thicker than the inner radius 0.00476 m"]),
+        ({"alpha": 0.52, "beta": -0.52}, ["no fiber angle exceeds 0.52 degree, as if they were radians"]),
+        ({"alpha": 0.0, "beta": 30.0}, []),
+        ({"c10": 0.11}, ["no rubber has a c10 of 0.11 Pa"]),
+        ({"pressure": 0.1}, ["no pressure exceeds 0.1 Pa"]),
+        ({"pressure": 15.0}, ["no pressure exceeds 15 Pa"]),
+        ({"pressure": [0.0, 15.0, 1e5]}, []),
+        ({"pressure": 0.0}, []),
+        ({"pressure": 1e5, "c10": 11.0}, ["the pressure reaches 100000 Pa, far beyond a c10 of 11 Pa"]),
+        ({"pressure": 1e5, "torque": 500.0}, ["a torque of 500 N m is far beyond"]),
+        ({"pressure": 1e5, "force": [0.0, 10.0]}, []),
+    ],
+)
+def test_what_looks_like_a_slip_of_units_is_told(given, says):
+    found = doubts(**USUAL | given)
+    assert (
+        [sentence.startswith(start) for sentence, start in zip(found, says)]
+        == [True] * len(says)
+        == [True] * len(found)
+    )
+
+
+def test_single_tubes_and_their_loads_are_doubted_in_python():
+    material = MooneyRivlin(0.11e6)
+    with pytest.warns(UserWarning, match=r"the length is 200 m|the radius is 4\.76 m") as caught:
+        Actuator(alpha=30, beta=-30, length=200, radius=4.76, wall=1.59, material=material)
+    assert caught[0].filename == __file__
+    with pytest.warns(UserWarning, match="as if they were radians"):
+        Actuator(alpha=0.52, beta=-0.52, length=0.2, radius=4.76e-3, wall=1.59e-3, material=material)
+    tube = Actuator(alpha=30, beta=-30, length=0.2, radius=4.76e-3, wall=1.59e-3, material=material)
+    with pytest.warns(UserWarning, match=r"no pressure exceeds 0\.1 Pa") as caught:
+        inflate(tube, 0.1, x=0.0)
+    assert caught[0].filename == __file__
+
+
+def test_the_shell_tells_slips_and_what_the_thin_wall_leaves_out(capsys):
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        run(
+            *(
+                "inflate",
+                "--alpha",
+                "30",
+                "--beta",
+                "-30",
+                "--length",
+                "131",
+                "--radius",
+                "4.76 mm",
+                "--wall",
+                "1.59 mm",
+            ),
+            *("--c10", "0.11 MPa", "--pressure", "0.1"),
+        )
+    err = capsys.readouterr().err
+    assert "freesweep: warning: the length is 131 m" in err
+    assert "freesweep: warning: no pressure exceeds 0.1 Pa" in err
+    assert (
+        "freesweep: note: wall/radius 0.33: this model takes a thin wall; a thick one deforms 1.64 times as much" in err
+    )
+
+
+def layer(y, axial, twist, rho2):
+    """I1 - 3 of the layer of undeformed radius sqrt(rho2), of a tube whose fibers lie at radius 1."""
+    r2 = y * y + (rho2 - 1.0) / axial
+    return axial**2 + r2 / rho2 + r2 * twist**2 + rho2 / (axial**2 * r2) - 3.0
+
+
+def test_the_effect_of_the_thin_wall_is_that_of_the_layers_of_a_thick_one():
+    """Known: about 1.4 at moderate pressure for a third of the radius, 3 for a wall as thick as the radius."""
+    assert softer(30, -30, 1.0, 1.0, 1.0, "full") == pytest.approx(3.03, abs=5e-3)
+    assert softer(30, -30, 1.0, 1e-6, 1.0, "full") == pytest.approx(1.0, abs=1e-5)
+    for alpha, beta in ((30, -30), (0, 40), (20, -60)):
+        assert region(alpha, beta) in ("AF", "I", "IIa")
+        ta, tb, step = np.tan(np.radians(alpha)), np.tan(np.radians(beta)), 1e-3
+        y, axial, twist = 1.0 + step, 1.0 + ta * tb * step, -(ta + tb) * step
+        for fibers in (1.0, 1.2, 1.5):
+            inner, outer = 1.0 / fibers**2, (1.5 / fibers) ** 2
+            nodes, weights = np.polynomial.legendre.leggauss(16)
+            layers = layer(y, axial, twist, 0.5 * (inner + outer) + 0.5 * (outer - inner) * nodes)
+            expected = layer(y, axial, twist, 1.0) / (0.5 * np.sum(weights * layers))
+            assert softer(alpha, beta, 1.0, 0.5, fibers, "full") == pytest.approx(expected, rel=2e-2)
+
+
+def test_thin_walls_carry_no_note():
+    given = {"alpha": 30, "beta": -30, "length": 0.2, "radius": 5e-3, "material": MooneyRivlin(1e5)}
+    assert thin_wall_attributes(Actuator(**given, wall=4.9e-4)) == {}
+    assert thin_wall_attributes(Actuator(**given, wall=[(0, 4e-4), (1, 5.1e-4)]))["thin_wall_ratio"] > 1.05
