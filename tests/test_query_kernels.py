@@ -143,16 +143,15 @@ def test_end_effects_give_back_what_was_stored(variable):
     points[:, reference.EXTENSION] = 1.002
     states = np.empty((2, reference.UNIFORM))
     reference.uniform_states(kind, points, 1.0, states)
-    stored = np.array(
-        [reference.restore(*reference.reference(variable, kind, points[k], states[k]), 0.3)[0] for k in (0, 1)]
-    )
+    stored, nothing, out = np.empty(2), np.zeros(2), np.empty(2)
+    reference.restore_all(variable, points, states, np.full(2, 0.3), nothing, nothing, stored, out, out)
     effects, noise = np.empty(2), np.empty(2)
     errors = 1e-9 * np.abs(stored)
     reference.end_effects(variable, kind, points, states, stored, errors, effects, noise)
     np.testing.assert_allclose(effects, 0.3, rtol=1e-6)
     values, estimates, bounds = np.empty((3, 2))
     args = (effects, np.full(2, 1e-3), noise, values, estimates, bounds)
-    reference.restore_all(variable, kind, points, states, *args)
+    reference.restore_all(variable, points, states, *args)
     np.testing.assert_allclose(values, stored, rtol=1e-12)
     assert (bounds >= errors * (1 - 1e-9)).all()
     assert (estimates > 0.0).all()

@@ -14,10 +14,11 @@ from freesweep.bench.query import table
 from freesweep.cli import DONE
 from freesweep.query import calibration, errors
 from freesweep.query.calibrate import calibrate, piece_scales
+from freesweep.query.cells import ROUGH
 from freesweep.query.faults import QueryError
 from freesweep.query.reference import VOLUME
 from freesweep.query.refine import as_points, exact_answers
-from freesweep.query.tensor import KNOT, RANK, ROUGH
+from freesweep.query.tensor import KNOT, RANK
 from freesweep.sweep.grade import graded
 from freesweep.sweep.spec import SpecificationError, parse
 from freesweep.verify import faults as verify

@@ -99,7 +99,7 @@ class Reader:
 
         if len(parts) == 1:
             return one(parts[0])
-        for name in (*names, *(("mid_radius",) if len(table.slack) else ())):
+        for name in (*names, *(("mid_radius",) if table.has_slack else ())):
             table.variable(name)  # made here, not by two threads
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             answers = list(pool.map(one, parts))
