@@ -217,6 +217,38 @@ def test_curves_run_along_one_axis(made):
         made.curve("radius", **POINT)
 
 
+def test_plots_between_nodes_show_what_a_query_answers_and_leave_failed_neighbours_failed(made):
+    from freesweep.plot.curve import curve
+    from freesweep.plot.plane import plane
+    from freesweep.plot.validity import validity_map
+
+    at = {"length": 0.12, "pressure": 3.7e4}
+    sheet = plane(made.data, "rotation", at)
+    beta = made.data["beta"].values[4]
+    (shown,) = sheet.values[sheet.y == beta]
+    answer = made.query(alpha=sheet.x, beta=beta, **at, variables="rotation", refine=True)["rotation"].values
+    here = ~np.ma.getmaskarray(shown) & np.isin(sheet.x, AXES["alpha"])
+    assert here.sum() > 5
+    assert (np.abs(shown - answer)[here] <= 1e-3 * np.abs(answer[here])).all()
+    assert sheet.point["pressure"] == 3.7e4
+    assert not sheet.point.missed
+    holed = made.data.load().copy(deep=True)
+    where = {"alpha": 3, "beta": 4, "length": 0, "pressure": int(np.searchsorted(AXES["pressure"], 3.7e4))}
+    holed["status"][where], holed["rotation"][where] = status.BEYOND_LIMIT, np.nan
+    found = plane(holed, "rotation", at)
+    lost = found.reason == status.BEYOND_LIMIT
+    assert found.x[lost.any(axis=0)].tolist() == [AXES["alpha"][3]]
+    assert lost.sum() == 1
+    assert found.values.mask[lost].all()
+    _, _, states = validity_map(holed, **at)
+    assert (states.reason == status.BEYOND_LIMIT).sum() == 1
+    (line,) = [one for one in curve(made.data, "rotation", alpha=24.0, beta=-43.0, length=0.12).lines if one.get_gid()]
+    asked = {"alpha": 24.0, "beta": -43.0, "length": 0.12, "pressure": AXES["pressure"]}
+    expected = made.query(**asked, variables="rotation")["rotation"].values
+    known = np.isfinite(expected)
+    np.testing.assert_allclose(line.get_ydata()[known], expected[known], rtol=1e-3)
+
+
 # --- the command
 
 ASKED = ("--alpha", "24deg", "--beta", "-43deg", "--length", "120 mm", "--pressure", "37 kPa")
