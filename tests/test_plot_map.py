@@ -101,7 +101,7 @@ def test_mesh_is_the_data_in_shown_units(whole, variable):
 
 
 def test_nearest_grid_values_are_taken_and_named(whole):
-    says = "nearest values that the file holds: length 200 mm for 190 mm, radius 5 mm for 1000 mm, pressure 20 kPa for 30 kPa"
+    says = "nearest values that the file holds: length 200 mm for length 190 mm, radius 5 mm for radius 1000 mm, pressure 20"
     with pytest.warns(UserWarning, match=says):
         ax = design_map(whole, "rotation", paths=False, examples=False, length=0.19, radius=1.0, pressure=3e4)
     stored = whole["rotation"].sel(length=0.2, radius=5e-3, pressure=2e4).transpose("beta", "alpha").values

@@ -56,7 +56,8 @@ def choose(dataset, select: dict, across) -> tuple[dict, dict]:
     """Parameters of the point (stored units), and the index along each dimension that is not in ``across``.
 
     ``select`` maps a name to a number, the nearest node being taken with a warning, or ``design`` to its name. What is not
-    selected: the largest pressure; the force, torque and held rotation nearest zero; the first design; the middle of anything else.
+    selected: the largest pressure; the force, torque and held rotation nearest zero; the first design; the middle of
+    anything else.
     Raises ValueError for names that are unknown and values that are no numbers.
     """
     known = (*schema.PARAMETERS, *HELD, DESIGN)
