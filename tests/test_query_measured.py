@@ -217,6 +217,25 @@ def test_curves_run_along_one_axis(made):
         made.curve("radius", **POINT)
 
 
+COARSER = [5e4 * k for k in range(1, 9)]
+
+
+def test_a_node_more_withdraws_no_answers_and_what_is_too_coarse_is_named(tmp_path):
+    draw, shares = np.random.default_rng(0), {}
+    points = {"alpha": draw.uniform(20.0, 40.0, 400), "beta": -30.0, "pressure": draw.uniform(5e4, 4e5, 400)}
+    low = {"alpha": 33.0, "beta": -30.0, "pressure": [1e4, 2e4, 3e4], "variables": "volume"}
+    for added in ((), (0.0,), (0.0, 1e4), (1e6,)):
+        axes = {"alpha": [20.0, 25.0, 30.0, 35.0, 40.0], "beta": [-30.0, -29.0], "pressure": sorted([*added, *COARSER])}
+        with run_sweep(parse(spec(axes)), tmp_path / f"{len(shares)}.nc", threads=2, progress=False) as atlas:
+            found = atlas.query(**points, variables=["deformed_length", "rotation", "volume"])
+            shares[added] = found["status"].values == status.OK
+            if added == (0.0,):
+                assert atlas.query(**low).attrs["too_coarse"] == "pressure (3)"
+                assert "too_coarse" not in atlas.query(**low, refine=True).attrs
+    for added, answered in shares.items():
+        assert (shares[()] & ~answered).sum() <= 0.02 * shares[()].sum(), added
+
+
 def test_plots_between_nodes_show_what_a_query_answers_and_leave_failed_neighbours_failed(made):
     from freesweep.plot.curve import curve
     from freesweep.plot.plane import plane

@@ -73,13 +73,13 @@ class Inquiry:
         noise = known[:, NOISE].astype(float)
         return *self._restored(name, slice(None), effects, rest, noise), known[:, BESIDE] > 0.0
 
-    def rests(self, known, scales):
-        """What the next order would add along each axis (n, d), from what is ``known`` of the points' cells.
+    def rests(self, known, scales, places=slice(None)):
+        """What the next order would add along each axis (k, d) at some places, from what is ``known`` of their cells.
 
         Between two nodes what the slopes lack goes with t (1 - t); what the cubic lacks, with its square, is smaller.
         """
-        bubble = 4.0 * self.shares * (1.0 - self.shares)
-        scale = scales[np.arange(scales.shape[0]), self.ranks]
+        bubble = 4.0 * self.shares[places] * (1.0 - self.shares[places])
+        scale = scales[np.arange(scales.shape[0]), self.ranks[places]]
         return np.where(bubble > 0.0, known[:, ROUGH:] * bubble * scale, 0.0)  # on a node the unknown says nothing
 
     def _restored(self, name, places, effects, rest, noise):
@@ -120,6 +120,15 @@ class Inquiry:
         allowed = tolerance * (10.0 if self.is_loose(name) else 1.0)
         number = np.isfinite(value) & (error >= 0.0)
         return ~number | (~(error <= allowed * self.natural_size(name, value)) & ~self.exact)
+
+    def blame(self, name, refused, scales, coarse):
+        """Add to the list ``coarse``: axes, and at how many of the ``refused`` (n,) the estimate is largest along them."""
+        places = np.flatnonzero(refused)
+        if not len(places):
+            return
+        rests = self.rests(self.table.variable(name).cells[self.cell[places]], scales, places)
+        worst = np.bincount(rests.argmax(axis=1)[rests.any(axis=1)], minlength=len(self.table.axes))
+        coarse.extend((axis.name, count) for axis, count in zip(self.table.axes, worst.tolist()) if count)
 
     def flags(self):
         """Flags (n,) by name; a point whose flags cannot be told becomes NOT_INTERPOLABLE."""
