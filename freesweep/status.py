@@ -36,7 +36,10 @@ STATUSES = (
     Status(7, "invalid", "a parameter lies outside the domain of the model"),
     Status(8, "outside_atlas", "the point lies beyond the grid; no extrapolation is made"),
     Status(
-        9, "not_interpolable", "the cell touches a failed node, a limit or a change of validity; refine=True answers it"
+        9,
+        "not_interpolable",
+        "the cell touches a failed node, a limit or a change of validity, or nodes lie too far apart for the tolerance;"
+        " refine=True answers it",
     ),
 )
 (

@@ -4,6 +4,7 @@ import errno
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 from grids import SMALL, make, only, spec
@@ -12,6 +13,7 @@ from freesweep import open_atlas
 from freesweep.atlas import files
 from freesweep.atlas.files import EnvironmentFault
 from freesweep.atlas.store import AtlasError
+from freesweep.atlas.write import packed
 from freesweep.sweep.shards import SweepError
 from freesweep.sweep.spec import parse
 
@@ -66,3 +68,25 @@ def test_only_atlases_are_opened(tmp_path):
     cut.write_bytes((tmp_path / "atlas.nc").read_bytes()[:5000])
     with pytest.raises(AtlasError, match=r"cut\.nc is no readable"):
         open_atlas(cut)
+
+
+def test_noise_is_stored_and_the_rest_deflated_in_streams_that_the_netcdf_library_reads(tmp_path):
+    import zlib
+
+    import h5py
+    import netCDF4
+
+    draw, shape = np.random.default_rng(1), (1 << 15,)
+    smooth = 1.0 + 1e-3 * draw.random(shape)  # its first bytes change little, the others are noise
+    for values, least, most in ((smooth, 0.62, 0.70), (np.tile(smooth[:261], 126)[: shape[0]], 0.0, 0.02)):
+        content = packed(values, shape)
+        plain = zlib.decompress(content)
+        assert np.array_equal(np.frombuffer(plain, np.uint8).reshape(8, -1).T.ravel(), values.view(np.uint8))
+        assert least < len(content) / values.nbytes < most
+        with netCDF4.Dataset(tmp_path / "one.nc", "w") as file:
+            file.createDimension("x", *shape)
+            file.createVariable("v", "f8", ("x",), compression="zlib", shuffle=True, chunksizes=shape, fill_value=False)
+        with h5py.File(tmp_path / "one.nc", "r+") as file:
+            file["v"].id.write_direct_chunk((0,), content)
+        with netCDF4.Dataset(tmp_path / "one.nc") as file:
+            assert np.array_equal(file["v"][:], values)

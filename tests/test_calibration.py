@@ -16,6 +16,7 @@ from freesweep import (
     blocked_torque,
     calibrate,
     inflate,
+    read_measurements,
 )  # fmt: skip
 
 TRUTH = {"c10": 0.15e6, "c01": 0.08e6, "fiber_extension": 1.006}

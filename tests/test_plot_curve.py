@@ -75,11 +75,14 @@ def test_the_bound_is_a_band(data):
 
 
 def test_chosen_nodes_are_named_and_lines_end_where_there_is_no_result(data):
-    ax = curve(data, "rotation", along="pressure", alpha=77.0)
+    with pytest.warns(UserWarning, match="alpha 80 degree for alpha 77 degree"):
+        ax = curve(data, "rotation", along="pressure", alpha=77.0)
     (line,) = lines(ax, "rotation")
     np.testing.assert_array_equal(np.isfinite(line.get_ydata()), PRESSURES <= 1e5)
     (words,) = [text.get_text() for text in ax.texts if text.get_gid() == "chosen"]
-    assert words.replace("\u00a0", " ").startswith("alpha 80 degree, beta -30 degree, length 100 mm")
+    assert words.replace("\u00a0", " ").startswith(
+        "alpha 80 degree (nearest to 77 degree), beta -30 degree, length 100 mm"
+    )
     assert ax.get_ylabel() == "rotation of the free end [degree]"
 
 

@@ -101,12 +101,13 @@ def test_mesh_is_the_data_in_shown_units(whole, variable):
 
 
 def test_nearest_grid_values_are_taken_and_named(whole):
-    ax = design_map(whole, "rotation", paths=False, examples=False, length=0.19, radius=1.0, pressure=3e4)
+    says = "nearest values that the file holds: length 200 mm for length 190 mm, radius 5 mm for radius 1000 mm, pressure 20"
+    with pytest.warns(UserWarning, match=says):
+        ax = design_map(whole, "rotation", paths=False, examples=False, length=0.19, radius=1.0, pressure=3e4)
     stored = whole["rotation"].sel(length=0.2, radius=5e-3, pressure=2e4).transpose("beta", "alpha").values
     np.testing.assert_array_equal(mesh_of(ax).filled(np.nan), stored)
-    assert drawn(ax, "chosen")[0].get_text() == "length 200 mm, radius 5 mm, pressure 20 kPa".replace(
-        " ", "\u00a0"
-    ).replace(",\u00a0", ", ")
+    words = "length 200 mm (nearest to 190 mm), radius 5 mm (nearest to 1000 mm), pressure 20 kPa (nearest to 30 kPa)"
+    assert drawn(ax, "chosen")[0].get_text().replace("\u00a0", " ").replace("\n", " ") == words
     assert ax.get_title(loc="left") == "Rotation of the free end under pressure"
 
 

@@ -91,6 +91,46 @@ def test_holes_are_filled_by_the_polynomial_of_their_neighbours():
     np.testing.assert_allclose(flat.reshape(9, 8), values, atol=1e-9)
 
 
+def test_a_number_put_beyond_the_last_nodes_says_how_doubtful_it_is():
+    x = np.arange(8.0)
+    values = np.exp(-0.7 * (x[:, None] + x))
+    holed = values.copy()
+    holed[0, 0] = holed[4, 4] = np.nan
+    flat = holed.ravel()
+    doubt = fill(flat, np.array([8, 8]), np.array([8, 1]), np.stack([x, x]))
+    gap = np.abs(flat.reshape(8, 8) - values)
+    doubt = doubt.reshape(8, 8)
+    assert gap[0, 0] > 0.01  # the corner of a grid, from one side
+    assert 0.3 * gap[0, 0] < doubt[0, 0] < 10.0 * gap[0, 0]
+    assert gap[4, 4] < doubt[4, 4] < 1e-4
+    assert np.count_nonzero(doubt) == 2
+
+
+@pytest.mark.parametrize("shear", [0.0, 1.0])
+def test_near_rest_bounds_hold_though_hardly_a_digit_is_left(shear):
+    draw, count = np.random.default_rng(3), 200
+    alpha, beta = draw.uniform(0, 85, count), draw.uniform(-85, 85, count)
+    length, radius = draw.uniform(0.08, 0.4, count), draw.uniform(3e-3, 8e-3, count)
+    found = {}
+    for pressure in (1.0, 1e-3, 1e-4):
+        points = np.array([point(*each, pressure) for each in zip(alpha, beta, length, radius)])
+        states = np.empty((count, reference.UNIFORM))
+        reference.uniform_states(reference.LOADED, points, shear, states)
+        value, estimate, bound = np.empty((3, count))
+        nothing = np.zeros(count)
+        for variable in (reference.ROTATION, reference.ENERGY):
+            reference.restore_all(variable, points, states, nothing, nothing, nothing, value, estimate, bound)
+            found[variable, pressure] = value.copy(), estimate.copy()
+    apart = np.abs(alpha - beta) > 2.0
+    for (variable, pressure), (value, estimate) in found.items():
+        order = 1 if variable == reference.ROTATION else 2  # of the pressure, of which it is a power so near rest
+        expected = found[variable, 1.0][0] * pressure**order
+        assert (estimate > 0.0).all()
+        assert (
+            np.abs(value - expected) <= estimate + found[variable, 1.0][1] * pressure**order + 1e-4 * np.abs(expected)
+        )[apart].all()
+
+
 PROBLEMS = [
     (0.3, 0.9, 0.7, 1.0, (0.5, 0.0, 0.0), 1.0, 0.0, 0.0),
     (1.2, 0.4, 0.4, 1.005, (0.5, 0.0, 0.0), 0.0, 0.2, -0.1),
@@ -143,16 +183,15 @@ def test_end_effects_give_back_what_was_stored(variable):
     points[:, reference.EXTENSION] = 1.002
     states = np.empty((2, reference.UNIFORM))
     reference.uniform_states(kind, points, 1.0, states)
-    stored = np.array(
-        [reference.restore(*reference.reference(variable, kind, points[k], states[k]), 0.3)[0] for k in (0, 1)]
-    )
+    stored, nothing, out = np.empty(2), np.zeros(2), np.empty(2)
+    reference.restore_all(variable, points, states, np.full(2, 0.3), nothing, nothing, stored, out, out)
     effects, noise = np.empty(2), np.empty(2)
     errors = 1e-9 * np.abs(stored)
     reference.end_effects(variable, kind, points, states, stored, errors, effects, noise)
     np.testing.assert_allclose(effects, 0.3, rtol=1e-6)
     values, estimates, bounds = np.empty((3, 2))
     args = (effects, np.full(2, 1e-3), noise, values, estimates, bounds)
-    reference.restore_all(variable, kind, points, states, *args)
+    reference.restore_all(variable, points, states, *args)
     np.testing.assert_allclose(values, stored, rtol=1e-12)
     assert (bounds >= errors * (1 - 1e-9)).all()
     assert (estimates > 0.0).all()

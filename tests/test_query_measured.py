@@ -14,10 +14,11 @@ from freesweep.bench.query import table
 from freesweep.cli import DONE
 from freesweep.query import calibration, errors
 from freesweep.query.calibrate import calibrate, piece_scales
+from freesweep.query.cells import ROUGH
 from freesweep.query.faults import QueryError
 from freesweep.query.reference import VOLUME
 from freesweep.query.refine import as_points, exact_answers
-from freesweep.query.tensor import KNOT, RANK, ROUGH
+from freesweep.query.tensor import KNOT, RANK
 from freesweep.sweep.grade import graded
 from freesweep.sweep.spec import SpecificationError, parse
 from freesweep.verify import faults as verify
@@ -214,6 +215,57 @@ def test_curves_run_along_one_axis(made):
         made.curve("presure", **rest)
     with pytest.raises(QueryError, match="radius: the atlas holds only"):
         made.curve("radius", **POINT)
+
+
+COARSER = [5e4 * k for k in range(1, 9)]
+
+
+def test_a_node_more_withdraws_no_answers_and_what_is_too_coarse_is_named(tmp_path):
+    draw, shares = np.random.default_rng(0), {}
+    points = {"alpha": draw.uniform(20.0, 40.0, 400), "beta": -30.0, "pressure": draw.uniform(5e4, 4e5, 400)}
+    low = {"alpha": 33.0, "beta": -30.0, "pressure": [1e4, 2e4, 3e4], "variables": "volume"}
+    for added in ((), (0.0,), (0.0, 1e4), (1e6,)):
+        axes = {"alpha": [20.0, 25.0, 30.0, 35.0, 40.0], "beta": [-30.0, -29.0], "pressure": sorted([*added, *COARSER])}
+        with run_sweep(parse(spec(axes)), tmp_path / f"{len(shares)}.nc", threads=2, progress=False) as atlas:
+            found = atlas.query(**points, variables=["deformed_length", "rotation", "volume"])
+            shares[added] = found["status"].values == status.OK
+            if added == (0.0,):
+                assert atlas.query(**low).attrs["too_coarse"] == "pressure (3)"
+                assert "too_coarse" not in atlas.query(**low, refine=True).attrs
+    for added, answered in shares.items():
+        assert (shares[()] & ~answered).sum() <= 0.02 * shares[()].sum(), added
+
+
+def test_plots_between_nodes_show_what_a_query_answers_and_leave_failed_neighbours_failed(made):
+    from freesweep.plot.curve import curve
+    from freesweep.plot.plane import plane
+    from freesweep.plot.validity import validity_map
+
+    at = {"length": 0.12, "pressure": 3.7e4}
+    sheet = plane(made.data, "rotation", at)
+    beta = made.data["beta"].values[4]
+    (shown,) = sheet.values[sheet.y == beta]
+    answer = made.query(alpha=sheet.x, beta=beta, **at, variables="rotation", refine=True)["rotation"].values
+    here = ~np.ma.getmaskarray(shown) & np.isin(sheet.x, AXES["alpha"])
+    assert here.sum() > 5
+    assert (np.abs(shown - answer)[here] <= 1e-3 * np.abs(answer[here])).all()
+    assert sheet.point["pressure"] == 3.7e4
+    assert not sheet.point.missed
+    holed = made.data.load().copy(deep=True)
+    where = {"alpha": 3, "beta": 4, "length": 0, "pressure": int(np.searchsorted(AXES["pressure"], 3.7e4))}
+    holed["status"][where], holed["rotation"][where] = status.BEYOND_LIMIT, np.nan
+    found = plane(holed, "rotation", at)
+    lost = found.reason == status.BEYOND_LIMIT
+    assert found.x[lost.any(axis=0)].tolist() == [AXES["alpha"][3]]
+    assert lost.sum() == 1
+    assert found.values.mask[lost].all()
+    _, _, states = validity_map(holed, **at)
+    assert (states.reason == status.BEYOND_LIMIT).sum() == 1
+    (line,) = [one for one in curve(made.data, "rotation", alpha=24.0, beta=-43.0, length=0.12).lines if one.get_gid()]
+    asked = {"alpha": 24.0, "beta": -43.0, "length": 0.12, "pressure": AXES["pressure"]}
+    expected = made.query(**asked, variables="rotation")["rotation"].values
+    known = np.isfinite(expected)
+    np.testing.assert_allclose(line.get_ydata()[known], expected[known], rtol=1e-3)
 
 
 # --- the command

@@ -81,7 +81,8 @@ class Atlas:
         Returns a Dataset: each ``<name>`` with ``<name>_error``, a bound on interpolation and discretization together, its
         status and flags. Angles that the grid lacks are answered by exchange of the fiber families and by the mirror.
         Cells that touch a failed node, a limit, the line alpha = beta or a change of stability are not interpolated
-        (status 9), nor are points whose stated error exceeds the atlas' ``interpolation_tolerance``; nothing is
+        (status 9), nor are points whose stated error exceeds the atlas' ``interpolation_tolerance``: the attribute
+        ``too_coarse`` of the answer says along which axes the nodes lie too far apart, at how many points. Nothing is
         extrapolated (status 8). Raises :class:`freesweep.query.faults.QueryError`, which lists every fault.
         """
         from ..query.query import query

@@ -210,4 +210,6 @@ def _table(found):
         lines = aligned(rows)
     seen = sorted({record[name] for record in records for name in statuses} - {"ok"})
     lines += [f"{status.meaning}: {status.sentence}" for status in STATUSES if status.meaning in seen]
+    if "too_coarse" in found.attrs:
+        lines += [f"nodes too far apart along (answers refused): {found.attrs['too_coarse']}"]
     return "\n".join(lines)

@@ -1,14 +1,40 @@
 """Which nodes of a dataset a plot shows: everything but the drawn dimensions is chosen, and can be named."""
 
 import difflib
+import warnings
 from numbers import Real
 
 import numpy as np
 
 from ..atlas import schema
+from .display import USUAL, describe
 
 DESIGN = "design"  # a dimension of names, not of numbers
+SAME = 1e-6  # relative: what counts as the value asked for
 HELD = ("deformed_length", "rotation")  # outputs that are coordinates of a held state
+
+
+class Point(dict):
+    """What is shown: name -> value [stored units]; ``missed``: name -> value asked for where it is another."""
+
+    def __init__(self, *values):
+        super().__init__(*values)
+        self.missed = dict(getattr(values[0], "missed", {})) if values else {}
+
+    def words(self, names=None):
+        """Parameters in words, the usual ones left out."""
+        shown = {
+            name: self[name] for name in self if (names is None or name in names) and USUAL.get(name) != self[name]
+        }
+        near = {name: f"\u00a0(nearest\u00a0to\u00a0{describe(name, asked).split(chr(160), name.count('_') + 1)[1]})"
+                for name, asked in self.missed.items()}  # fmt: skip
+        return [describe(name, value) + near.get(name, "") for name, value in shown.items()]
+
+    def only(self, keep):
+        """The parameters for which ``keep(name)`` is true."""
+        point = Point({name: value for name, value in self.items() if keep(name)})
+        point.missed = {name: value for name, value in self.missed.items() if keep(name)}
+        return point
 
 
 def check_name(name: str, available, what: str) -> None:
@@ -29,8 +55,9 @@ def dimensions(dataset) -> list:
 def choose(dataset, select: dict, across) -> tuple[dict, dict]:
     """Parameters of the point (stored units), and the index along each dimension that is not in ``across``.
 
-    ``select`` maps a name to a number, the nearest node being taken, or ``design`` to its name. What is not selected: the
-    largest pressure; the force, torque and held rotation nearest zero; the first design; the middle of anything else.
+    ``select`` maps a name to a number, the nearest node being taken with a warning, or ``design`` to its name. What is not
+    selected: the largest pressure; the force, torque and held rotation nearest zero; the first design; the middle of
+    anything else.
     Raises ValueError for names that are unknown and values that are no numbers.
     """
     known = (*schema.PARAMETERS, *HELD, DESIGN)
@@ -40,11 +67,17 @@ def choose(dataset, select: dict, across) -> tuple[dict, dict]:
         if name != DESIGN and (isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(value)):
             raise ValueError(f"{name} must be one finite number [{schema.attributes(name)['units']}], not {value!r}")
     index = {name: _node(dataset, name, select) for name in names if name in dataset.dims}
-    point = {}
+    point = Point()
     for name in names:
         coordinate = dataset[name].isel({dim: index[dim] for dim in dataset[name].dims if dim in index})
         if coordinate.ndim == 0:
             point[name] = str(coordinate.values) if name == DESIGN else float(coordinate)
+            if name in select and name != DESIGN and abs(point[name] - select[name]) > SAME * abs(select[name]):
+                point.missed[name] = float(select[name])
+    if point.missed:
+        near = (f"{describe(name, point[name])} for {describe(name, asked)}" for name, asked in point.missed.items())
+        text = f"drawn at the nearest values that the file holds: {', '.join(near)}"
+        warnings.warn(text.replace("\u00a0", " "), stacklevel=4)
     return point, index
 
 

@@ -11,8 +11,9 @@ from matplotlib.ticker import MaxNLocator
 from ..atlas import schema
 from ..status import VALUED
 from . import style
+from .between import between
 from .choice import DESIGN, check_name, choose, dimensions
-from .display import USUAL, absolute, axis_label, describe, shown_units
+from .display import absolute, axis_label, shown_units
 from .plane import status_of
 
 SIZE = (style.PAGE * 0.75, 85.0)  # of a figure of its own [mm]
@@ -107,7 +108,8 @@ def curve(dataset, variable="deformed_length", along="pressure", each=None, ax=N
     """Draws ``variable`` of a Dataset (an atlas, or one actuator) along one dimension, and returns the Axes.
 
     ``each`` names a second dimension: one line per node of it, 9 at most, evenly chosen. ``select`` gives the others
-    (stored units, or the name of a ``design``); the nearest node is taken and named below the title. Not given: the largest
+    (stored units, or the name of a ``design``), named below the title; between its nodes an atlas is interpolated, of
+    another dataset the nearest node is taken, and a warning says so. Not given: the largest
     pressure, force and torque nearest zero, the middle of anything else. The error bound is a band, thin lines mark states
     that need a fiber family to push, open circles unstable ones; lines end where there is no result.
 
@@ -119,6 +121,7 @@ def curve(dataset, variable="deformed_length", along="pressure", each=None, ax=N
     check_name(along, [name for name in dims if name != DESIGN], f"numeric dimension of {variable}")
     if each is not None:
         check_name(each, [name for name in dims if name != along], f"further dimension of {variable}")
+    dataset = between(dataset, variable, select, (along, each))
     point, index = choose(dataset, select, (along, each))
     plane = dataset.isel(index)
     nodes = [None] if each is None else _nodes(dataset.sizes[each])
@@ -136,7 +139,7 @@ def curve(dataset, variable="deformed_length", along="pressure", each=None, ax=N
             units = "" if each == DESIGN else f" [{shown_units(each)[0]}]".replace(" [1]", "")
             ax.annotate(each.replace("_", " ") + units, (1.0, 1.0), xycoords="axes fraction", xytext=(4.0, 9.0),
                         textcoords="offset points", color=style.QUIET, gid="each")  # fmt: skip
-        relevant = {name: value for name, value in point.items() if name in dataset[variable].coords}
+        relevant = point.only(lambda name: name in dataset[variable].coords)
         _name_choice(ax, relevant, [words for gid, words in MARKS.items() if _marked(ax, gid)])
     return ax
 
@@ -183,7 +186,7 @@ def _marked(ax, gid):
 
 def _name_choice(ax, point, marks):
     """What was chosen and what marks mean, in words below the heading."""
-    words = [*(describe(name, value) for name, value in point.items() if USUAL.get(name) != value), *marks]
+    words = [*point.words(), *marks]
     if words:
         width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
         below = textwrap.wrap(", ".join(words), max(int(width / LETTER), 30))

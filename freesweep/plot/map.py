@@ -9,7 +9,7 @@ from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
 from . import glyph, regions, style
-from .display import USUAL, describe, display, title
+from .display import display, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, plane
 
@@ -22,8 +22,9 @@ COARSE = 6.0  # [degree]: wider grids are drawn node by node, without contours b
 def design_map(dataset, variable="rotation", ax=None, paths=True, examples=True, **select) -> Axes:
     """Draws ``variable`` of an atlas (xarray Dataset) over alpha and beta [degree], and returns the Axes.
 
-    ``select`` gives the other dimensions (``length=0.2``, ``pressure=1e5``, in the stored units): the nearest value of
-    the grid is taken, and named below the title. Not given: the largest pressure, the force and torque nearest zero,
+    ``select`` gives the other dimensions (``length=0.2``, ``pressure=1e5``, in the stored units), named below the title.
+    Between its nodes an atlas is interpolated, as by a query; a dataset that cannot be is drawn at the nearest node, which
+    is said there and in a warning. Not given: the largest pressure, the force and torque nearest zero,
     the middle of anything else. ``paths`` draws the way of some designs under pressure (uniform tube), ``examples``
     little actuators; both want Axes about 100 mm wide. Without ``ax`` a figure of 170 mm is made; the figure of a given
     one should have ``layout="constrained"``, for the colour bar and the legend stand outside the Axes.
@@ -68,8 +69,7 @@ def _dress(ax, sheet: Plane, variable, handles):
     ax.tick_params(labelsize=style.NORMAL, labelfontfamily=family["fontfamily"])
 
     width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
-    chosen = [describe(name, value) for name, value in sheet.point.items() if USUAL.get(name) != value]
-    below = textwrap.wrap(", ".join(chosen), max(int(width / LETTER), 30))
+    below = textwrap.wrap(", ".join(sheet.point.words()), max(int(width / LETTER), 30))
     heading = {**plain, "fontsize": style.LARGE, "fontweight": "bold"}
     ax.set_title(title(variable), loc="left", pad=7.0 + 10.0 * len(below), **heading)
     ax.annotate(

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..atlas import schema
 from ..status import OK, OUTSIDE, VALUED
+from .between import between
 from .choice import DESIGN, check_name, choose, dimensions
 
 ALPHA, BETA = (0.0, 90.0), (-90.0, 90.0)  # the two quadrants of Figure 1-2 [degree]
@@ -41,7 +42,7 @@ def status_of(variable: str) -> str:
 
 
 def plane(dataset, variable: str, select: dict) -> Plane:
-    """``variable`` of an xarray Dataset at the grid values nearest to ``select`` (name: value in stored units).
+    """``variable`` of an xarray Dataset at ``select`` (name: value in stored units), between nodes as a query answers there.
 
     What is not selected: the largest pressure, the force and torque nearest zero, the middle of anything else. Raises
     ValueError for names that are unknown, values that are no numbers, and a dataset without a plane of angles.
@@ -57,6 +58,7 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     check_name(variable, on_plane, "variable")
     check_name(status_of(variable), dataset.data_vars, "status variable")
 
+    dataset = between(dataset, variable, select, ("alpha", "beta"))
     point, index = choose(dataset, select, ("alpha", "beta"))
     values = _sheet(dataset[variable], index)
     status = _sheet(dataset[status_of(variable)], index)
@@ -64,7 +66,7 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     turns = any(point.get(name, 0.0) != 0.0 and name not in free for name in ("torque", "held_rotation"))
     alpha, beta, values, status = _unfold(dataset, values, status, variable in ODD, turns)
 
-    point = {name: value for name, value in point.items() if name not in free}
+    point = point.only(lambda name: name not in free)
     return _plane(("alpha", "beta"), alpha, beta, values, status, variable, point)
 
 
@@ -80,11 +82,12 @@ def section(dataset, variable: str, x: str, y: str, select: dict) -> Plane:
         check_name(name, [axis for axis in axes if axis != DESIGN], f"axis of {variable} with two nodes or more")
     if x == y:
         raise ValueError(f"a map needs two different axes, found {x} twice")
+    dataset = between(dataset, variable, select, (x, y))
     point, index = choose(dataset, select, (x, y))
     order = [np.argsort(dataset[name].values.astype(float)) for name in (y, x)]
     values, status = (_sheet(dataset[name], index, (y, x))[np.ix_(*order)] for name in (variable, status_of(variable)))
     free = schema.VARIABLES[variable].without
-    point = {name: value for name, value in point.items() if name not in free}
+    point = point.only(lambda name: name not in free)
     nodes = [dataset[name].values.astype(float)[at] for name, at in zip((x, y), reversed(order))]
     return _plane((x, y), *nodes, values, status, variable, point)
 

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from .. import closed_form
 from . import style
 from .choice import check_name, dimensions
-from .display import USUAL, axis_label, describe, display, shown_units, title
+from .display import axis_label, describe, display, shown_units, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, section
 
@@ -80,7 +80,7 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
                 row = "" if rows[i] is None else f"{describe(over[1], rows[i])}\n"
                 ax.set_ylabel(row + axis_label(y, short=True))
         draw_bar(figure, shade, display(variable).axis_label, ax=axes, aspect=30.0, pad=0.02)
-        shared = {name: value for name, value in sheets[0][0].point.items() if name not in over}
+        shared = sheets[0][0].point.only(lambda name: name not in over)
         head(figure, axes[0, 0], title(variable), shared, 20.0)
         legend(figure, keys)
     return figure
@@ -122,8 +122,7 @@ def window(ax, sheet: Plane) -> None:
 def head(figure, ax, text, point, lift) -> None:
     """Title of the figure and, ``lift`` points above the first map, what was chosen."""
     width = figure.get_size_inches()[0] * style.INCH
-    words = [describe(name, value) for name, value in point.items() if USUAL.get(name) != value]
-    below = textwrap.wrap(", ".join(words), int(width / LETTER))
+    below = textwrap.wrap(", ".join(point.words()), int(width / LETTER))
     heading = "\n".join([text, *[" "] * len(below)])  # room for what was chosen
     figure.suptitle(heading, x=0.01, ha="left", fontsize=style.LARGE, fontweight="bold", linespacing=1.0)
     how = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False, "gid": "chosen"}

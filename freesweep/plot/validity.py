@@ -9,6 +9,7 @@ from matplotlib.path import Path
 
 from ..status import VALUED
 from . import style
+from .between import between
 from .choice import check_name
 from .display import axis_label
 from .fill import cell, draw_failures, edges
@@ -39,6 +40,7 @@ def validity_map(dataset, of="equilibrium", x="alpha", y="beta", ax=None, **sele
     """
     check_name(of, [name for name, (host, _, _) in STATES.items() if host in dataset], "state")
     host, stable, slack = STATES[of]
+    dataset = between(dataset, host, select, (x, y))  # its flags with it
     sheet = scaled(section(dataset, host, x, y, select))
     kind = np.zeros(sheet.reason.shape) if slack is None else _slack(dataset, host, slack, x, y, select)
     solved = np.isin(sheet.reason, VALUED)

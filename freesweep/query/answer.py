@@ -4,6 +4,7 @@ import numpy as np
 
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import errors, reference, tensor
+from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED
 from .holes import MIXED
 from .place import place
@@ -26,16 +27,17 @@ class Inquiry:
             np.empty((self.size, len(reference.COLUMNS))),
             np.empty((self.size, reference.UNIFORM)),
         )
-        self.pieces, self.shares = np.empty((self.size, d), np.int64), np.empty((self.size, d))
+        self.pieces, self.shares = np.zeros((self.size, d), np.int64), np.zeros((self.size, d))
         self.marks = np.empty((self.size, 7), np.int64)
         place(
             asked, table.kinds, table.bounds, table.fixed, table.options, table.knots, table.shape, table.coordinates,
-            table.strides, table.codes, table.cells, table.slack, table.slack_cells, self.points, self.states, self.pieces,
-            self.shares, self.marks,
+            table.strides, table.codes, table.cells, self.points, self.pieces, self.shares, self.marks,
         )  # fmt: skip
+        reference.uniform_states(table.family.kind, self.points, table.shear, self.states)
         self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
         self.node = self.marks[:, 4]
         self.exact = self.node >= 0
+        self.ranks = table.knots[np.arange(d), self.pieces, tensor.RANK].astype(np.int64)
         self.order = np.arange(self.size)
         if self.size > SORTED:
             tensor.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-1])), self.order)
@@ -64,20 +66,27 @@ class Inquiry:
         """``(value, estimate, bound, beside)``: interpolated, what the next order would add, what was stored wrongly, and
         whether beside a hole; ``scales`` (d, RANKS) of the estimate.
         """
-        table = self.table
-        effects = self.effects(name, self.orders())
-        rest, noise, beside = np.empty(self.size), np.empty(self.size), np.empty(self.size, bool)
-        args = (table.knots, table.strides, self.pieces, self.shares, self.order, rest, noise, beside)
-        tensor.remainders(table.variable(name).cells, scales, *args)
+        effects, known = self.effects(name, self.orders()), self.table.variable(name).cells[self.cell]
+        rest = known[:, DOUBT] + self.rests(known, scales).sum(axis=1)
         if self.method == LINEAR:
-            rest += np.abs(effects - self.effects(name, np.zeros(len(table.axes), np.int64)))
-        return *self._restored(name, slice(None), effects, rest, noise), beside
+            rest += np.abs(effects - self.effects(name, np.zeros(len(self.table.axes), np.int64)))
+        noise = known[:, NOISE].astype(float)
+        return *self._restored(name, slice(None), effects, rest, noise), known[:, BESIDE] > 0.0
+
+    def rests(self, known, scales, places=slice(None)):
+        """What the next order would add along each axis (k, d) at some places, from what is ``known`` of their cells.
+
+        Between two nodes what the slopes lack goes with t (1 - t); what the cubic lacks, with its square, is smaller.
+        """
+        bubble = 4.0 * self.shares[places] * (1.0 - self.shares[places])
+        scale = scales[np.arange(scales.shape[0]), self.ranks[places]]
+        return np.where(bubble > 0.0, known[:, ROUGH:] * bubble * scale, 0.0)  # on a node the unknown says nothing
 
     def _restored(self, name, places, effects, rest, noise):
         """``(value, estimate, bound)`` at some places, (k,) each, from end effects, what they lack and their bounds."""
         family, (value, estimate, bound) = self.table.family, np.empty((3, len(effects)))
         args = (self.points[places], self.states[places], effects, rest, noise, value, estimate, bound)
-        reference.restore_all(family.variables[name], family.kind, *args)
+        reference.restore_all(family.variables[name], *args)
         return value, estimate, bound
 
     def answer(self, name, factors):
@@ -112,12 +121,21 @@ class Inquiry:
         number = np.isfinite(value) & (error >= 0.0)
         return ~number | (~(error <= allowed * self.natural_size(name, value)) & ~self.exact)
 
+    def blame(self, name, refused, scales, coarse):
+        """Add to the list ``coarse``: axes, and at how many of the ``refused`` (n,) the estimate is largest along them."""
+        places = np.flatnonzero(refused)
+        if not len(places):
+            return
+        rests = self.rests(self.table.variable(name).cells[self.cell[places]], scales, places)
+        worst = np.bincount(rests.argmax(axis=1)[rests.any(axis=1)], minlength=len(self.table.axes))
+        coarse.extend((axis.name, count) for axis, count in zip(self.table.axes, worst.tolist()) if count)
+
     def flags(self):
         """Flags (n,) by name; a point whose flags cannot be told becomes NOT_INTERPOLABLE."""
         table, found = self.table, {}
         if table.has_flag:
             found[table.family.flag] = np.where(self.codes == MIXED, 0, self.codes >> 4)
-        if len(table.slack):
+        if table.has_slack:
             slack, exchanged = self.marks[:, 2], self.marks[:, 5] == 1
             look = (slack == MIXED) & self.valued
             slack = np.where(slack == MIXED, 0, slack >> 4)
@@ -126,7 +144,7 @@ class Inquiry:
                 effects, nothing = self.effects("mid_radius", self.orders(), places)[places], np.zeros(len(places))
                 middle, _, _ = self._restored("mid_radius", places, effects, nothing, nothing)
                 told = np.empty(len(places), np.uint8)
-                slack_families(self.points[places], self.states[places], middle, table.options[1], told)
+                slack_families(self.points[places], self.states[places], middle, table.shear, told)
                 slack[places] = np.where(told == UNKNOWN, 0, told)
                 self.status[places[told == UNKNOWN]] = NOT_INTERPOLABLE
             found["slack_fiber"] = np.where(exchanged, (slack & 1) << 1 | slack >> 1 & 1, slack)

@@ -1,90 +1,111 @@
 """What each cell knows of its neighbourhood: bounds of what is stored there, how rough it is, whether it has holes.
 
-``axes`` are (count, step) of the axes along which cells extend, labels apart; a cell has the index of its first node.
+A cell has the index of its first node. What is known of it lies in one row of (nodes, ROUGH + d). Grids are gone through
+slab by slab along the first axis, as much as a cache holds; an extent is (count, step) of an axis within a slab.
 """
-
-import math
 
 import numpy as np
 
-from ..jit import entry_point
-from .axis import WINDOW
+from .axis import LABEL, WINDOW
+from .holes import weigh
 
+NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
 
 
-def worst_noise(noise, axes):
-    """Largest bound of the end effects at each cell's corners, and WEIGHT of those beside it, (nodes,) each."""
-    cells = noise.astype(np.float32)
-    for count, step in axes:
-        before = cells.reshape(-1, count, step)
-        after = before.copy()
-        np.maximum(after[:, :-1], before[:, 1:], out=after[:, :-1])
-        np.maximum(after[:, 1:-1], WEIGHT * before[:, :-2], out=after[:, 1:-1])
-        np.maximum(after[:, :-2], WEIGHT * before[:, 2:], out=after[:, :-2])
-        cells = after.ravel()
-    return cells
+def describe(values, noise, doubt, bad, axes):
+    """What is known of all cells (nodes, ROUGH + d) of a grid over ``axes``.
 
-
-@entry_point
-def _remainders(values, count, step, first, remainder, out):
-    """Size of what the next order would add in the middle of each piece along one axis (nodes,); infinite where unknown."""
-    size, row = min(WINDOW, count), np.empty(step)
-    for block in range(len(values) // (count * step)):
-        for piece in range(count):
-            row[:] = 0.0
-            if piece + 1 < count:
-                for j in range(size):
-                    weight, there = remainder[piece, j], (block * count + first[piece] + j) * step
-                    for k in range(step):
-                        row[k] += weight * values[there + k]
-            at = (block * count + piece) * step
-            for k in range(step):
-                out[at + k] = abs(row[k]) if math.isfinite(row[k]) else math.inf
-
-
-def roughness(values, axes, axis, first, remainder):
-    """Largest remainder along one of ``axes``, in the middle of its pieces, over each cell and the next to it.
-
-    ``values`` (nodes,) with holes filled; returns (nodes,), infinite where unknown.
+    ``values`` (nodes,) are end effects, holes filled; ``noise`` (nodes,) their bounds; ``doubt`` (nodes,) how far numbers
+    that were put in may be off; ``bad`` (nodes,) marks nodes that had none.
     """
-    rough = np.empty(len(values), np.float32)
-    _remainders(values, *axes[axis], first, remainder, rough)
-    for other, (count, step) in enumerate(axes):
-        if other != axis:
-            _over_corners(rough, count, step)
-    count, step = axes[axis]
-    own = rough.reshape(-1, count, step)
-    worst = own.copy()
-    np.maximum(worst[:, 1:], own[:, :-1], out=worst[:, 1:])
-    np.maximum(worst[:, :-2], own[:, 1:-1], out=worst[:, :-2])
-    return worst.ravel()
+    shape = [len(axis.nodes) for axis in axes]
+    slabs, size = shape[0], len(values) // shape[0]
+    kept = {a: (shape[a], int(np.prod(shape[a + 1 :]))) for a in range(len(axes)) if axes[a].kind != LABEL}
+    inner = {a: extent for a, extent in kept.items() if a > 0}
+    own = np.zeros((ROUGH + len(axes), slabs, size), np.float32)
+    first_reached = np.zeros((slabs, size), bool)
+    if 0 in kept:
+        _remainders(values, axes[0], kept[0], own[ROUGH].reshape(-1))
+        _reach(bad, kept[0], axes[0].first, first_reached.reshape(-1))
+    for slab in range(slabs):
+        here = slice(slab * size, (slab + 1) * size)
+        own[NOISE, slab], own[DOUBT, slab] = noise[here], doubt[here]
+        for extent in inner.values():
+            _weigh_beside(own[NOISE, slab], extent)
+            _over_corners(own[DOUBT, slab], extent)
+            _over_corners(first_reached[slab], extent)
+        own[BESIDE, slab] = _reached(bad[here], inner, axes)
+        for a in kept:
+            rough = own[ROUGH + a, slab]
+            if a > 0:
+                _remainders(values[here], axes[a], inner[a], rough)
+                _smooth_over(rough, inner[a])
+            for extent in (extent for other, extent in inner.items() if other != a):
+                _over_corners(rough, extent)
+    if 0 in kept:
+        _weigh_beside(own[NOISE], kept[0])
+        _smooth_over(own[ROUGH], kept[0])
+        for column in (BESIDE, DOUBT, *(ROUGH + a for a in inner)):
+            _over_corners(own[column], kept[0])
+        own[BESIDE] += first_reached
+    cells = np.empty((slabs, size, len(own)), np.float32)
+    for slab in range(slabs):
+        cells[slab] = own[:, slab].T
+    return cells.reshape(-1, len(own))
 
 
-def beside_holes(bad, axes, firsts):
-    """Cells (nodes,) whose corners or slopes look at nodes that had no number; ``firsts``: where windows begin."""
+def _remainders(values, axis, extent, rough):
+    """Size of what the next order would add in the middle of each piece along one axis (nodes,); infinite where unknown."""
+    out = np.empty(len(values))
+    weigh(values, *extent, axis.first, axis.remainder, out)
+    np.abs(out, out=out)
+    rough[:] = np.where(out < np.inf, out, np.inf)
+
+
+def _over_corners(numbers, extent):
+    """Put into each cell the larger of its two nodes along one axis."""
+    nodes = numbers.reshape(-1, *extent)
+    np.maximum(nodes[:, :-1], nodes[:, 1:], out=nodes[:, :-1])
+
+
+def _weigh_beside(numbers, extent):
+    """The same, and WEIGHT of the nodes beside the cell."""
+    nodes = numbers.reshape(-1, *extent)
+    before = nodes.copy()
+    np.maximum(nodes[:, :-1], before[:, 1:], out=nodes[:, :-1])
+    np.maximum(nodes[:, 1:-1], WEIGHT * before[:, :-2], out=nodes[:, 1:-1])
+    np.maximum(nodes[:, :-2], WEIGHT * before[:, 2:], out=nodes[:, :-2])
+
+
+def _smooth_over(rough, extent):
+    """A remainder may vanish by chance in one piece: it is no less than in both beside it.
+
+    Not the larger of those: a coarse or wild piece says nothing of a fine one beside it.
+    """
+    pieces = rough.reshape(-1, *extent)[:, :-1]
+    if pieces.shape[1] < 2:
+        return
+    before = pieces.copy()
+    np.maximum(before[:, :1], before[:, 1:2], out=pieces[:, :1])
+    np.maximum(before[:, -1:], before[:, -2:-1], out=pieces[:, -1:])
+    np.maximum(before[:, 1:-1], np.minimum(before[:, :-2], before[:, 2:]), out=pieces[:, 1:-1])
+
+
+def _reached(bad, extents, axes):
+    """Cells (nodes,) whose corners or slopes look at nodes that had no number, along the axes of some extents."""
     near = np.zeros(len(bad), bool)
-    for axis, (count, step) in enumerate(axes) if bad.any() else ():
-        nodes, reached = bad.reshape(-1, count, step), np.zeros(len(bad), bool)
-        pieces = reached.reshape(-1, count, step)
-        for piece in range(count - 1):
-            first = firsts[axis][piece]
-            np.any(nodes[:, first : first + WINDOW], axis=1, out=pieces[:, piece])
-        for other, extent in enumerate(axes):
-            if other != axis:
-                _over_corners(reached, *extent)
+    for axis in extents if bad.any() else ():
+        reached = np.zeros(len(bad), bool)
+        _reach(bad, extents[axis], axes[axis].first, reached)
+        for extent in (extent for other, extent in extents.items() if other != axis):
+            _over_corners(reached, extent)
         near |= reached
     return near
 
 
-def _over_corners(numbers, count, step):
-    """Put into each cell the larger of its two nodes along one axis."""
-    nodes = numbers.reshape(-1, count, step)
-    np.maximum(nodes[:, :-1], nodes[:, 1:], out=nodes[:, :-1])
-
-
-@entry_point
-def put_column(numbers, column, cells):
-    """Numbers (nodes,) into one column of what is known of each cell."""
-    for k in range(len(cells)):
-        cells[k, column] = numbers[k]
+def _reach(bad, extent, first, reached):
+    """Cells (nodes,) whose window along one axis holds a node that had no number."""
+    nodes, pieces = bad.reshape(-1, *extent), reached.reshape(-1, *extent)
+    for piece in range(extent[0] - 1):
+        np.any(nodes[:, first[piece] : first[piece] + WINDOW], axis=1, out=pieces[:, piece])

@@ -1,72 +1,61 @@
-"""The uniform tube and the end effects at all nodes of a grid, without a list of its points.
-
-``grid``: what is fixed (designs, 15), the column of each axis (LABELS, or -1 for none), its values (d, n), its count (d,),
-whether the fibers lie at the inner radius, whether HELD is given as a length. Labels come first.
-"""
+"""The points of a grid, slab by slab along its first axis, without a list of all of them."""
 
 import numpy as np
 
-from ..jit import entry_point, kernel
-from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, end_effect, uniform
-
-LABELS = -2  # column of an axis of labels
+from .axis import LABEL
+from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, uniform_states
 
 
-@kernel
-def _next_node(index, shape):
-    """Count ``index`` (d,) on by one in C order; returns the first axis that changed."""
-    axis = len(shape) - 1
-    index[axis] += 1
-    while axis > 0 and index[axis] == shape[axis]:
-        index[axis] = 0
-        axis -= 1
-        index[axis] += 1
-    return axis
+class GridPoints:
+    """Points of a grid over ``axes``; ``columns`` (d,) says where in a point an axis goes, -1: nowhere.
+
+    ``fixed`` (designs, 15): what the grid fixes; ``inner``: whether the fibers lie at the inner radius; ``by_length``:
+    whether what is held is given as a length.
+    """
+
+    def __init__(self, axes, columns, fixed, inner, by_length):
+        self.axes, self.columns, self.fixed = axes, columns, fixed
+        self.inner, self.by_length = inner, by_length
+        self.shape = tuple(len(axis.nodes) for axis in axes)
+
+    def slabs(self):
+        """Points (slab, 15) of each slab in turn, in an array that is used again."""
+        points = np.empty((*self.shape[1:], len(COLUMNS)))
+        for k in range(self.shape[0]):
+            points[...] = self.fixed[k if self.axes[0].kind == LABEL else 0]
+            for a, (axis, column) in enumerate(zip(self.axes, self.columns)):
+                if column >= 0:
+                    along = [-1 if other == a else 1 for other in range(1, len(self.shape))]
+                    points[..., column] = axis.values[k] if a == 0 else axis.values.reshape(along)
+            if self.inner:
+                points[..., FIBERS] = points[..., RADIUS]
+            if self.by_length:
+                points[..., HELD] /= points[..., LENGTH]
+            yield points.reshape(-1, len(COLUMNS))
 
 
-@kernel
-def _put_node(grid, index, first, point):
-    """Put what the axes from ``first`` on hold at a node into ``point`` (15,)."""
-    fixed, columns, values, _, inner, by_length = grid
-    if first == 0 or by_length:
-        label = 0
-        for a in range(len(columns)):
-            if columns[a] == LABELS:
-                label = index[a]
-        for k in range(len(point)):
-            point[k] = fixed[label, k]
-    for a in range(0 if by_length else first, len(columns)):
-        if columns[a] >= 0:
-            point[columns[a]] = values[a, index[a]]
-    if inner:
-        point[FIBERS] = point[RADIUS]
-    if by_length:
-        point[HELD] /= point[LENGTH]
+class GridStates:
+    """Uniform states of a grid, made and kept once for axes that they do not vary with (``without``)."""
 
+    def __init__(self, points: GridPoints, kind, shear, without):
+        axes = [
+            axis for axis, column in zip(points.axes, points.columns) if column < 0 or COLUMNS[column] not in without
+        ]
+        columns = [column for column in points.columns if column < 0 or COLUMNS[column] not in without]
+        self.shape = tuple(n if c < 0 or COLUMNS[c] not in without else 1 for n, c in zip(points.shape, points.columns))
+        fixed = points.fixed.copy()
+        for axis, column in zip(points.axes, points.columns):
+            if column >= 0 and COLUMNS[column] in without:
+                fixed[:, column] = axis.values[0]
+        own = GridPoints(axes, columns, fixed, points.inner, points.by_length)
+        found = []
+        for slab in own.slabs():
+            found.append(np.empty((len(slab), UNIFORM)))
+            uniform_states(kind, slab, shear, found[-1])
+        self.states = np.concatenate(found).reshape(*self.shape, UNIFORM)
+        self.whole = points.shape
 
-@entry_point
-def grid_states(kind, grid, shear, out):
-    """:func:`uniform` at all nodes of a grid into ``out`` (nodes, UNIFORM)."""
-    shape = grid[3]
-    index, point, first = np.zeros(len(shape), np.int64), np.empty(len(COLUMNS)), 0
-    for at in range(len(out)):
-        _put_node(grid, index, first, point)
-        uniform(kind, point, shear, out[at])
-        first = _next_node(index, shape)
-
-
-@entry_point
-def grid_effects(variable, kind, grid, states, strides, stored, errors, effects, noise):
-    """:func:`end_effects` at all nodes of a grid; ``states`` has ``strides`` (d,) of its own, 0 along axes it lacks."""
-    shape = grid[3]
-    index, point, first = np.zeros(len(shape), np.int64), np.empty(len(COLUMNS)), 0
-    state = np.empty(UNIFORM)
-    for at in range(len(stored)):
-        _put_node(grid, index, first, point)
-        own = 0
-        for a in range(len(shape)):
-            own += index[a] * strides[a]
-        for k in range(UNIFORM):
-            state[k] = states[own, k]
-        effects[at], noise[at] = end_effect(variable, kind, point, state, stored[at], errors[at])
-        first = _next_node(index, shape)
+    def slab(self, k):
+        """States (slab, UNIFORM) of one slab of the whole grid."""
+        states = self.states[min(k, self.shape[0] - 1)]
+        return np.ascontiguousarray(np.broadcast_to(states, (*self.whole[1:], UNIFORM))).reshape(-1, UNIFORM)

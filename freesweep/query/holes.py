@@ -20,110 +20,120 @@ MIXED = 255  # code of a cell whose nodes do not agree
 
 
 @kernel
-def _along(values, good, at, index, count, step, nodes):
-    """``(value, sides)`` at a hole from the nearest known nodes along one axis; sides 0 if there are too few."""
-    xs, fs = np.empty(2 * BETWEEN), np.empty(2 * BETWEEN)
-    sides, found = 0, 0
-    for side in (-1, 1):
-        mine = 0
-        for distance in range(1, REACH + 1):
-            i = index + side * distance
-            if 0 <= i < count and mine < BETWEEN and good[at + side * distance * step]:
-                xs[found], fs[found] = nodes[i], values[at + side * distance * step]
-                found += 1
-                mine += 1
-        sides += 1 if mine > 0 else 0
-    if sides == 1:  # polynomials of high degree are wild beyond their nodes
-        found = 0
-        for distance in range(1, REACH + 1):
-            for side in (-1, 1):
-                i = index + side * distance
-                if 0 <= i < count and found < BEYOND and good[at + side * distance * step]:
-                    xs[found], fs[found] = nodes[i], values[at + side * distance * step]
-                    found += 1
-    if found < 3:
-        return 0.0, 0
+def _through(xs, fs, found, x, left_out):
+    """The polynomial through ``found`` nodes, one of them left out (-1: none), at one place."""
     total = 0.0
     for j in range(found):
         weight = 1.0
         for k in range(found):
-            if k != j:
-                weight *= (nodes[index] - xs[k]) / (xs[j] - xs[k])
-        total += weight * fs[j]
-    return total, sides
+            if k != j and k != left_out:
+                weight *= (x - xs[k]) / (xs[j] - xs[k])
+        if j != left_out:
+            total += weight * fs[j]
+    return total
 
 
 @entry_point
-def fill(values, shape, strides, nodes):
-    """Put numbers on the NaN of ``values`` (nodes,) that lie beside numbers; between nodes rather than beyond them."""
-    d, total = len(shape), len(values)
-    good = np.isfinite(values)
-    for _ in range(SWEEPS):
-        put, numbers = [np.int64(0) for _ in range(0)], [0.0 for _ in range(0)]
-        for at in range(total):
-            if good[at]:
+def fill_once(values, bad, shape, strides, nodes, numbers, doubts):
+    """Numbers for the NaN of ``values`` (nodes,) at ``bad`` (k,) that lie beside numbers, into ``numbers`` (k,).
+
+    Between nodes rather than beyond them; NaN where nothing is beside. ``doubts`` (k,): what the farthest node changes.
+    """
+    xs, fs = np.empty(2 * BETWEEN), np.empty(2 * BETWEEN)
+    for k in range(len(bad)):
+        at, most, many = bad[k], 0, 0
+        total, doubt = 0.0, 0.0
+        for a in range(len(shape)):
+            count, step = shape[a], strides[a]
+            index = (at // step) % count
+            below = above = beside = False
+            for j in range(max(0, index - REACH), min(count, index + REACH + 1)):
+                if math.isfinite(values[at + (j - index) * step]):
+                    below, above, beside = below or j < index, above or j > index, beside or abs(j - index) == 1
+            sides = (1 if below else 0) + (1 if above else 0) if beside else 0
+            found, before = np.int64(0), np.int64(0)
+            for place in range(2 * REACH):
+                far = place // 2 + 1
+                side = -1 if place % 2 == 0 else 1
+                i = index + side * far
+                room = before < BETWEEN if side < 0 else found - before < BETWEEN
+                if sides == 1:  # polynomials of high degree are wild beyond their nodes
+                    room = found < BEYOND
+                if room and 0 <= i < count and math.isfinite(values[at + side * far * step]):
+                    xs[found], fs[found] = nodes[a, i], values[at + side * far * step]
+                    found += 1
+                    before += 1 if side < 0 else 0
+            if sides == 0 or found < 3 or sides < most:
                 continue
-            best, sides, many = 0.0, 0, 0
-            for a in range(d):
-                index = (at // strides[a]) % shape[a]
-                step, count = strides[a], shape[a]
-                beside = (index > 0 and good[at - step]) or (index + 1 < count and good[at + step])
-                if not beside or count < 3:
-                    continue
-                value, own_sides = _along(values, good, at, index, count, step, nodes[a])
-                if own_sides > sides:
-                    best, sides, many = value, own_sides, 1
-                elif own_sides == sides and sides > 0:
-                    best += value
-                    many += 1
-            if many > 0 and math.isfinite(best):
-                put.append(at)
-                numbers.append(best / many)
-        if len(put) == 0:
+            if sides > most:
+                most, many, total, doubt = sides, 0, 0.0, 0.0
+            farthest = np.int64(0)
+            for j in range(found):
+                if abs(xs[j] - nodes[a, index]) > abs(xs[farthest] - nodes[a, index]):
+                    farthest = j
+            value, other = 0.0, 0.0
+            for turn in range(2):
+                left_out = -1 if turn == 0 else farthest
+                value, other = other, _through(xs, fs, found, nodes[a, index], left_out)
+            total += value
+            many += 1
+            doubt = max(doubt, abs(value - other))
+        numbers[k] = total / many if many > 0 else math.nan
+        doubts[k] = doubt
+
+
+def fill(values, shape, strides, nodes):
+    """Put numbers on the NaN of ``values`` (nodes,) that lie beside numbers; returns how doubtful each is (nodes,)."""
+    bad, doubt = np.flatnonzero(~np.isfinite(values)), np.zeros(len(values), np.float32)
+    for _ in range(SWEEPS):
+        if not len(bad):
             break
-        for k in range(len(put)):
-            values[put[k]] = numbers[k]
-            good[put[k]] = True
+        numbers, doubts = np.empty((2, len(bad)))
+        fill_once(values, bad, shape, strides, nodes, numbers, doubts)
+        put = np.isfinite(numbers)
+        values[bad[put]], doubt[bad[put]] = numbers[put], doubts[put]
+        bad = bad[~put]
+        if put.sum() == 0:
+            break
+    return doubt
 
 
-@kernel
-def _short_slope(values, at, index, count, step, widths):
-    """Slope at a node from the nodes next to it; NaN if there are none."""
-    before, after = math.nan, math.nan
-    if index > 0:
-        before = (values[at] - values[at - step]) / widths[index - 1]
-    if index + 1 < count:
-        after = (values[at + step] - values[at]) / widths[index]
-    if math.isfinite(before) and math.isfinite(after):
-        h, k = widths[index - 1], widths[index]
-        return (k * before + h * after) / (h + k)
-    return before if math.isfinite(before) else after
+def slopes(values, axis, step, out):
+    """Slopes of ``values`` (nodes,) along an axis with nodes ``step`` apart, into ``out`` (nodes,).
+
+    Where the window of a node has holes, from the nodes next to it.
+    """
+    count, widths = len(axis.nodes), np.append(np.diff(axis.nodes), 1.0)
+    weights = axis.left / widths[:, None]
+    weights[-1] = axis.right[-2] / widths[-2]
+    first = np.append(axis.first[:-1], axis.first[-2])
+    weigh(values, count, step, first, weights, out)
+    lost = np.flatnonzero(~np.isfinite(out))
+    index = (lost // step) % count
+    here, h, k = values[lost], widths[index - 1], widths[index]
+    before = np.where(index > 0, (here - values[lost - step]) / h, np.nan)
+    after = np.where(index + 1 < count, (values[np.minimum(lost + step, len(values) - 1)] - here) / k, np.nan)
+    both = (k * before + h * after) / (h + k)
+    out[lost] = np.where(np.isfinite(both), both, np.where(np.isfinite(before), before, after))
 
 
 @entry_point
-def slopes(values, count, step, first, left, right, widths, out):
-    """Slopes of ``values`` (nodes,) along an axis of ``count`` nodes, ``step`` apart, into ``out`` (nodes,).
+def weigh(values, count, step, first, weights, out):
+    """Sums over the windows of the pieces of an axis, weighed, into ``out`` (nodes,); ``weights`` (count, WINDOW).
 
-    Where the window of a node has holes, from fewer nodes.
+    Numbers of weight zero do not count, whatever they are.
     """
     size = min(WINDOW, count)
     for block in range(len(values) // (count * step)):
-        for index in range(count):
-            piece = index if index < count - 1 else count - 2
-            weights = (left if index == piece else right)[piece]
-            at = (block * count + index) * step
-            out[at : at + step] = 0.0
-            for j in range(size):
-                if weights[j] != 0.0:
-                    weight, there = weights[j] / widths[piece], (block * count + first[piece] + j) * step
-                    if step == 1:
-                        out[at] += weight * values[there]
-                    else:
-                        for k in range(step):
-                            out[at + k] += weight * values[there + k]
+        for piece in range(count):
+            at = (block * count + piece) * step
             for k in range(at, at + step):
-                if not math.isfinite(out[k]):
-                    out[k] = _short_slope(values, k, index, count, step, widths)
+                out[k] = 0.0
+            for j in range(size):
+                weight, apart = weights[piece, j], (first[piece] + j - piece) * step
+                if weight != 0.0:
+                    for k in range(at, at + step):
+                        out[k] += weight * values[k + apart]
 
 
 @kernel
@@ -137,39 +147,38 @@ def _common(code, other):
     return MIXED
 
 
-@entry_point
-def cell_codes(codes, shape, strides, labels, cells):
-    """Common code of the nodes at each cell's corners into ``cells`` (nodes,), MIXED where they differ."""
-    for at in range(len(codes)):
-        cells[at] = codes[at]
-    for a in range(len(shape)):
-        if not labels[a]:
-            count, step = shape[a], strides[a]
-            for block in range(len(codes) // (count * step)):
-                for at in range(block * count * step, ((block + 1) * count - 1) * step):
-                    if cells[at] != cells[at + step]:
-                        cells[at] = _common(cells[at], cells[at + step])
+def cell_codes(codes, shape, labels):
+    """Common code of the nodes at each cell's corners, (nodes,) as ``codes``, MIXED where they differ."""
+    cells = codes.reshape(shape).copy()
+    for a in np.flatnonzero(~np.asarray(labels)):
+        here, other = np.moveaxis(cells, a, 0)[:-1], np.moveaxis(cells, a, 0)[1:]
+        apart = here != other
+        if apart.any():
+            one, two = here[apart], other[apart]
+            states = [(code & 15 == OK) | (code & 15 == INACCURATE) for code in (one, two)]
+            alike = (one != MIXED) & (two != MIXED) & (one >> 4 == two >> 4) & states[0] & states[1]
+            here[apart] = np.where(alike, one & 240 | INACCURATE, MIXED)
+    return cells.ravel()
 
 
 @kernel
-def corner_code(codes, cells, strides, pieces, shares, k, cell):
-    """Code of the nodes that located point k lies between; MIXED where they differ."""
-    d = len(strides)
-    inside = True
+def corner_code(codes, cells, which, strides, pieces, shares, k, cell):
+    """Code of the nodes that located point k lies between; MIXED where they differ. ``codes`` and ``cells``: (2, nodes)."""
+    d, inside = len(strides), True
     for a in range(d):
         inside = inside and 0.0 < shares[k, a] < 1.0
-    if inside or cells[cell] != MIXED:
-        return cells[cell]
-    code, first = MIXED, True
+    code = np.int64(cells[which, cell])
+    if inside or code != MIXED:
+        return code
+    first = True
     for corner in range(1 << d):
         i, used = cell, True
         for a in range(d):
             up = corner >> a & 1
-            if (up and shares[k, a] == 0.0) or (not up and shares[k, a] == 1.0):
-                used = False
-                break
+            used = used and shares[k, a] != (0.0 if up == 1 else 1.0)
             i += up * strides[a]
         if used:
-            code = codes[i] if first else _common(code, codes[i])
+            other = np.int64(codes[which, i])
+            code = other if first else _common(code, other)
             first = False
     return code

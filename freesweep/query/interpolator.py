@@ -112,9 +112,9 @@ class Interpolator:
             for sign in (-1.0, 1.0):
                 points, states = inquiry.points.copy(), np.empty_like(inquiry.states)
                 points[:, column] += sign * steps
-                if own == "radius" and table.options[2]:
+                if own == "radius" and table.options[0]:
                     points[:, reference.FIBERS] = points[:, reference.RADIUS]
-                reference.uniform_states(family.kind, points, table.options[1], states)
+                reference.uniform_states(family.kind, points, table.shear, states)
                 end = np.empty((3, inquiry.size))
                 _restore(table, name, points, states, effects + sign * steps * rate, end)
                 ends.append(end[0])
@@ -135,4 +135,4 @@ def _restore(table, name, points, states, effects, out):
     """Values at end effects (n,) into ``out[0]``."""
     nothing = np.zeros(len(effects))
     args = (effects, nothing, nothing, out[0], out[1], out[2])
-    reference.restore_all(table.family.variables[name], table.family.kind, points, states, *args)
+    reference.restore_all(table.family.variables[name], points, states, *args)

@@ -1,4 +1,4 @@
-"""Where points lie in a table: folded by symmetry, located, checked, with the uniform state that stands behind them.
+"""Where points lie in a table: folded by symmetry, located, checked.
 
 ``asked`` (n, k) holds what a table knows of each point, columns in the order of ``Table.known``; ``kinds`` (k, 3) says of
 each the column of a point (-1: the design), the axis of the table (-1: none), and 1 if it turns with both angles.
@@ -12,8 +12,8 @@ from ..jit import entry_point, kernel
 from ..status import DEGENERATE, INACCURATE, INVALID, NOT_INTERPOLABLE, OK, OUTSIDE
 from .axis import LABEL
 from .holes import MIXED, corner_code
-from .reference import ALPHA, BETA, FIBERS, HELD, LENGTH, RADIUS, uniform
-from .tensor import INSIDE, NO_NUMBER, PLACE, locate
+from .reference import ALPHA, BETA, FIBERS, HELD, LENGTH, RADIUS
+from .tensor import BELOW, INSIDE, NO_NUMBER, PLACE, locate
 
 NEAR = 1e-12  # relative: what counts as the value that an atlas fixes, or as the end of an axis
 LARGEST, CLOSEST = 90.0, 0.5 * (1.0 - 1e-9)  # [degree] of a fiber angle, of two
@@ -28,119 +28,97 @@ def within(x, low, high):
 
 @kernel
 def image(asked, k, a, b, swap, turn, kinds, ranges, out):
-    """Put one image of point k into ``out`` (k,); whether what turns with it lies in the table."""
+    """Put one image of point k into ``out`` (k,); whether its angles, and what turns with them, lie in the table."""
     sign = -1.0 if turn else 1.0
     good = True
     for j in range(len(out)):
-        x = asked[k, j]
-        if j == a:
-            x = sign * (asked[k, b] if swap else x) + 0.0
-        elif j == b:
-            x = sign * (asked[k, a] if swap else x) + 0.0
-        elif turn and kinds[j, 2] == 1:
-            x = 0.0 - x
-        out[j] = x
-        if j == a or j == b or (turn and kinds[j, 2] == 1):
+        angle, turns = j == a or j == b, turn and kinds[j, 2] == 1
+        x = asked[k, a + b - j if angle and swap else j]
+        if angle or turns:
+            x = sign * x + 0.0
             good = good and within(x, ranges[j, 0], ranges[j, 1])
+        out[j] = x
     return good
-
-
-@kernel
-def touches_diagonal(alpha, beta, i, j, knots, pieces, shares, k):
-    """Whether the cell of point k holds designs with one fiber family only, or nearly so; angles on axes i and j."""
-    a0, a1, b0, b1 = alpha, alpha, beta, beta
-    if i >= 0 and 0.0 < shares[k, i] < 1.0:
-        a0, a1 = knots[i, pieces[k, i], PLACE], knots[i, pieces[k, i] + 1, PLACE]
-    if j >= 0 and 0.0 < shares[k, j] < 1.0:
-        b0, b1 = knots[j, pieces[k, j], PLACE], knots[j, pieces[k, j] + 1, PLACE]
-    return a0 - b1 < CLOSEST and a1 - b0 > -CLOSEST
 
 
 @entry_point
 def place(
-    asked, kinds, ranges, fixed, options, knots, counts, coordinates, strides, codes, cells, slack, slack_cells, points,
-    states, pieces, shares, marks,
+    asked, kinds, ranges, fixed, options, knots, counts, coordinates, strides, codes, cells, points, pieces, shares, marks,
 ):  # fmt: skip
     """Place points (n, k) in a table.
 
-    ``fixed`` (designs, 15): what the atlas fixes of a point. ``options``: kind of state, shear, whether the fibers lie at
-    the inner radius, whether HELD is given as a length, whether there are statuses. ``codes`` and ``slack``: of the nodes,
-    and of their cells. Out: ``points`` (n, 15), ``states`` (n, UNIFORM), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7):
-    status, code, code of slack fibers, cell, node (-1: between nodes), 1 if exchanged, 1 if mirrored.
+    ``fixed`` (designs, 15): what the atlas fixes of a point. ``options``: whether fibers lie at the inner radius, whether
+    HELD is given as a length, whether there are statuses; which of what is asked are both angles and the design (-1: none).
+    ``codes`` and ``cells`` (2, nodes): codes, and those of slack fibers, of the nodes and of their cells. Out: ``points``
+    (n, 15), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7): status, code, code of slack fibers, cell, node (-1: between
+    nodes), 1 if exchanged, 1 if mirrored.
     """
-    kind, shear, inner, by_length, has_status = options
-    many, d = asked.shape[1], len(strides)
-    row, point, state = np.empty(many), np.empty(points.shape[1]), np.empty(states.shape[1])
-    a = b = design = -1
-    for j in range(many):
-        if kinds[j, 0] == ALPHA:
-            a = j
-        elif kinds[j, 0] == BETA:
-            b = j
-        elif kinds[j, 0] == -1:
-            design = j
+    inner, by_length, has_status, a, b, design = options
+    d, many = len(strides), asked.shape[1]
+    row = np.empty(many)
+    angles = a >= 0 and b >= 0
     for k in range(len(asked)):
-        status = -1
-        exchanged, mirrored = False, False
-        image(asked, k, -1, -1, False, False, kinds, ranges, row)
-        if a >= 0 and b >= 0 and not image(asked, k, a, b, False, False, kinds, ranges, row):
-            found = False
-            for way in range(1, 4):
-                if image(asked, k, a, b, way != 2, way > 1, kinds, ranges, row):
-                    exchanged, mirrored, found = way != 2, way > 1, True
-                    break
-            if not found:
-                image(asked, k, -1, -1, False, False, kinds, ranges, row)
-                status = OUTSIDE
+        status, exchanged, mirrored = -1, False, False
+        for way in range(5):  # as it is, exchanged, mirrored, both, and as it is if the table holds none of them
+            exchanged, mirrored = way == 1 or way == 3, way == 2 or way == 3
+            found = image(asked, k, a, b, exchanged, mirrored, kinds, ranges, row)
+            if found or not angles:
+                break
+            status = OUTSIDE if way == 4 else -1
         label = row[design] if design >= 0 else 0.0
-        known = 0.0 <= label < len(fixed)
-        for i in range(len(point)):
-            point[i] = fixed[int(label) if known else 0, i]
-        for i in range(d):
-            pieces[k, i], shares[k, i] = 0, 0.0
-        bad = not known
+        bad = not 0.0 <= label < len(fixed)
+        for i in range(fixed.shape[1]):
+            points[k, i] = fixed[0 if bad else int(label), i]
+        least, most = (
+            0.0,
+            0.0,
+        )  # alpha - beta in the cell: does it hold designs with one fiber family only, or nearly so?
         for j in range(many):
-            x = row[j]
-            column, axis = kinds[j, 0], kinds[j, 1]
+            x, column, axis = row[j], kinds[j, 0], kinds[j, 1]
             bad = bad or math.isnan(x)
-            if column >= 0:
-                point[column] = x
+            where, low, high = INSIDE, x, x
             if axis >= 0:
-                pieces[k, axis], shares[k, axis], where = locate(x, knots, axis, coordinates[axis], counts[axis])
-                if where != INSIDE and where != NO_NUMBER:
-                    status = OUTSIDE
+                piece, share, where = locate(x, knots, axis, coordinates[axis], counts[axis])
+                pieces[k, axis], shares[k, axis] = piece, share
+                if 0.0 < share < 1.0:
+                    low, high = knots[axis, piece, PLACE], knots[axis, piece + 1, PLACE]
             elif column >= 0 and not within(x, ranges[j, 0], ranges[j, 1]):
+                where = BELOW
+            if where != INSIDE and where != NO_NUMBER:
                 status = OUTSIDE
+            if column >= 0:
+                points[k, column] = x
+            if j == a:
+                least, most = least + low, most + high
+            elif j == b:
+                least, most = least - high, most - low
         if inner:
-            point[FIBERS] = point[RADIUS]
+            points[k, FIBERS] = points[k, RADIUS]
         if by_length:
-            point[HELD] /= point[LENGTH]
+            points[k, HELD] /= points[k, LENGTH]
         if bad:
             status = INVALID
-        cell, node, exact = 0, 0, True
+        cell, node, exact = np.int64(0), np.int64(0), True
         for i in range(d):
+            share = shares[k, i]
             cell += pieces[k, i] * strides[i]
-            node += (pieces[k, i] + (1 if shares[k, i] == 1.0 else 0)) * strides[i]
-            exact = exact and (coordinates[i] == LABEL or shares[k, i] == 0.0 or shares[k, i] == 1.0)
-        code = corner_code(codes, cells, strides, pieces, shares, k, cell)
-        of_slack = corner_code(slack, slack_cells, strides, pieces, shares, k, cell) if len(slack) > 0 else MIXED
+            node += (pieces[k, i] + (1 if share == 1.0 else 0)) * strides[i]
+            exact = exact and (coordinates[i] == LABEL or share == 0.0 or share == 1.0)
+        for which in range(2):
+            marks[k, 1 + which] = corner_code(codes, cells, which, strides, pieces, shares, k, cell)
+        code = marks[k, 1]
         if status < 0:
             status = NOT_INTERPOLABLE if code == MIXED else code & 15 if has_status else OK
             if not exact:
                 if status != OK and status != INACCURATE:
                     status = NOT_INTERPOLABLE
-                if a >= 0 and b >= 0:
-                    alpha, beta = point[ALPHA], point[BETA]
+                if angles:
+                    alpha, beta = points[k, ALPHA], points[k, BETA]
                     if alpha == beta:
                         status = DEGENERATE
                     elif abs(alpha - beta) < CLOSEST or max(abs(alpha), abs(beta)) >= LARGEST:
                         status = INVALID
-                    elif touches_diagonal(alpha, beta, kinds[a, 1], kinds[b, 1], knots, pieces, shares, k):
+                    elif least < CLOSEST and most > -CLOSEST:
                         status = NOT_INTERPOLABLE
-        uniform(kind, point, shear, state)
-        for i in range(len(point)):
-            points[k, i] = point[i]
-        for i in range(len(state)):
-            states[k, i] = state[i]
-        marks[k, 0], marks[k, 1], marks[k, 2], marks[k, 3] = status, code, of_slack, cell
-        marks[k, 4], marks[k, 5], marks[k, 6] = node if exact else -1, exchanged, mirrored
+        marks[k, 0], marks[k, 3], marks[k, 4] = status, cell, node if exact else -1
+        marks[k, 5], marks[k, 6] = exchanged, mirrored

@@ -1,6 +1,7 @@
 """What an atlas answers at any point: numbers with their stated error, or the status that says why there is none."""
 
 import os
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
@@ -73,21 +74,24 @@ class Reader:
                 full[name] = np.full(size, only)
         return full
 
-    def answer(self, values, size, names, method=CUBIC, tolerance=None) -> dict:
-        """Name -> (n,) of numbers, errors, statuses and flags; ``values``: axis -> (n,)."""
+    def answer(self, values, size, names, method=CUBIC, tolerance=None, coarse=None) -> dict:
+        """Name -> (n,) of numbers, errors, statuses and flags; ``values``: axis -> (n,).
+
+        ``coarse``, a list, gets the axes whose nodes lie too far apart for the tolerance: names, and at how many points.
+        """
         values = self.complete(values, size)
         tolerance = self.tolerance if tolerance is None else tolerance
         found = {}
         for key in FAMILIES:
             own = [name for name in names if FAMILY_OF.get(name) == key]
             if own:
-                found |= self._in_chunks(self.table(key, values), values, size, own, method, tolerance)
+                found |= self._in_chunks(self.table(key, values), values, size, own, method, tolerance, coarse)
         for name in names:
             if name in IDEAL:
                 found |= ideal_answer(self.frame, name, values)
         return found
 
-    def _in_chunks(self, table, values, size, names, method, tolerance):
+    def _in_chunks(self, table, values, size, names, method, tolerance, coarse):
         bounds = [*range(0, size, CHUNK), size]
         if ALONE < size <= CHUNK:
             bounds = [0, size // 2, size]
@@ -95,24 +99,27 @@ class Reader:
 
         def one(part):
             own = {name: values[name][slice(*part)] for name in table.known}
-            return self._answer_chunk(table, own, names, method, tolerance)
+            return self._answer_chunk(table, own, names, method, tolerance, coarse)
 
         if len(parts) == 1:
             return one(parts[0])
-        for name in (*names, *(("mid_radius",) if len(table.slack) else ())):
+        for name in (*names, *(("mid_radius",) if table.has_slack else ())):
             table.variable(name)  # made here, not by two threads
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             answers = list(pool.map(one, parts))
         return {name: np.concatenate([answer[name] for answer in answers]) for name in answers[0]}
 
     @np.errstate(all="ignore")  # whatever a file holds: what is no number is refused
-    def _answer_chunk(self, table, values, names, method, tolerance):
+    def _answer_chunk(self, table, values, names, method, tolerance, coarse):
         inquiry = Inquiry(table, values, method)
         flags = inquiry.flags()
         found, too_large = {}, np.zeros(inquiry.size, bool)
         for name in names:
             value, error = inquiry.answer(name, self.factors(name))
-            too_large |= inquiry.exceeds(name, value, error, tolerance)
+            exceeds = inquiry.exceeds(name, value, error, tolerance)
+            if coarse is not None:
+                inquiry.blame(name, exceeds & ~too_large & inquiry.valued, self.factors(name).scales, coarse)
+            too_large |= exceeds
             found[name], found[f"{name}_error"] = value, error
         status = inquiry.status.astype(np.int8)
         valued = inquiry.valued
@@ -157,7 +164,8 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
     if faults:
         raise QueryError(faults)
     question = read_question(axes, reader.frame, reader.needed(names))
-    found = reader.answer(question.values, question.size, names, method)
+    coarse = []
+    found = reader.answer(question.values, question.size, names, method, coarse=coarse)
     _refuse_single(reader, question, found)
     if refine:
         from .refine import refine_answers
@@ -167,7 +175,13 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
         name: xr.Variable(question.dims, array.reshape(question.shape), reader.attributes(name))
         for name, array in found.items()
     }
-    result = xr.Dataset(dataset, _coordinates(reader, question, axes), {"title": reader.frame.title, "method": method})
+    attrs = {"title": reader.frame.title, "method": method}
+    if coarse and not refine:
+        counts = Counter()
+        for name, count in coarse:
+            counts[name] += count
+        attrs["too_coarse"] = ", ".join(f"{name} ({count:,})" for name, count in counts.most_common())
+    result = xr.Dataset(dataset, _coordinates(reader, question, axes), attrs)
     if x is not None:
         from .refine import profiles
 

@@ -9,6 +9,8 @@ Volumes and the middle's radius, which the ends may change by decades, are taken
 
 import math
 
+import numpy as np
+
 from ..jit import entry_point, kernel
 from .uniform_tube import energy, kinematics, locked_squared_stretch, squared_stretch
 
@@ -22,11 +24,12 @@ ALPHA, BETA, LENGTH, RADIUS, WALL, FIBERS, EXTENSION, C10, C01, FORCE, TORQUE, P
 NONE, LOADED, LOCKED, LENGTH_HELD, ROTATION_HELD = range(5)  # kinds of states
 PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE = range(8)  # of variables
 
-UNIFORM = 8  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier
+UNIFORM = 9  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier and its rounding
 TINY = 1e-5  # what the middle of a long tube lacks is not told from nothing below it, of its swelling
 CANCELLATION = 1e-15  # of the energy of a unit of strain
 ROUNDING = 1e-13  # of a value, and of the closed form
 OF_RADIUS = 1e-15  # the same in the middle, whose stretch is the root itself: no large numbers cancel
+OF_STRETCH = 3e-15  # of q, against fifty digits: what is told of q - 1 at small loads is no more exact than that
 LEAST = 1e-7  # q - 1 or H below it: what the ends add cannot be told from rounding
 
 
@@ -45,7 +48,8 @@ def uniform(kind, point, shear, out):
     area = ((point[RADIUS] + point[WALL]) ** 2 - point[RADIUS] ** 2) / (r * r)
     rubber, p = rubber_at(point), point[PRESSURE] / c10
     f, m = point[FORCE] / (math.pi * r * r * c10), point[TORQUE] / (math.pi * r * r * r * c10)
-    out[:] = math.nan
+    for k in range(UNIFORM):
+        out[k] = math.nan
     out[0], out[1], out[2] = h, ta * tb, area
     q = math.nan
     if kind == NONE or d == 0.0:
@@ -64,21 +68,24 @@ def uniform(kind, point, shear, out):
     if not q > 0.0:
         return
     state = kinematics(q, h, d, gamma)
-    w, w1, _ = energy(q, state, rubber, shear)
+    w, w1, w2 = energy(q, state, rubber, shear)
     if not state[0] > 0.0:
         return
     s = math.sqrt(state[0])
     s1 = 0.5 * state[1] / s
     out[3], out[4], out[5], out[6] = q, s, state[3], w
+    out[8] = OF_STRETCH * q * area * abs(w2)
     if kind == LENGTH_HELD:
+        out[8] /= abs(s1)
         out[7] = -(p * (s + q * s1) - area * w1 + m * state[4]) / s1
     elif kind == ROTATION_HELD:
+        out[8] /= abs(state[4])
         out[7] = -(p * s + (p * q + f) * s1 - area * w1) / state[4]
 
 
 @kernel
-def reference(variable, kind, point, u):
-    """``(offset, base, scale)`` of a variable where the uniform state is ``u``, for :func:`restore`; SI units, degrees."""
+def reference(variable, point, u):
+    """``(offset, base, scale)`` of a variable where the uniform state is ``u``; SI units, degrees."""
     r, length = point[FIBERS], point[LENGTH]
     q = u[3]
     if variable == PLAIN:
@@ -105,23 +112,6 @@ def reference(variable, kind, point, u):
     return torque * u[7], 0.0, torque / u[0]
 
 
-@kernel
-def restore(offset, base, scale, effect):
-    """``(value, slope)`` of a variable at an end effect, the slope by the end effect."""
-    if base == 0.0:
-        return offset + scale * effect, scale
-    part = base * math.exp(scale * effect)
-    return offset + part, scale * part
-
-
-@kernel
-def _inverse(stored, offset, base, scale):
-    if base == 0.0:
-        return (stored - offset) / scale
-    part = (stored - offset) / base
-    return math.log(part) / scale if part > 0.0 else math.nan
-
-
 @entry_point
 def uniform_states(kind, points, shear, out):
     """:func:`uniform` of points (n, 15) into ``out`` (n, UNIFORM)."""
@@ -130,49 +120,75 @@ def uniform_states(kind, points, shear, out):
 
 
 @entry_point
-def restore_all(variable, kind, points, states, effects, rests, noise, values, estimates, bounds):
+def references(variable, points, states, terms):
+    """:func:`reference` of points (n, 15) with uniform states (n, UNIFORM) into ``terms`` (n, 3)."""
+    for k in range(len(points)):
+        terms[k, 0], terms[k, 1], terms[k, 2] = reference(variable, points[k], states[k])
+
+
+def restore_all(variable, points, states, effects, rests, noise, values, estimates, bounds):
     """From interpolated end effects (n,), what the next order would add and their bounds, to values and theirs, (n,) each.
 
     ``points`` (n, 15) with uniform states (n, UNIFORM).
     """
-    for k in range(len(points)):
-        offset, base, scale = reference(variable, kind, points[k], states[k])
-        value, slope = restore(offset, base, scale, effects[k])
+    terms = np.empty((len(points), 3))
+    references(variable, points, states, terms)
+    _restore(variable, points, states, terms, effects, rests, noise, values, estimates, bounds)
+
+
+def end_effects(variable, kind, points, states, stored, errors, effects, noise):
+    """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); NaN where the neighbours have to say."""
+    terms = np.empty((len(points), 3))
+    references(variable, points, states, terms)
+    _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise)
+
+
+@entry_point
+def _restore(variable, points, states, terms, effects, rests, noise, values, estimates, bounds):
+    for k in range(len(effects)):
+        offset, base, scale = terms[k, 0], terms[k, 1], terms[k, 2]
+        part = base * math.exp(scale * effects[k]) if base != 0.0 else scale * effects[k]
+        slope = scale * part if base != 0.0 else scale
+        value, rounding = offset + part, ROUNDING
         estimate = abs(slope) * rests[k]
         if base != 0.0:
-            estimate = abs(value - offset) * math.expm1(min(abs(scale) * rests[k], 50.0))
-        rounding = ROUNDING
+            estimate = abs(part) * math.expm1(min(abs(scale) * rests[k], 50.0))
+        r, length = points[k, FIBERS], points[k, LENGTH]
         if variable == MID_RADIUS:  # below TINY what the middle lacks is a guess, which may be wrong by all of it
             lack = abs(math.exp(effects[k]) - TINY)
             estimate += abs(base) * lack / (1.0 + lack / TINY)
             rounding = OF_RADIUS
-        elif variable == ENERGY and base + scale != 0.0:  # invariants less three: of a tube near rest little is left
+        elif variable == ROTATION:
+            estimate += OF_STRETCH * math.degrees(length / r * abs(states[k, 0]))
+        elif variable == ENERGY and (states[k, 3] != 1.0 or points[k, PRESSURE] != 0.0):
+            # invariants less three: of a tube near rest little is left
             stiffness = points[k, C10] + points[k, C01]
-            volume = math.pi * points[k, FIBERS] ** 2 * states[k, 2] * points[k, LENGTH]
-            estimate += CANCELLATION * stiffness * volume
-        noise_slope = base if variable == MID_RADIUS else slope
-        values[k], estimates[k], bounds[k] = value, estimate, abs(noise_slope) * noise[k]
-        estimates[k] += rounding * (abs(value) + abs(offset) + abs(base))
-
-
-@kernel
-def end_effect(variable, kind, point, u, stored, error):
-    """``(end effect, its bound)`` of a stored number and its bound; NaN where it cannot be told."""
-    shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE
-    if kind == LOADED and point[PRESSURE] == 0.0 and u[3] == 1.0 and shape:
-        # at rest; the width of the end layer goes with the square root of pressure
-        return math.log(TINY) if variable == MID_RADIUS else 0.0, 0.0
-    if (shape and abs(u[3] - 1.0) < LEAST) or (variable == ROTATION and abs(u[0]) < LEAST):
-        return math.nan, 0.0
-    offset, base, scale = reference(variable, kind, point, u)
-    effect = _inverse(stored, offset, base, scale)
-    _, slope = restore(offset, base, scale, effect)
-    noise = error / abs(base if variable == MID_RADIUS else slope)
-    return (effect, noise) if math.isfinite(effect) and math.isfinite(noise) else (math.nan, 0.0)
+            estimate += CANCELLATION * stiffness * math.pi * r * r * states[k, 2] * length
+        elif variable == HOLDING_FORCE or variable == HOLDING_TORQUE:
+            estimate += math.pi * r * r * points[k, C10] * states[k, 8] * (1.0 if variable == HOLDING_FORCE else r)
+        values[k], bounds[k] = value, abs(base if variable == MID_RADIUS else slope) * noise[k]
+        estimates[k] = estimate + rounding * (abs(value) + abs(offset) + abs(base))
 
 
 @entry_point
-def end_effects(variable, kind, points, states, stored, errors, effects, noise):
-    """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); NaN where the neighbours have to say."""
+def _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise):
+    shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE
     for k in range(len(stored)):
-        effects[k], noise[k] = end_effect(variable, kind, points[k], states[k], stored[k], errors[k])
+        offset, base, scale = terms[k, 0], terms[k, 1], terms[k, 2]
+        q = states[k, 3]
+        effect, bound = math.nan, 0.0
+        if kind == LOADED and points[k, PRESSURE] == 0.0 and q == 1.0 and shape:
+            # at rest; the width of the end layer goes with the square root of pressure
+            effect = math.log(TINY) if variable == MID_RADIUS else 0.0
+        elif not (shape and abs(q - 1.0) < LEAST) and not (variable == ROTATION and abs(states[k, 0]) < LEAST):
+            slope = scale
+            if base == 0.0:
+                effect = (stored[k] - offset) / scale
+            else:
+                part = (stored[k] - offset) / base
+                effect = math.log(part) / scale if part > 0.0 else math.nan
+                slope = base if variable == MID_RADIUS else scale * part * base
+            bound = errors[k] / abs(slope)
+            if not (math.isfinite(effect) and math.isfinite(bound)):
+                effect, bound = math.nan, 0.0
+        effects[k], noise[k] = effect, bound

@@ -8,13 +8,13 @@ from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
-from .cells import beside_holes, put_column, roughness, worst_noise
+from .cells import describe
 from .family import FAMILIES
 from .frame import DEFAULTS
-from .grid import LABELS, grid_effects, grid_states
+from .grid import GridPoints, GridStates
 from .holes import cell_codes, fill, slopes
-from .reference import COLUMNS, UNIFORM
-from .tensor import BESIDE, FIRST, KNOT, LEFT, NODE, NOISE, PLACE, RANK, RIGHT, ROUGH, WIDTH, pack_nodes
+from .reference import COLUMNS, end_effects
+from .tensor import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
@@ -22,9 +22,7 @@ TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
 class Interpolant(NamedTuple):
-    """End effects of one variable: ``values`` and slopes (4 nodes,); of each cell (nodes, 2 + d): bound, 1 beside a hole,
-    roughness along each axis.
-    """
+    """End effects of one variable: ``values`` and slopes (4 nodes,); what is known of each cell (nodes, ROUGH + d)."""
 
     values: np.ndarray
     cells: np.ndarray
@@ -57,10 +55,10 @@ class Table:
         self.knots, self.windows, self.coordinates = self._packed()
         self._place()
         self.has_flag = self.family.flag in frame.dims
-        self.codes, self.cells = self._cells(self._codes())
-        self.slack = self.slack_cells = np.empty(0, np.uint8)
-        if key == "state" and "slack_fiber" in frame.dims:
-            self.slack, self.slack_cells = self._cells(self._grid("slack_fiber").astype(np.uint8) << 4)
+        self.has_slack = key == "state" and "slack_fiber" in frame.dims
+        slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
+        self.codes = np.stack([self._codes(), slack])
+        self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
         self._variables, self._stored, self._errors, self._states = {}, {}, {}, None
 
     def _place(self):
@@ -89,7 +87,12 @@ class Table:
         shear = 0.0 if frame.energy == "principal" else 1.0
         by_length = kind == reference.LENGTH_HELD and "held_length" in frame.values
         inner = "fiber_radius" not in frame.values
-        self.options = (kind, shear, inner, by_length, self.family.status is not None)
+        columns = self.kinds[:, 0].tolist()
+        angles = [
+            columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
+        ]
+        self.options = (inner, by_length, self.family.status is not None, *angles)
+        self.shear = shear
 
     def _packed(self):
         """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`tensor` knows of the axes."""
@@ -113,11 +116,6 @@ class Table:
         array = np.asarray(variable.isel(part).values)
         array = np.broadcast_to(array.reshape(array.shape + (1,) * self.padding), self.shape)
         return np.ascontiguousarray(array).ravel()
-
-    def _cells(self, codes):
-        cells = np.empty_like(codes)
-        cell_codes(codes, self.shape, self.strides, self.labels, cells)
-        return codes, cells
 
     def _codes(self):
         """Status of each node in the low half of a byte, above it the flag that nodes must share to be mixed."""
@@ -166,56 +164,34 @@ class Table:
     def _interpolant(self, name):
         effects, noise = self._end_effects(name)
         bad = ~np.isfinite(effects)
-        fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
+        doubt = fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
         along = np.empty((3, len(effects)))
         for column, source, axis in ((0, effects, -1), (1, effects, -2), (2, along[0], -2)):
-            own = self.axes[axis]
-            extent, widths = (int(self.shape[axis]), int(self.strides[axis])), np.append(np.diff(own.nodes), 1.0)
-            slopes(source, *extent, own.first, own.left, own.right, widths, along[column])
-        table = np.empty(NODE * len(effects))
-        pack_nodes(effects, along, table)
+            slopes(source, self.axes[axis], int(self.strides[axis]), along[column])
+        table = np.empty((len(effects), NODE))
+        table[:, 0], table[:, 1:] = effects, along.T
         del along
-        kept = np.flatnonzero(~self.labels)
-        extents = [(int(self.shape[a]), int(self.strides[a])) for a in kept]
-        cells, firsts = np.zeros((len(effects), ROUGH + len(self.axes)), np.float32), [self.axes[a].first for a in kept]
-        put_column(worst_noise(noise, extents), NOISE, cells)
-        put_column(beside_holes(bad, extents, firsts), BESIDE, cells)
-        for k, a in enumerate(kept):
-            put_column(roughness(effects, extents, k, firsts[k], self.axes[a].remainder), ROUGH + a, cells)
-        return Interpolant(table, cells)
+        return Interpolant(table.ravel(), describe(effects, noise, doubt, bad, self.axes))
 
     def _end_effects(self, name):
         """End effects of the stored numbers and their bounds, (nodes,)."""
         stored, errors = self._grid(name), self._bounds(name)
+        number = self.is_number(self.codes[0])
         if self.family.kind == reference.NONE:
-            return np.where(self.is_number(self.codes), stored, np.nan), errors.astype(np.float32)
-        effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
-        kind, args = (self.family.variables[name], self.family.kind), (stored, errors, effects, noise)
-        grid_effects(*kind, self._whole_grid(self.shape), *self._uniform_states(), *args)
-        bad = ~self.is_number(self.codes)
-        effects[bad], noise[bad] = np.nan, 0.0
-        return effects, noise
-
-    def _uniform_states(self):
-        """Uniform states (n, UNIFORM) of the grid and the strides (d,) of the axes in it; those that it does not know: 0."""
+            return np.where(number, stored, np.nan), errors.astype(np.float32)
         if self._states is None:
             without = ("length",) if self.family.kind in (reference.LOADED, reference.LOCKED) else ()
-            shape = np.array([1 if axis.name in without else len(axis.nodes) for axis in self.axes], np.int64)
-            strides = np.array([int(np.prod(shape[k + 1 :])) for k in range(len(shape))], np.int64)
-            states = np.empty((int(np.prod(shape)), UNIFORM))
-            grid_states(self.family.kind, self._whole_grid(shape), self.options[1], states)
-            self._states = states, np.where(shape == self.shape, strides, 0)
-        return self._states
+            self._states = GridStates(self._points(), self.family.kind, self.shear, without)
+        effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
+        kinds, size = (self.family.variables[name], self.family.kind), int(self.strides[0])
+        for k, points in enumerate(self._points().slabs()):
+            here = slice(k * size, (k + 1) * size)
+            args = (stored[here], errors[here], effects[here], noise[here])
+            end_effects(*kinds, points, self._states.slab(k), *args)
+        effects[~number], noise[~number] = np.nan, 0.0
+        return effects, noise
 
-    def _whole_grid(self, shape):
-        """The grid as :mod:`grid` takes it."""
-        columns = np.full(len(self.axes), -1)
-        values = np.zeros((len(self.axes), max(len(axis.nodes) for axis in self.axes)))
-        for a, axis in enumerate(self.axes):
-            if axis.name == "design":
-                columns[a] = LABELS
-            elif axis.name in COLUMNS or axis.name in HELD_NAMES:
-                columns[a] = COLUMNS.index("held" if axis.name in HELD_NAMES else axis.name)
-            values[a, : len(axis.nodes)] = axis.values
-        _, _, inner, by_length, _ = self.options
-        return self.fixed, columns, values, shape, inner, by_length
+    def _points(self):
+        names = ["held" if axis.name in HELD_NAMES else axis.name for axis in self.axes]
+        columns = [COLUMNS.index(name) if name in COLUMNS else -1 for name in names]
+        return GridPoints(self.axes, columns, self.fixed, *self.options[:2])

@@ -14,7 +14,6 @@ from .axis import LABEL, LOG, SQRT, WINDOW
 from .rows import ROW, weigh_rows
 
 INSIDE, BELOW, ABOVE, NO_NUMBER = range(4)
-NOISE, BESIDE, ROUGH = range(3)  # columns of what is known of a cell; one of roughness for each axis
 NODE = ROW // 2  # numbers of a node
 PLACE, WIDTH, FIRST, RANK, LEFT, RIGHT = 0, 1, 2, 3, 4, 4 + WINDOW  # columns of knots
 KNOT = 4 + 2 * WINDOW
@@ -143,34 +142,6 @@ def interpolate(table, knots, sizes, labels, strides, pieces, shares, order, ord
         if orders[r] == 1:
             total /= across
         values[at] = total
-
-
-@entry_point
-def pack_nodes(values, slopes, table):
-    """Values (nodes,) and slopes (3, nodes), along the last axis, the last but one and both, for :func:`interpolate`."""
-    for k in range(len(values)):
-        table[NODE * k] = values[k]
-        for j in range(3):
-            table[NODE * k + 1 + j] = slopes[j, k]
-
-
-@entry_point
-def remainders(cells, scales, knots, strides, pieces, shares, order, rests, noise, beside):
-    """Of placed points (n, d): what the next order would add, bounds of what is stored, and 1 beside a hole, (n,) each.
-
-    ``cells`` (nodes, 2 + d), ``scales`` (d, RANKS): the measured share of what the next order would add. Between two nodes
-    what the slopes lack goes with t (1 - t); what the cubic lacks, with its square, is smaller.
-    """
-    for e in range(len(order)):
-        k = order[e]
-        cell, total = 0, 0.0
-        for a in range(len(strides)):
-            cell += pieces[k, a] * strides[a]
-        for a in range(len(strides)):
-            bubble = 4.0 * shares[k, a] * (1.0 - shares[k, a])
-            if bubble > 0.0:  # on a node an unknown roughness says nothing
-                total += cells[cell, ROUGH + a] * bubble * scales[a, int(knots[a, pieces[k, a], RANK])]
-        rests[k], noise[k], beside[k] = total, cells[cell, NOISE], cells[cell, BESIDE]
 
 
 @entry_point

@@ -104,7 +104,7 @@ def _failing(sweep, axes, name):
         rest = np.abs((axis.remainder[piece, : axis.window] * effects).sum(axis=1)) * 4.0 * share * (1.0 - share)
         value, estimate, bound = np.empty((3, DESIGNS))
         args = (effect, rest, np.zeros(DESIGNS), value, estimate, bound)
-        reference.restore_all(kind, reference.LOADED, points, at, *args)
+        reference.restore_all(kind, points, at, *args)
         size = np.maximum(np.abs(exact[variable]), FLOOR if variable == "rotation" else 0.0)
         allowed = sweep.interpolation_tolerance * (10.0 if kind in LOOSE else 1.0) * size
         with np.errstate(invalid="ignore"):
