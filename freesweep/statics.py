@@ -23,9 +23,9 @@ def lock(tube: Actuator, *, x=None, accuracy=1e-6):
     ----------
     tube : the actuator
     x : stations of the profiles [m], distances from the fixed end before deformation, ascending; default 201
-    accuracy : scaled error bound to reach, for every scalar output
+    accuracy : scaled error bound to reach, for every scalar output, and every profile at every station
 
-    Returns a Dataset of scalars, their ``_error`` bounds and profiles along ``x``; fiber tensions per pressure [N/Pa].
+    Returns a Dataset of scalars and profiles along ``x`` with their ``_error`` bounds; fiber tensions per pressure [N/Pa].
     Raises :class:`ActuatorError` for invalid input.
     """
     stations, accuracy = read_stations(tube, x, accuracy, [])

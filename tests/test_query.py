@@ -229,7 +229,7 @@ def test_profiles_are_solved_on_request(atlas):
     found = atlas.query(**POINT, variables="rotation", refine=True, x=x)
     axes = {name: POINT[name] for name in ("alpha", "beta", "length", "radius")}
     solved = inflate(Actuator(**axes, wall=FIXED["wall"], material=RUBBER), POINT["pressure"], x=x)
-    for name in ("deformed_radius", "twist", "fiber_tension_alpha"):
+    for name in ("deformed_radius", "twist", "twist_error", "fiber_tension_alpha", "fiber_tension_alpha_error"):
         np.testing.assert_array_equal(found[name].values, solved[name].values)
 
 

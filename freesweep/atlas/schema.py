@@ -1,7 +1,7 @@
 """One table of everything a dataset holds: name, units, long name, and in which parameters it varies.
 
 Datasets of single actuators and atlases share it. A parameter that takes several values is a dimension; one with a single
-value is a scalar coordinate. Every scalar output has ``<name>_error`` beside it, a bound that holds.
+value is a scalar coordinate. Every output, scalar or along x, has ``<name>_error`` beside it, a bound that holds.
 """
 
 from typing import NamedTuple
