@@ -28,7 +28,7 @@ VECTORS = {"carry_lanes", "solve_lanes"}
         (f"{FREE}\n[solver]\nblocked = true", VECTORS | {"seek_lanes"}),
         (spec(AXES, fixed={"c20": 2e4, "c01": 0.0}), VECTORS),
         (spec(AXES | {"c20": [0.0, 2e4]}, fixed={"c01": 0.0}), VECTORS),
-        (FREE.replace("wall = 0.00159", "wall = [[0, 1e-3], [1, 2e-3]]"), {"walk_many"}),
+        (FREE.replace("wall = 0.00159", "wall = [[0, 1e-3], [1, 2e-3]]"), {"follow_many"}),
     ],
     ids=["free", "held", "Yeoh", "both families", "varying"],
 )
@@ -53,7 +53,7 @@ def test_kernels_are_loaded_before_the_threads_begin(text, needed, tmp_path, mon
         return noted
 
     entries = [(walk, "carry_lanes"), (walk, "solve_lanes"), (hold, "seek_lanes")]
-    for module, name in [*entries, (batch, "walk_many"), (hold_batch, "block_many")]:
+    for module, name in [*entries, (batch, "walk_many"), (batch, "follow_many"), (hold_batch, "block_many")]:
         monkeypatch.setattr(module, name, noting(getattr(module, name)))
     early, late, idle = set(), set(), set()
     monkeypatch.setattr(kernels, "load", then(kernels.load, early))

@@ -9,7 +9,7 @@ import numpy as np
 
 from .plan import FREE
 
-TYPICAL, HELD, VARYING = 5e-6, 3e-4, 8  # [s] of a free state on one core; of a held one; times that where tubes vary
+TYPICAL, HELD, VARYING = 5e-6, 3e-4, 2e-3  # [s] of a free state on one core; of a held one; of any where tubes vary
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more than a second
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
@@ -18,12 +18,13 @@ TOGETHER = 32  # problems that are solved at once, as vectors need them
 KERNELS = {FREE: ("solve_lanes", "walk_many")} | dict.fromkeys(
     ("blocked_force", "blocked_torque"), ("seek_lanes", "solve_lanes", "block_many")
 )
+VARIED = KERNELS | {FREE: ("follow_many",)}
 
 
 def time_of(sweep, tables, equilibria, threads) -> str:
     """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared."""
-    each = {kind: (TYPICAL if kind == FREE else HELD) * (VARYING if sweep.profiles else 1) for kind in equilibria}
-    sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and all(map(_is_compiled, equilibria))
+    each = {kind: VARYING if sweep.profiles else TYPICAL if kind == FREE else HELD for kind in equilibria}
+    sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and _is_compiled(equilibria, sweep)
     if sampled:
         together = 1 if sweep.profiles else TOGETHER
         share = {kind: each[kind] * count for kind, count in equilibria.items()}
@@ -45,12 +46,13 @@ def _seconds(sweep, equilibria, each, threads):
     return (sum(each[kind] * count for kind, count in equilibria.items()) + OTHER * sweep.points) / threads
 
 
-def _is_compiled(kind):
-    """Whether the kernels of a kind of states lie on disk: a dry run compiles nothing."""
+def _is_compiled(kinds, sweep):
+    """Whether the kernels of such kinds of states lie on disk: a dry run compiles nothing."""
     from ..jit import cache_folder
     from ..kernel_cache import compiled
 
-    return set(KERNELS[kind]) <= {stem.rpartition(".")[2] for stem in compiled(cache_folder("solver"))}
+    needed = {name for kind in kinds for name in (VARIED if sweep.profiles else KERNELS)[kind]}
+    return needed <= {stem.rpartition(".")[2] for stem in compiled(cache_folder("solver"))}
 
 
 def _sample(table, accuracy, together):
