@@ -44,7 +44,7 @@ def load(kinds, sweep, progress=False):
     rubbers = list(_rubbers(sweep))
     if missing := _missing(kinds, sweep):
         if progress:
-            print("compiling the kernels in two processes, once for each version: 20 seconds if two cores are idle")
+            print("compiling the kernels in two processes, once for each version: half a minute")
         _compile_aside(missing, rubbers)
     jobs = ((_typical(kind, rubber), sweep.accuracy, not sweep.profiles) for kind in kinds for rubber in rubbers)
     waiting = Timer(PATIENCE, print, ["compiling the kernels, once for each version: a minute"])
