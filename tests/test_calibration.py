@@ -243,7 +243,7 @@ def test_a_wrong_model_is_said_to_miss():
         ({"pressure": 1e5, "force": [1.0, np.nan]}, ["force: entry 2: found nan; give a finite number"]),
         ({"pressure": 1e5, "force": 1.0, "sigma": {"force": 0.0, "torque": 1.0}},
          ["sigma of force: found 0", "sigma: 'torque' is not measured"]),
-        ({"pressure": 1e5, "deformed_length": 0.0}, ["deformed_length: found 0; it has to be above 0"]),
+        ({"pressure": 1e5, "deformed_length": 0.0}, ["deformed_length: found 0 m; it has to be above 0"]),
         ({"pressure": 1e5, "force": 1.0, "sigma": 5e-4},
          ["sigma: found float 0.0005; give standard uncertainties by name, such as {'force': 5e-4}"]),
         ({"pressure": 1e5, "force": 1.0, "measured": 5}, ["measured: found int 5; give a name or a list of names"]),
