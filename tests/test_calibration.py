@@ -235,7 +235,7 @@ def test_a_wrong_model_is_said_to_miss():
     ("columns", "faults"),
     [
         ({"pressure": [1e5]}, ["measured: nothing was"]),
-        ({"pressure": -1.0, "force": ["x"]}, ["pressure: found -1", "force: found ['x']"]),
+        ({"pressure": -1.0, "force": ["x"]}, ["pressure: found -1", "force: expects a force such as '12 N', found 'x'"]),
         ({"pressure": [1e5, 2e5], "force": [1.0, 2.0, 3.0]}, ["columns differ in length: pressure 2, force 3"]),
         ({"pressure": 1e5, "force": 1.0, "deformed_length": 0.1}, ["measured: deformed_length and force are given; say"]),
         ({"pressure": 1e5, "force": 1.0, "torque": 1.0, "measured": ["force", "torque"]}, ["measured: torque beside force"]),
@@ -243,7 +243,10 @@ def test_a_wrong_model_is_said_to_miss():
         ({"pressure": 1e5, "force": [1.0, np.nan]}, ["force: entry 2: found nan; give a finite number"]),
         ({"pressure": 1e5, "force": 1.0, "sigma": {"force": 0.0, "torque": 1.0}},
          ["sigma of force: found 0", "sigma: 'torque' is not measured"]),
-        ({"pressure": 1e5, "deformed_length": 0.0}, ["deformed_length: found 0; it has to be above 0"]),
+        ({"pressure": 1e5, "deformed_length": 0.0}, ["deformed_length: found 0 m; it has to be above 0"]),
+        ({"pressure": 1e5, "force": 1.0, "sigma": 5e-4},
+         ["sigma: found float 0.0005; give standard uncertainties by name, such as {'force': 5e-4}"]),
+        ({"pressure": 1e5, "force": 1.0, "measured": 5}, ["measured: found int 5; give a name or a list of names"]),
         ({"pressure": 1e5, "force": 1.0, "measured": "weight"}, ["measured: 'weight' is not among the columns given"]),
     ],
 )  # fmt: skip

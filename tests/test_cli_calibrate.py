@@ -110,11 +110,11 @@ def test_constants_from_both_files(capsys):
         (["pressure [kPa],force [mm]", "1,2"], ["column force: expects a force such as '12 N', got '1 mm', a length"]),
         (["pressure [kPa],force [N],force (N)", "1,2,3"], ["column 'force (N)': given twice"]),
         (["pressure [kPa];force [N]", "1,5;2", "x;"], ["line 2, pressure: expects a pressure", "line 3, pressure: expects",
-                                                       "line 3, force: expects"]),
+                                                       "line 3, force: the cell is empty"]),
         (["pressure [kPa],force [N]", "1,5,2"], ["line 2: 3 cells under 2 names"]),
         (["force [N]", "1"], ["pressure: is missing; give it as a column"]),
         (["pressure [kPa],length [mm]", "1,192"], ["length: a column, and given beside it", "measured: nothing was"]),
-        (["pressure [kPa],force [N]", "-3,1"], ["pressure: found -3000; it has to be 0 or more"]),
+        (["pressure [kPa],force [N]", "-3,1"], ["pressure: found -3000 Pa; it has to be 0 or more"]),
     ],
 )  # fmt: skip
 def test_every_fault_of_a_file_is_named(lines, faults, capsys):
