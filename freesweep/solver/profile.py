@@ -1,14 +1,7 @@
 """What a shape looks like along the tube: values at stations and their error bounds, from the three finest meshes.
 
 Their node values extrapolate twice to fourth order, and bounds follow as in :mod:`nested`. What nodes carry loses no digit
-where the meridian stands upright, at a clamped end: the stretch y and the flux q = T v/s = -L_v, which follows from the
-discrete Euler-Lagrange equations as the reaction of the tube on one side, smoothly through jumps of the wall. With it::
-
-    s = T sqrt(G)/sqrt(T^2 + q^2)
-
-A tube that is the same all along needs no flux: its first integral ``L - v L_v`` gives s from y and the middle's y_m,
-
-    s = T G/(T sqrt(G) + U(y_m) - U(y)),    U(y) = L(y, 0).
+where the meridian stands upright (:mod:`axial`).
 """
 
 from math import atan, sqrt
@@ -17,6 +10,7 @@ import numpy as np
 
 from ..jit import kernel
 from . import lagrangian
+from .axial import axial_of_flux, axial_stretch, flux_at, is_alike
 from .course import at_point, fill
 from .finest import LEFT, MESHES, load_of, mesh_of
 from .lagrangian import LAST_STEP, ROUNDING
@@ -29,36 +23,6 @@ SAFETY = 3.3  # times the difference of two extrapolations, over the 15 that the
 SMALLEST = 1e-300
 SPREAD = 0.5  # of a node's difference that its neighbours have at least: differences pass through zero
 UNEVEN = 30.0  # times the cell beside: what is that long, of a tube that is uniform there, is interpolated linearly
-
-
-@kernel
-def is_alike(course):
-    """Whether a tube is the same all along."""
-    return course.shape[0] == 1 and course.shape[1] == 1
-
-
-@kernel
-def axial_stretch(y, constant, cell, load):
-    """s of a tube that is the same all along, from the ``constant`` U(y_m) of its first integral."""
-    meridional, pull, at_rest = lagrangian.uniform_tube(y, cell, load)
-    return meridional * pull / (pull + constant - at_rest)
-
-
-@kernel
-def axial_of_flux(y, flux, cell, load):
-    """s of any tube from its flux q."""
-    meridional, pull, _ = lagrangian.uniform_tube(y, cell, load)
-    T = pull / meridional
-    return pull / sqrt(T * T + flux * flux)
-
-
-@kernel
-def flux_at(x, y, j, n, cells, load):
-    """The flux at node j of a mesh of n cells: the reaction of the cell behind it; at the last node, of the one before."""
-    i = min(j, n - 1)
-    h = x[i + 1] - x[i]
-    _, L_y, L_v, _, _, _ = lagrangian.density(0.5 * (y[i] + y[i + 1]), (y[i + 1] - y[i]) / h, cell_at(cells, i), load)
-    return (0.5 if j < n else -0.5) * h * L_y - L_v
 
 
 @kernel

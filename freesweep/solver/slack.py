@@ -2,9 +2,9 @@
 
 from ..jit import kernel
 from . import lagrangian
+from .axial import axial_of_flux, axial_stretch, flux_at, is_alike
 from .course import at_point, fill
 from .mesh import cell_at
-from .profile import axial_of_flux, axial_stretch, flux_at, is_alike
 
 TENSIONLESS = 1e-9  # of the load: a fiber family without tension does not push
 TENSIONLESS_END = 1e-4  # at the clamped end of a tube that varies, whose flux is of second order here

@@ -2,7 +2,7 @@
 
 from ...jit import kernel
 from .. import lagrangian
-from ..profile import axial_stretch
+from ..axial import axial_stretch
 from ..slack import TENSIONLESS
 from .vector import get, mask_of
 
