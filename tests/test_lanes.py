@@ -258,7 +258,7 @@ def test_narrow_vectors_give_the_same_numbers_to_rounding(tmp_path):
     assert found["width"] == 4
     assert vector.WIDTH >= 4
     done = found["status"] != PENDING
-    assert done.mean() > 0.9
+    assert done.mean() > 0.8
     assert np.array_equal(found["status"][done], wide.status[done])
     solved = done & np.isin(wide.status, (OK, INACCURATE))
     assert np.all(np.abs(found["values"] - wide.values)[solved] <= wide.bounds[solved])

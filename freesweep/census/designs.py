@@ -69,7 +69,7 @@ def quadrature(designs, mid_radius):
     from ..first_integral.tube import SOLVED, solve
 
     tubes = _tubes(designs)
-    found = solve(tubes, tubes.pressure)
+    found = solve(tubes)
     if (lost := np.flatnonzero(found.reason != SOLVED)).size:
         again = solve_near(tubes.at(lost), mid_radius[lost])
         found.values[lost], found.errors[lost] = again.values, again.errors

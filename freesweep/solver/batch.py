@@ -86,7 +86,7 @@ def _walk(problems, first, pressures, passing, tube, accuracy, stations, lanes, 
     if lanes and not config.DISABLE_JIT:
         from .lanes.walk import carry_lanes, solve_lanes
 
-        if soon and at_once(len(pressures), solve_lanes, walk_many, *scalar):
+        if soon and at_once(np.count_nonzero(~passing), solve_lanes, walk_many, *scalar):
             return
         # what shares a vector should need much the same work: as many pressures, as steep ends
         steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
@@ -107,7 +107,7 @@ def _walk(problems, first, pressures, passing, tube, accuracy, stations, lanes, 
                 )
         if not np.any(found.status == PENDING):
             return
-    if not (soon and at_once(np.count_nonzero(found.status == PENDING), walk_many, walk_many, *scalar)):
+    if not (soon and at_once(np.count_nonzero((found.status == PENDING) & ~passing), walk_many, walk_many, *scalar)):
         walk_many(*scalar)
 
 
