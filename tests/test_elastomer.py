@@ -65,7 +65,7 @@ def test_latex_of_table_1():
             lambda: material("ecoflx-0030"),
             ["material: found 'ecoflx-0030'; did you mean 'ecoflex-00-30'? The library holds"],
         ),
-        (lambda: material(7), ["material: found 7; The library holds natural-latex"]),
+        (lambda: material(7), ["material: found int 7; The library holds natural-latex"]),
         (lambda: MooneyRivlin(1e5, largest_stretch=0.9), ["largest_stretch: found 0.9; it has to be above 1"]),
         (lambda: NeoHookean(1e5, largest_stretch="2 mm"), ["largest_stretch: expects a number"]),
     ],

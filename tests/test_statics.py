@@ -210,11 +210,11 @@ def test_every_fault_of_the_load_is_listed(given, says):
 
 
 def test_only_actuators_are_solved():
-    with pytest.raises(ActuatorError, match="tube: found str; give an Actuator"):
+    with pytest.raises(ActuatorError, match="tube: found str 'tube'; give an Actuator"):
         lock("tube")
 
 
-@pytest.mark.parametrize("pressure", [["1"], [True], np.array([True])])
+@pytest.mark.parametrize("pressure", [["1 mm"], [True], np.array([True])])
 def test_arrays_of_texts_and_truth_values_are_refused(pressure):
     with pytest.raises(ActuatorError, match="pressure"):
         inflate(A, pressure)
