@@ -94,10 +94,11 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         name: read_load(name, value, units[name], faults)
         for name, value in ((held_name, held), (load_name, load), ("pressure", pressure))
     }
-    for name in ("pressure", "deformed_length"):
+    for name, enough in (("pressure", np.greater_equal), ("deformed_length", np.greater)):
         value = axes.get(name)
-        if value is not None and not np.all(np.asarray(value) > 0.0):
-            faults.append(f"{name}: found {np.min(value):g}; it has to be above 0")
+        if value is not None and not np.all(enough(value, 0.0)):
+            allowed = "above 0" if enough is np.greater else "0 or more"
+            faults.append(f"{name}: found {np.min(value):g}; it has to be {allowed}")
     stations = read_stations(tube, x, accuracy, faults)
     grid = np.meshgrid(*axes.values(), indexing="ij")
     shape, count = grid[0].shape, grid[0].size
@@ -115,7 +116,9 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
     unique, index = near_stations(tube, stations, whole)
     values, bounds = np.empty((count, 6)), np.empty((count, 6))
-    codes, stable, slack = np.full(count, PENDING), np.empty(count, np.int64), np.empty(count, np.int64)
+    codes = np.full(count, PENDING)
+    stable, slack, paths = (np.empty(count, np.int64) for _ in range(3))
+    least = np.empty((count, 2))
     fields = np.empty((count, FIELDS, len(unique)))
     held_is_length = held_name == "deformed_length"
     states = (
@@ -125,7 +128,8 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     if count >= MANY and not whole:
         refuse(row, *states, codes)
     arguments = (
-        row, *states, buckled, course, edges, places, float(accuracy), values, bounds, codes, stable, slack, unique, fields
+        row, *states, buckled, course, edges, places, float(accuracy), values, bounds, codes, stable, slack, paths, least,
+        unique, fields,
     )  # fmt: skip
     if not at_once(count, hold_many, hold_many, *arguments):
         hold_many(*arguments)
