@@ -1,8 +1,8 @@
 """The stable, antisymmetric state beside the straight cylinder: the source's "blocked deformation".
 
-At the critical pressure a branch leaves the cylinder, whose first shape is a whole sine. It may begin toward lower pressures:
-then it turns back at the least pressure of any buckled state, and from there on is stable. All of it is gone, through its
-turning points, until it comes to the pressure asked for in a stable state.
+At the critical pressure a branch leaves the cylinder, whose first shape is a whole sine. It may begin toward lower
+pressures: then it turns back at the least pressure of any buckled state, and from there on is stable. All of it is gone,
+through its turning points, until it comes to the pressure asked for in a stable state.
 """
 
 from math import pi, sin
@@ -21,14 +21,14 @@ from .status import HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
 AMPLITUDES = (0.02, 0.05, 0.1)  # of the sine, tried in turn: with fiber extension no cylinder is straight
 STEPS, SMALLEST_STEP = 600, 1e-6
-FARTHEST = 20.0  # times the larger of the pressure asked for and the critical one: beyond lies nothing of use
+FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
 DIRECTION = (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 PROBE = 1e-3  # of the pressure
 
 
 @kernel
 def critical(cell, load, length):
-    """The pressure at which y = 1 loses its stability to a whole sine: L_yy and L_vv are linear in it. NaN if it never does."""
+    """The pressure at which y = 1 loses its stability to a whole sine; L_yy and L_vv are linear in it. NaN: never."""
     found = np.zeros(2)
     for k in range(2):
         now = (load[0], load[1], load[2], 1.0 * k, load[4], 0.0, 1.0)
@@ -111,9 +111,7 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
         sign = 1.0 if dot >= 0.0 else -1.0
         if by_t < 0.0 and sign * new_t >= 0.0 and k != BY_SHARE:  # the least pressure of this branch
             there_x, there_y, there = x.copy(), y.copy(), work[12].copy()
-            found, low, its_mu, bend = top(
-                x, y, n, n, tube, way, k, t, mu, new_t / work[12, k], 0.0, -1.0, work
-            )
+            found, low, its_mu, bend = top(x, y, n, n, tube, way, k, t, mu, new_t / work[12, k], 0.0, -1.0, work)
             if found and low < first_t:
                 found, low, bound, _, _, _ = turn.on_nested_meshes(
                     x, y, tube, way, k, 0.0, low, its_mu, bend, accuracy, fine, work, table, out
@@ -123,7 +121,11 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
             for i in range(n + 1):
                 x[i], y[i], work[12, i] = there_x[i], there_y[i], there[i]
         by_mu, by_t = new_mu, new_t
-        if (kept_t - 1.0) * (t - 1.0) <= 0.0 and min(unstable, kept_unstable) == 0 and y[quarter] > 1.0 > y[n - quarter]:
+        if (
+            (kept_t - 1.0) * (t - 1.0) <= 0.0
+            and min(unstable, kept_unstable) == 0
+            and y[quarter] > 1.0 > y[n - quarter]
+        ):
             here_x, here_y, here = x.copy(), y.copy(), work[12].copy()
             if k == BY_SHARE:
                 for i in range(n + 1):

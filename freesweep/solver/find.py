@@ -71,7 +71,10 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
         share = ((attempt // RAISES) * 0.5 / (guide.PLACES - 1) + 0.5) % 1.0
         cell = guide.cell_along(tube, share)
         start = at_pressure(there, there[3] * 1.5 ** (attempt % RAISES))
-        raised = lagrangian.density(1.0, 0.0, cell, held.loaded(start, unit, cylinder_multiplier(cell, start, unit)))[0] > 0.0
+        raised = (
+            lagrangian.density(1.0, 0.0, cell, held.loaded(start, unit, cylinder_multiplier(cell, start, unit)))[0]
+            > 0.0
+        )
         if raised or (not varying and attempt == RAISES - 1):
             break
     scale = max(there[3], abs(force))
@@ -134,8 +137,8 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
     valued = status == OK or status == INACCURATE
     if not valued and not sure and status != COMPRESSED and last_leg and not varying and path == FROM_REST:
         necked, levels, under = neck_march.solve(
-            cell, tube, x, y, mu, came_from, there, min(reached, 1.0), natural, wanted, direction, scale, accuracy, base, fine,
-            space[3], table, out,
+            cell, tube, x, y, mu, came_from, there, min(reached, 1.0), natural, wanted, direction, scale, accuracy, base,
+            fine, space[3], table, out,
         )  # fmt: skip
         if necked != NOT_CONVERGED:
             return necked, 1, levels, under, 1.0, True, path

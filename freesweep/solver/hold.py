@@ -126,7 +126,12 @@ def hold_many(
             continue
         target = 0.5 * targets[i] if half else targets[i]
         whole = places[len(places) - 1]
-        if pressures[i] == 0.0 and others[i] == 0.0 and target == (whole if kind == HELD_LENGTH else 0.0) and not buckled:
+        if (
+            pressures[i] == 0.0
+            and others[i] == 0.0
+            and target == (whole if kind == HELD_LENGTH else 0.0)
+            and not buckled
+        ):
             rest = 0.5 * problem[LENGTH]
             status[i], stable[i] = OK, 1
             values[i, 0], values[i, 1], values[i, 4] = rest, rest, 1.0

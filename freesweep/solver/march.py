@@ -138,9 +138,7 @@ def march(x, y, tube, way, share, until, mu, allowed, work):
                 sign = 1.0 if dot >= 0.0 else -1.0
                 turned = sign * new_t <= 0.0
                 if turned and k != BY_SHARE:
-                    found, t, mu, bend = top(
-                        x, y, n, n, tube, way, k, t, mu, new_t / work[12, k], 0.0, 1.0, work
-                    )
+                    found, t, mu, bend = top(x, y, n, n, tube, way, k, t, mu, new_t / work[12, k], 0.0, 1.0, work)
                     if found and t >= until:  # back to the side it came from
                         for i in range(n + 1):
                             x[i], y[i] = kept_x[i], kept_y[i]

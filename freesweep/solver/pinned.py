@@ -14,7 +14,16 @@ from ..jit import kernel
 from . import held, lagrangian
 from .course import fill
 from .newton import (
-    CONVERGED, INFEASIBLE, MAX_HALVINGS, STALLED, UNKNOWN, assemble, factor, new_rate, settled, substitute,
+    CONVERGED,
+    INFEASIBLE,
+    MAX_HALVINGS,
+    STALLED,
+    UNKNOWN,
+    assemble,
+    factor,
+    new_rate,
+    settled,
+    substitute,
 )  # fmt: skip
 from .uniform import between
 

@@ -95,9 +95,7 @@ def before(x, y, tube, way, k, side, limit, mu, bend, accuracy, fine, work, tabl
     value, rise = y[k] - side * sqrt(2.0 * (limit - 1.0) / -bend), side * sqrt(2.0 * (limit - 1.0) * -bend)
     last, last_t, last_out = y[k], limit, np.zeros(nested.OUTPUTS)
     for attempt in range(APPROACHES):
-        status, _, mu, t, _, share = pinned.solve(
-            x, y, n, n, tube, way, k, value, t, mu, nested.SMALLEST_TOLERANCE, work
-        )
+        status, _, mu, t, _, _ = pinned.solve(x, y, n, n, tube, way, k, value, t, mu, nested.SMALLEST_TOLERANCE, work)
         if status != newton.CONVERGED:
             break
         found, t, bound, doublings, largest, unstable = on_nested_meshes(
