@@ -2,7 +2,8 @@
 
 Where several states are possible, the one given lies on the branch that begins without load: pressure, the load that is
 given and fiber extension - 1 rise in proportion while the undeformed length (no rotation) is held, then what is held changes
-to the value asked for.
+to the value asked for. Where the wall would have to be pushed on that way, the loads rise with nothing held, then the length
+or rotation found is changed to the value asked for: ``held_path`` says so.
 """
 
 import numpy as np
@@ -37,7 +38,8 @@ def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *,
     x, accuracy : as in :func:`freesweep.lock`
 
     Returns a Dataset with ``force`` [N], positive in tension, on the coordinate ``deformed_length``, and what else deforms.
-    Where the wall would have to be pushed (region I, low pressure with fiber extension) there is no result: status 3.
+    Where the wall would have to be pushed (an undeformed tube of region I, low pressure with fiber extension) there is no
+    result: status 3. Without pressure a stretched tube has a force, too.
     Raises :class:`ActuatorError`.
     """
     if rotation is not None:
@@ -58,8 +60,9 @@ def blocked_torque(
     rotation : held rotation [degree], number or 1-D array (a torque-rotation curve)
     deformed_length : None; a held length beside the held rotation is refused, with the reason
     buckled : beyond the critical pressure (:func:`freesweep.closed_form.critical_pressure`) the straight cylinder is
-        unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Below
-        that pressure there is none: status 4
+        unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Many
+        tubes have one below the critical pressure, too, which a disturbance may lead to: a safe limit is
+        ``least_buckled_pressure`` [Pa], the least at which the buckled branch has a state. Where there is none: status 4
     x, accuracy : as in :func:`freesweep.lock`
 
     Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``
@@ -146,8 +149,19 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
             f"{unknown}_error": (tuple(axes), bounds[:, 5].reshape(shape) * scale),
         },
     }
+    if buckled:
+        found["extra"] |= {
+            name: (tuple(axes), least[:, k].reshape(shape) * c10)
+            for k, name in enumerate(("least_buckled_pressure", "least_buckled_pressure_error"))
+        }
+    else:
+        found["extra"]["held_path"] = tuple(axes), paths.astype(np.int8).reshape(shape)
     result = dataset(tube, axes, stations, found, without=(held_name,))
     result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": float(accuracy), "buckled": int(buckled)}
+    if not buckled and np.any(result["held_path"] == 1):
+        result.attrs["comment"] = (
+            "held_path: from rest the wall would have to be pushed; some states were found from the free one"
+        )
     return result
 
 
