@@ -6,8 +6,8 @@ y = 1 of a tube that is the same all along is an equilibrium on this way under t
 may begin there at once, as long as no state on it is unstable. Else all of the way is gone (``march.from_rest``), as by a
 tube that varies.
 
-Where the wall would have to be pushed on that way, the other is gone (``march.from_free``): the loads rise with nothing
-held, then what is held changes from what was found there. Without pressure neither way begins; they go to a pressure like
+Where the wall would have to be pushed on that way, or another length or rotation than the undeformed one is not come to,
+the other is gone (``march.from_free``): the loads rise with nothing held, then what is held changes from what was found. Without pressure neither way begins; they go to a pressure like
 the wall's stiffness, which is lowered at the end.
 
 A tube that is the same all along, or its own mirror image, keeps a symmetric state. Beyond a critical pressure of blocked
@@ -83,7 +83,7 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
     direction = tuple_times(unit, scale)
     natural, wanted = total * scale if kind == HELD_LENGTH else 0.0, target * scale
     way = (there, there, natural, wanted, direction, True, course, cell, False)
-    found, mu, reached, turned, path, allowed = COMPRESSED, 0.0, 0.0, NO_TURN, FROM_REST, 0
+    found, mu, reached, turned, allowed = COMPRESSED, 0.0, 0.0, NO_TURN, 0
     came_from, last_leg = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0), wanted == natural
     if raised:
         if not varying:
@@ -96,55 +96,40 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
                 x, y, tube, course, cell, there, direction, natural, allowed, work
             )
             if found == OK and wanted != natural:
-                came_from, last_leg, allowed = there, True, EVERY
+                came_from, last_leg = there, True
                 way = (there, there, natural, wanted, direction, True, course, cell, False)
-                found, mu, reached, turned = march.march(x, y, tube, way, 0.0, 1.0, mu, allowed, work)
+                found, mu, reached, turned = march.march(x, y, tube, way, 0.0, 1.0, mu, EVERY, work)
             if varying and found == COMPRESSED:
-                allowed = EVERY
                 found, mu, reached, turned, way = directly(
                     x, y, tube, course, cell, start, there, direction, wanted, EVERY, work
                 )
-    if found == COMPRESSED:
-        path, allowed = FROM_FREE, EVERY
-        found, mu, reached, turned, way = from_free(x, y, tube, course, cell, there, direction, wanted, allowed, work)
-        found = COMPRESSED if found == NOT_CONVERGED else found
-    if found == OK and there[3] != p:
-        way = (there, load, wanted, wanted, direction, True, course, cell, False)
-        found, mu, reached, turned = march.march(x, y, tube, way, 0.0, 1.0, mu, EVERY, work)
-        found = COMPRESSED if found == NOT_CONVERGED and p == 0.0 and reached > 1.0 - turn.NEAR else found
-    status, unstable, doublings, now, sure = found, 0, 0, load, False
-    if found == OK:
-        status, unstable, doublings, now = on_meshes(
-            x, y, tube, load, direction, wanted, mu, not varying, accuracy, fine, work, table, out
-        )
-        if status == NOT_CONVERGED:  # a turning point just behind?
-            found, mu, reached, turned = march.march(x, y, tube, way, 1.0, 1.0 + turn.NEAR, mu, EVERY, work)
-            reached = max(reached, 1.0)
-    if found == BEYOND_LIMIT and turned[0] != BY_SHARE:
-        k, bend, side = turned
-        status, sure = (HELD_IMPOSSIBLE if way[2] != way[3] else BEYOND_LIMIT), False
-        good, limit, bound, doublings, _, _ = turn.on_nested_meshes(
-            x, y, tube, way, k, 0.0, reached, mu, bend, accuracy, fine, work, table, out
-        )
-        sure = good and abs(limit - 1.0) > bound
-        if good and limit > 1.0 + bound:
-            status, doublings, unstable = turn.before(
-                x, y, tube, way, k, side, limit, mu, bend, accuracy, fine, work, table, out
-            )
-            sure = False
-            now = held.loaded(load, direction, out[0, nested.MULTIPLIER])
-        reached = limit if good else reached
-    valued = status == OK or status == INACCURATE
-    if not valued and not sure and status != COMPRESSED and last_leg and not varying and path == FROM_REST:
+    status, unstable, doublings, now, reached, sure = settle(
+        x, y, tube, way, found, mu, reached, turned, load, wanted, accuracy, space, out
+    )
+    if not valued(status) and not sure and status != COMPRESSED and last_leg and not varying:
         necked, levels, under = neck_march.solve(
             cell, tube, x, y, mu, came_from, there, min(reached, 1.0), natural, wanted, direction, scale, accuracy, base,
             fine, space[3], table, out,
         )  # fmt: skip
         if necked != NOT_CONVERGED:
-            return necked, 1, levels, under, 1.0, True, path
-    if valued:
-        if not now[3] + now[4] > 0.0:  # at the clamped ends, where y = 1
-            return COMPRESSED, 0, 0, load, 1.0, True, path
+            return necked, 1, levels, under, 1.0, True, FROM_REST
+    path = FROM_REST
+    if status == COMPRESSED or (not valued(status) and wanted != natural):
+        found, mu, came, turned, way = from_free(x, y, tube, course, cell, there, direction, wanted, EVERY, work)
+        again, others, levels, under, came, certain = settle(
+            x, y, tube, way, found, mu, came, turned, load, wanted, accuracy, space, out
+        )
+        if valued(again):
+            status, unstable, doublings, now, reached, sure, path = (
+                again,
+                others,
+                levels,
+                under,
+                came,
+                certain,
+                FROM_FREE,
+            )
+    if valued(status):
         size = (2.0 if tube[3] else 1.0) * max(abs(wanted), abs(natural))
         unstable, rounding = unstable_directions(
             fine[0], fine[1], base << doublings, base, tube, now, direction, size, work
@@ -154,12 +139,54 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
         out[1, nested.MULTIPLIER] += rounding
         out[0, nested.MULTIPLIER] *= scale
         out[1, nested.MULTIPLIER] *= scale
-        reached = 1.0
     return status, unstable, doublings, now, reached, sure, path
 
 
 @kernel
-def on_meshes(x, y, tube, load, direction, wanted, mu, alike, accuracy, fine, work, table, out):
+def valued(status):
+    """Whether a state was found."""
+    return status == OK or status == INACCURATE
+
+
+@kernel
+def settle(x, y, tube, way, found, mu, reached, turned, load, wanted, accuracy, space, out):
+    """The state at ``load`` on finer meshes, at the end of a ``way`` of which :func:`march.march` returned ``found``,
+    ``mu``, ``reached`` and ``turned``; that way may end at a higher pressure, which is lowered. Returns ``(status, unstable
+    directions, doublings, load, share reached, whether that is certain)``.
+    """
+    fine, work, table, direction = space[0], space[1], space[2], way[4]
+    if found == OK and way[1][3] != load[3]:
+        way = (way[1], load, wanted, wanted, direction, True, way[6], way[7], False)
+        found, mu, reached, turned = march.march(x, y, tube, way, 0.0, 1.0, mu, EVERY, work)
+        found = COMPRESSED if found == NOT_CONVERGED and reached > 1.0 - turn.NEAR else found
+    status, unstable, doublings, now, sure = found, 0, 0, load, False
+    if found == OK:
+        status, unstable, doublings, now = on_meshes(
+            x, y, tube, load, direction, wanted, mu, accuracy, fine, work, table, out
+        )
+        if status == NOT_CONVERGED:  # a turning point just behind?
+            found, mu, reached, turned = march.march(x, y, tube, way, 1.0, 1.0 + turn.NEAR, mu, EVERY, work)
+            reached = max(reached, 1.0)
+    if found == BEYOND_LIMIT and turned[0] != BY_SHARE:
+        k, bend, side = turned
+        status = HELD_IMPOSSIBLE if way[2] != way[3] else BEYOND_LIMIT
+        good, limit, bound, doublings, _, _ = turn.on_nested_meshes(
+            x, y, tube, way, k, 0.0, reached, mu, bend, accuracy, fine, work, table, out
+        )
+        sure = good and limit < 1.0 + bound
+        if good and limit > 1.0 + bound:
+            status, doublings, unstable = turn.before(
+                x, y, tube, way, k, side, limit, mu, bend, accuracy, fine, work, table, out
+            )
+            now = held.loaded(load, direction, out[0, nested.MULTIPLIER])
+        reached = limit if good else reached
+    if valued(status) and not now[3] + now[4] > 0.0:  # at the clamped ends, where y = 1
+        return COMPRESSED, 0, 0, load, 1.0, True
+    return status, unstable, doublings, now, reached, sure
+
+
+@kernel
+def on_meshes(x, y, tube, load, direction, wanted, mu, accuracy, fine, work, table, out):
     """A state of the base mesh on finer ones: ``(status, unstable directions, doublings, load)``; NOT_CONVERGED where these
     have another or none.
     """
