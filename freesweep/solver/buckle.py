@@ -15,11 +15,10 @@ from .branch import GAMMA, SHEAR, rubber_of
 from .climb import largest_drift, regraded
 from .course import at_point
 from .march import GROWTH, LARGEST_CHANGE, NO_SNAP, STRAY, TOLERANCE, cylinder_multiplier, even_mesh, fastest, halt, top
-from .pinned import BY_SHARE
 from .stability import unstable_directions
 from .status import HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
-AMPLITUDES = (0.02, 0.05, 0.1)  # of the sine, tried in turn: with fiber extension no cylinder is straight
+AMPLITUDES = (0.003, 0.01, 0.03, 0.1)  # of the sine, tried in turn: with fiber extension no cylinder is straight
 STEPS, SMALLEST_STEP = 600, 1e-6
 FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
 DIRECTION = (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -86,7 +85,6 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
         solved, new_mu, new_t = False, 0.0, 0.0
         while step > SMALLEST_STEP and not solved:
             k, most = fastest(kept_y, along, n)
-            k = BY_SHARE if abs(by_t) >= most else k
             ahead = min(step, LARGEST_CHANGE / max(most, 1e-300))
             for i in range(n + 1):
                 x[i], y[i] = kept_x[i], kept_y[i] + ahead * along[i]
@@ -96,7 +94,7 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
                 regraded(x, y, n, tube, held.loaded(now, direction, mu), work)
             for i in range(n + 1):
                 guess[i] = y[i]
-            expected, value = t, t if k == BY_SHARE else y[k]
+            expected, value = t, y[k]
             status, unstable, mu, t, new_mu, new_t = pinned.solve(
                 x, y, n, n, tube, way, k, value, t, mu, TOLERANCE, work
             )
@@ -109,7 +107,7 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
         for i in range(n + 1):
             dot += work[12, i] * along[i] / (y[i] * y[i] * n)
         sign = 1.0 if dot >= 0.0 else -1.0
-        if by_t < 0.0 and sign * new_t >= 0.0 and k != BY_SHARE:  # the least pressure of this branch
+        if by_t < 0.0 and sign * new_t >= 0.0:  # the least pressure of this branch
             there_x, there_y, there = x.copy(), y.copy(), work[12].copy()
             found, low, its_mu, bend = top(x, y, n, n, tube, way, k, t, mu, new_t / work[12, k], 0.0, -1.0, work)
             if found and low < first_t:
@@ -127,12 +125,7 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
             and y[quarter] > 1.0 > y[n - quarter]
         ):
             here_x, here_y, here = x.copy(), y.copy(), work[12].copy()
-            if k == BY_SHARE:
-                for i in range(n + 1):
-                    y[i] += (1.0 - t) / new_t * work[12, i]
-                found, its_mu = True, mu + (1.0 - t) / new_t * new_mu
-            else:
-                found, its_mu = halt(x, y, n, n, tube, way, k, t, mu, new_t, 1.0, work)
+            found, its_mu = halt(x, y, n, n, tube, way, k, t, mu, new_t, 1.0, work)
             if found:
                 status, unstable, doublings, _ = nested.solve(
                     lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube, load,

@@ -7,8 +7,8 @@ may begin there at once, as long as no state on it is unstable. Else all of the 
 tube that varies.
 
 Where the wall would have to be pushed on that way, or another length or rotation than the undeformed one is not come to,
-the other is gone (``march.from_free``): the loads rise with nothing held, then what is held changes from what was found. Without
-pressure neither way begins; they go to a pressure like the wall's stiffness, which is lowered at the end.
+the other is gone (``march.from_free``): the loads rise with nothing held, then what is held changes from what was found.
+Without pressure neither way begins; they go to a pressure like the wall's stiffness, which is lowered at the end.
 
 A tube that is the same all along, or its own mirror image, keeps a symmetric state. Beyond a critical pressure of blocked
 torque an antisymmetric mode makes it unstable, which is no obstacle on the way; somewhat later, with fiber extension, the
@@ -106,6 +106,8 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
     status, unstable, doublings, now, reached, sure = settle(
         x, y, tube, way, found, mu, reached, turned, load, wanted, accuracy, space, out
     )
+    if status == HELD_IMPOSSIBLE and wanted == natural:  # close to a turning point of the branch from rest itself
+        status = BEYOND_LIMIT
     if not valued(status) and not sure and status != COMPRESSED and last_leg and not varying:
         necked, levels, under = neck_march.solve(
             cell, tube, x, y, mu, came_from, there, min(reached, 1.0), natural, wanted, direction, scale, accuracy, base,
