@@ -15,7 +15,7 @@ from .loads import read_load, read_stations, warn_of_loads
 from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
-from .statics import inflate, read_course
+from .statics import inflate, read_course, undeformed
 from .thick_wall import thin_wall_attributes
 
 HALF_CELLS = 48  # of half a tube that is the same all along
@@ -93,7 +93,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     from .solver.hold import hold_many
     from .solver.hold_batch import refuse
     from .solver.profile import FIELDS
-    from .solver.status import PENDING
+    from .solver.status import OK, PENDING
 
     faults = []
     units = {"deformed_length": "m", "rotation": "degree", "force": "N", "torque": "N m", "pressure": "Pa"}
@@ -138,6 +138,10 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
         hold_many(*arguments)
     bounds = widened(values, bounds, error)
+    profiles = fields.reshape(*shape, FIELDS, -1)[..., index]
+    if tube.varies:  # whose angles at rest the kernels do not know
+        at_rest = (codes == OK) & (pressures == 0.0) & (others == 0.0) & (values[:, 5] == 0.0)
+        profiles[at_rest.reshape(shape)] = undeformed(tube, stations)
     scale = np.pi * r ** (2 if held_is_length else 3) * c10
     found = {
         "status": codes.reshape(shape),
@@ -145,7 +149,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         "slack_fiber": slack.reshape(shape),
         "values": values[:, :5].reshape(*shape, 5),
         "bounds": bounds[:, :5].reshape(*shape, 5),
-        "fields": (fields.reshape(*shape, FIELDS, -1)[..., index], whole),
+        "fields": (profiles, whole),
         "extra": {
             unknown: (tuple(axes), values[:, 5].reshape(shape) * scale),
             f"{unknown}_error": (tuple(axes), bounds[:, 5].reshape(shape) * scale),
