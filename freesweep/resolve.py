@@ -11,6 +11,7 @@ from .first_integral.uniform import Tubes, follow, to_corner
 from .status import VALUED
 
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "c10", "c01", "force", "torque")
+NEXT_TO_NOTHING = 1e-14  # of the torque: a pressure for none
 MANY = 1 << 25  # numbers of one variable read at once
 
 
@@ -97,6 +98,8 @@ class _Points:
         }
         if locked:
             loads = {"pressure": ones, "force": 0.0 * ones, "torque": 0.0 * ones}
+        limp = (loads["pressure"] == 0.0) & (loads["force"] == 0.0)  # torque alone: the limit of falling pressures
+        loads["pressure"] = np.where(limp, NEXT_TO_NOTHING * np.abs(loads["torque"]), loads["pressure"])
         shear = ones * (self.data.attrs["energy"] == "full")
         return Tubes(
             0.5 * (ta + tb), 0.5 * (ta - tb), area, c["fiber_extension"], c["c01"] / c["c10"], shear, **loads,

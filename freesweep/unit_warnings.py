@@ -14,7 +14,7 @@ SLENDER = 2e4  # length over radius
 THINNEST = 1e-4  # wall over radius
 RADIANS = 0.5 * np.pi  # [degree]: if no fiber is steeper, angles are likely given in radians
 SOFTEST, HARDEST = 10.0, 1e9  # [Pa] of c10: gels, hard plastics
-USUAL = 1e-3, 1e4  # of the largest pressure over c10 wall/radius, which is a tenth to a hundred
+USUAL = 1e-5, 1e4  # of the largest pressure over c10 wall/radius, which is a tenth to a hundred
 LOAD = 1e4  # largest force over radius^2 c10, torque over radius^3 c10
 HINT = 'plain numbers are in SI units and degrees, others need theirs, as in "4.76 mm" or "0.17 MPa"'
 
@@ -40,9 +40,10 @@ def warn_of(found, stacklevel):
 def _of_design(alpha, beta, length, radius, wall, c10, thickness):
     found = []
     if thickness.max() > 1.0:
-        found.append(
-            f"wall {wall.max():g} m is thicker than the inner radius {radius.min():g} m: the model takes a thin wall"
-        )
+        k = int(np.argmax(thickness))
+        thick = wall[k] if wall.size == thickness.size else wall.max()
+        narrow = radius[k] if radius.size == thickness.size else radius.min()
+        found.append(f"wall {thick:g} m is thicker than the inner radius {narrow:g} m: the model takes a thin wall")
     for name, values in (("length", length), ("radius", radius)):
         if values.max() > LARGEST[name]:
             found.append(f"the {name} is {values.max():g} m; {HINT}")

@@ -64,7 +64,9 @@ def by_collocation(actuator, pressure, held, target, guess, other=0.0, shape=Non
         return y[k] + (share - x[k]) / (x[k + 1] - x[k]) * (y[k + 1] - y[k])
 
     # jumps and bends: every piece between them is stretched over 0..1, all of them side by side
-    breaks = sorted({0.0, 1.0, *(q[0] for value in profiles.values() if isinstance(value, list) for q in value)})
+    breaks = sorted(
+        {0.0, 1.0, *(q[0] for value in profiles.values() if isinstance(value, (list, tuple)) for q in value)}
+    )
     pieces = list(pairwise(breaks))
 
     def rates(t, z, parameters):

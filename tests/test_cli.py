@@ -102,7 +102,7 @@ def test_inflate_explains_a_status(capsys):
     [
         (["--length", "2 kPa", "--wall", "x"], ["--length: expects a length", "--wall: expects a length"]),
         (["--beta", "10"], ["alpha, beta: both are 10 degree"]),
-        (["--pressure", "-1 kPa"], ["pressure: found a negative value"]),
+        (["--pressure", "-1 kPa"], ["pressure: found -1000"]),
         (["--pressure", "1 kPa", "--steps", "3"], ["--steps: give two pressures"]),
         (["--pressure", "1 kPa", "2 kPa", "--steps", "1"], ["--steps: give two pressures"]),
         (["--energy", "half"], ["argument --energy: invalid choice: 'half'"]),

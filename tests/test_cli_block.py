@@ -103,7 +103,7 @@ def test_the_load_that_holds_cannot_be_given(held, unused, value, capsys):
         ([*MIXED, *LENGTH, "--buckled"], ["--buckled: only a held rotation"]),
         ([*MIXED, *LENGTH, "--at", "3 deg"], ["--at: expects a length"]),
         ([*MIXED, *ROTATION, "--at", "3 mm", "--force", "x"], ["--at:", "--force:"]),
-        ([*MIXED, *LENGTH, "--at", "-1 mm"], ["deformed_length: found -0.001; it has to be above 0"]),
+        ([*MIXED, *LENGTH, "--at", "-1 mm"], ["deformed_length: found -0.001 m; it has to be above 0"]),
         ([*MIXED, *LENGTH, "--c10", "0 Pa"], ["c10: found 0 Pa; it has to be above 0"]),
         (["block", "--alpha", "30", "--beta", "-30", *SIZES, *ROTATION], ["alpha = -beta does not rotate"]),
         (MIXED, ["usage: freesweep block", "--hold"]),
@@ -115,5 +115,5 @@ def test_what_cannot_be_read_or_held_is_refused(words, says, capsys):
     assert all(sentence in err for sentence in says), err
 
 
-def test_pressure_has_to_be_above_zero(capsys):
-    assert "pressure: found 0; it has to be above 0" in refused(capsys, *MIXED, *LENGTH, "--pressure", "0")
+def test_a_negative_pressure_is_refused(capsys):
+    assert "pressure: found -1 Pa; it has to be 0 or more" in refused(capsys, *MIXED, *LENGTH, "--pressure", "-1 Pa")

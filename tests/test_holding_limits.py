@@ -20,6 +20,7 @@ BEYOND = [
 ]  # fmt: skip
 
 
+@pytest.mark.filterwarnings("ignore:the length is")  # its radius is 1 m
 @pytest.mark.parametrize("design", BEYOND)
 def test_states_far_beyond_the_critical_pressure_are_explained(design):
     alpha, beta, length, wall, gamma, ratio, force, pressure, energy, status = design

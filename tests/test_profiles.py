@@ -164,7 +164,7 @@ def test_varying_tubes_are_the_independent_ones(case, energy):
     _, *totals, found = by_collocation(actuator, pressure, "rotation", None, loads[0], loads[1])
 
     profiles = (actuator.alpha, actuator.beta, actuator.wall)
-    breaks = np.unique([0.0, 1.0, *(x for value in profiles if isinstance(value, list) for x, _ in value)])
+    breaks = np.unique([0.0, 1.0, *(x for value in profiles if isinstance(value, (list, tuple)) for x, _ in value)])
     share = dataset["x"].values / actuator.length
     piece = np.clip(np.searchsorted(breaks, share) - 1, 0, len(breaks) - 2)
     within = (share - breaks[piece]) / np.diff(breaks)[piece]
@@ -196,7 +196,7 @@ def test_a_tube_read_from_its_other_end_is_the_same(case):
     def reversed_(value):
         if callable(value):
             return lambda share: value(1 - share)
-        return [(1 - x, y) for x, y in value[::-1]] if isinstance(value, list) else value
+        return [(1 - x, y) for x, y in value[::-1]] if isinstance(value, (list, tuple)) else value
 
     actuator, load = CASES[case]
     other = dataclasses.replace(

@@ -64,7 +64,7 @@ def test_a_yeoh_energy_that_is_convex_as_far_as_it_is_used_gives_no_warning():
 
 def test_every_fault_of_a_yeoh_rubber_is_named():
     with pytest.raises(ActuatorError) as error:
-        Yeoh(0.0, "1 kPa", np.nan, largest_stretch=1.0)
+        Yeoh(0.0, "1 mm", np.nan, largest_stretch=1.0)
     assert [fault.split(":")[0] for fault in error.value.faults] == ["c1", "c2", "c3", "largest_stretch"]
 
 

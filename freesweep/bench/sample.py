@@ -74,10 +74,10 @@ class Reference(NamedTuple):
 def reference(chosen) -> Reference:
     """Of a sample; raises RuntimeError if the quadrature, whose own error is 1e-11, leaves a point open."""
     tubes = chosen.tubes()
-    found = solve(tubes, tubes.pressure)
+    found = solve(tubes)
     if np.any(found.reason != SOLVED):
         raise RuntimeError(f"{np.count_nonzero(found.reason != SOLVED)} reference points are not solved")
-    u, _ = stretch(tubes, tubes.pressure)
+    u, _ = stretch(tubes)
     return Reference(0.5 * found.values[:, :3], tubes.half, np.sqrt(u))
 
 
