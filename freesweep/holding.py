@@ -2,7 +2,8 @@
 
 Where several states are possible, the one given lies on the branch that begins without load: pressure, the load that is
 given and fiber extension - 1 rise in proportion while the undeformed length (no rotation) is held, then what is held changes
-to the value asked for.
+to the value asked for. Where the wall would have to be pushed on that way, the loads rise with nothing held, then the length
+or rotation found is changed to the value asked for: ``held_path`` says so.
 """
 
 import numpy as np
@@ -41,7 +42,8 @@ def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *,
     x, accuracy : as in :func:`freesweep.lock`
 
     Returns a Dataset with ``force`` [N], positive in tension, on the coordinate ``deformed_length``, and what else deforms.
-    Where the wall would have to be pushed (region I, low pressure with fiber extension) there is no result: status 3.
+    Where the wall would have to be pushed (an undeformed tube of region I, low pressure with fiber extension) there is no
+    result: status 3. Without pressure a stretched tube has a force, too.
     Raises :class:`ActuatorError`.
     """
     if rotation is not None:
@@ -62,8 +64,9 @@ def blocked_torque(
     rotation : held rotation [degree], number or 1-D array (a torque-rotation curve)
     deformed_length : None; a held length beside the held rotation is refused, with the reason
     buckled : beyond the critical pressure (:func:`freesweep.closed_form.critical_pressure`) the straight cylinder is
-        unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Below
-        that pressure there is none: status 4
+        unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Many
+        tubes have one below the critical pressure, too, which a disturbance may lead to: a safe limit is
+        ``least_buckled_pressure`` [Pa], the least at which the buckled branch has a state. Where there is none: status 4
     x, accuracy : as in :func:`freesweep.lock`
 
     Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``
@@ -94,8 +97,9 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
 
     faults = []
     units = {"deformed_length": "m", "rotation": "degree", "force": "N", "torque": "N m", "pressure": "Pa"}
+    domains = {"deformed_length": {"positive": True}, "pressure": {"least": 0.0}}
     axes = {
-        name: read_load(name, value, units[name], faults, positive=name in ("pressure", "deformed_length"))
+        name: read_load(name, value, units[name], faults, **domains.get(name, {}))
         for name, value in ((held_name, held), (load_name, load), ("pressure", pressure))
     }
     stations, accuracy = read_stations(tube, x, accuracy, faults)
@@ -116,7 +120,9 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
     unique, index = near_stations(tube, stations, whole)
     values, bounds = np.empty((count, 6)), np.empty((count, 6))
-    codes, stable, slack = np.full(count, PENDING), np.empty(count, np.int64), np.empty(count, np.int64)
+    codes = np.full(count, PENDING)
+    stable, slack, paths = (np.empty(count, np.int64) for _ in range(3))
+    least = np.empty((count, 2))
     fields = np.empty((count, FIELDS, len(unique)))
     held_is_length = held_name == "deformed_length"
     states = (
@@ -127,7 +133,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         refuse(row, *states, codes)
     arguments = (
         row, *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error, values, bounds, codes, stable,
-        slack, unique, fields,
+        slack, paths, least, unique, fields,
     )  # fmt: skip
     if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
         hold_many(*arguments)
@@ -145,9 +151,20 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
             f"{unknown}_error": (tuple(axes), bounds[:, 5].reshape(shape) * scale),
         },
     }
+    if buckled:
+        found["extra"] |= {
+            name: (tuple(axes), least[:, k].reshape(shape) * c10)
+            for k, name in enumerate(("least_buckled_pressure", "least_buckled_pressure_error"))
+        }
+    else:
+        found["extra"]["held_path"] = tuple(axes), paths.astype(np.int8).reshape(shape)
     result = dataset(tube, axes, stations, found, without=(held_name,))
     result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy, "buckled": int(buckled)}
     result.attrs |= thin_wall_attributes(tube)
+    if not buckled and np.any(result["held_path"] == 1):
+        result.attrs["comment"] = (
+            "held_path: from rest the wall would have to be pushed; some states were found from the free one"
+        )
     return result
 
 

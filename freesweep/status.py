@@ -24,7 +24,8 @@ STATUSES = (
         3,
         "meridional_compression",
         "the wall would have to be pushed along its length (p y^2 + f <= 0): it wrinkles; raise the pressure or the axial"
-        " force (a held length that needs a push at any pressure, as of fibers that both lean the same way, has no result)",
+        " force (a held length that needs a push at any pressure, as the undeformed one of fibers that both lean the same"
+        " way, has no result)",
     ),
     Status(
         4,
@@ -59,6 +60,7 @@ VALUED = (OK, INACCURATE)  # the statuses whose outputs are numbers; all others'
 FLAGS = {
     "stable": {0: "unstable", 1: "stable"},
     "limit_found": {0: "none_up_to_the_largest_pressure", 1: "found"},
+    "held_path": {0: "from_rest", 1: "from_free_state"},
     "slack_fiber": {0: "none", 1: "alpha_family", 2: "beta_family", 3: "both_families"},
 }
 
@@ -66,6 +68,8 @@ FLAGS = {
 FLAG_COMMENTS = {
     "stable": "0 also where there is no result: read the status first. The smallest disturbance ends an unstable state",
     "limit_found": "0 also where no branch was followed: read the status first. Beyond a limit pressure the tube snaps",
+    "held_path": "0 also where there is no result. From rest: what is held is kept at its undeformed value while the loads"
+    " rise, then changed; where the wall would have to be pushed on that way, it is changed from where nothing was held",
     "slack_fiber": "0 also where there is no result. A family that would have to push cannot: the tube deforms otherwise",
 }
 

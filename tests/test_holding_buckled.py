@@ -7,10 +7,12 @@ import pytest
 from held_tubes import R0, SECTION, B, by_collocation, close, scales
 
 from freesweep import (
+    Actuator,
+    MooneyRivlin,
     blocked_torque,
     closed_form,
 )
-from freesweep.status import OK
+from freesweep.status import HELD_IMPOSSIBLE, OK
 
 
 @pytest.mark.parametrize(
@@ -64,3 +66,55 @@ def test_buckled_branch_has_no_gap(energy):
         steps = sign * np.diff(held[name].values)
         assert (steps > 0).all()
         assert (np.diff(steps) < 0.1 * steps[:-1]).all()
+
+
+R, RUBBER = 5e-3, 1e5
+
+
+def slender(alpha, beta, length, wall, ratio, energy):
+    """Length and wall in radii."""
+    return Actuator(
+        alpha=alpha, beta=beta, length=length * R, radius=R, wall=wall * R, material=MooneyRivlin(RUBBER, ratio * RUBBER),
+        energy=energy,
+    )  # fmt: skip
+
+
+def critical_of(actuator):
+    constants = actuator.material.c10, actuator.material.c01
+    return closed_form.critical_pressure(
+        actuator.alpha,
+        actuator.beta,
+        actuator.length,
+        actuator.radius,
+        actuator.wall,
+        *constants,
+        energy=actuator.energy,
+    )
+
+
+@pytest.mark.parametrize(("design", "share", "length", "ratio"), [
+    ((37.6, -18.7, 27.1, 0.04, 0.2, "full"), 1.1, 0.95061 * 27.1, 0.916),
+    ((70.5, 26.8, 25.4, 0.35, 0.4, "principal"), 2.0, 22.607, None),
+])  # fmt: skip
+def test_stable_buckled_state_is_found_along_the_branch_that_leaves_the_cylinder(design, share, length, ratio):
+    actuator = slender(*design)
+    pressure = share * critical_of(actuator)
+    held = blocked_torque(actuator, pressure, buckled=True, x=0.0)
+    assert (held["status"], held["stable"]) == (OK, 1)
+    assert held["deformed_length"].item() / R == pytest.approx(length, rel=2e-5)
+    if ratio is not None:
+        ideal = closed_form.blocked_torque(actuator.alpha, actuator.beta, R, pressure)
+        assert held["torque"].item() / ideal == pytest.approx(ratio, abs=5.1e-4)
+
+
+def test_stable_buckled_states_reach_below_the_critical_pressure():
+    """The branch leaves the cylinder toward lower pressures: down to where it turns there is a state, below it none."""
+    actuator = slender(37.6, -18.7, 27.1, 0.04, 0.2, "full")
+    critical = critical_of(actuator)
+    first = blocked_torque(actuator, 1.1 * critical, buckled=True, x=0.0)
+    least, bound = first["least_buckled_pressure"].item(), first["least_buckled_pressure_error"].item()
+    assert 0.5 * critical < least < critical
+    assert bound < 1e-4 * least
+    held = blocked_torque(actuator, [0.999 * least, 1.001 * least], buckled=True, x=0.0)
+    assert held["status"].values.tolist() == [HELD_IMPOSSIBLE, OK]
+    assert held["stable"].values.tolist() == [0, 1]

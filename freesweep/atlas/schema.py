@@ -101,6 +101,12 @@ FLAG_OF = {
     ),
 }
 
+# of single held actuators alone, which no atlas stores
+HELD_ALONE = {
+    "held_path": Variable("1", "way by which the held state was found"),
+    "least_buckled_pressure": Variable("Pa", "least pressure at which the buckled branch has a state"),
+}
+
 PROFILES = {
     "deformed_radius": ("m", "radius of the fiber surface"),
     "axial_position": ("m", "axial position after deformation"),
@@ -144,8 +150,11 @@ def attributes(name: str) -> dict:
     if name in FLAG_OF:
         kind = "stable" if name.endswith("stable") else name
         return {"long_name": FLAG_OF[name][0], **flag_attributes(kind)}
+    if name == "held_path":
+        return {"long_name": HELD_ALONE[name].long_name, **flag_attributes(name)}
     if name.endswith("_error"):
         of = name.removesuffix("_error")
-        units = PROFILES[of][0] if of in PROFILES else VARIABLES[of].units
+        units = PROFILES[of][0] if of in PROFILES else (VARIABLES | HELD_ALONE)[of].units
         return {"units": units, "long_name": f"error bound of {of}"}
-    return {"units": VARIABLES[name].units, "long_name": VARIABLES[name].long_name}
+    of = (VARIABLES | HELD_ALONE)[name]
+    return {"units": of.units, "long_name": of.long_name}

@@ -18,7 +18,8 @@ def block_many(
 
     ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of :func:`branch.walk_many`;
     ``targets`` (k,) the deformed lengths in radii or the rotations in radians, of the whole tube. A problem keeps its torque
-    while its length is held, its force while its rotation is. At zero pressure only the undeformed state is held. Rows whose
+    while its length is held, its force while its rotation is. At zero pressure and no load the undeformed
+    state is at rest. Rows whose
     status is not PENDING are passed over.
     """
     base = edges[len(edges) - 1]
@@ -50,14 +51,12 @@ def block_many(
             values[row], bounds[row], status[row], stable[row] = np.nan, np.nan, HELD_IMPOSSIBLE, 0
             if not clamped > 0.0:
                 status[row] = INVALID
-            elif p == 0.0 and other == 0.0:
-                status[row] = OK if undeformed else INVALID
-                if undeformed:
-                    values[row], bounds[row], stable[row] = 0.0, 0.0, 1
+            elif p == 0.0 and other == 0.0 and undeformed:
+                status[row], values[row], bounds[row], stable[row] = OK, 0.0, 0.0, 1
             elif turns:
-                found, unstable, _, _, _, _ = find_on_some_mesh(
-                    problems[k], p, other, targets[k] if varying else 0.5 * targets[k], kind, False, own_course, tube,
-                    accuracy, space, out,
+                found, unstable, _, _, _, _, _ = find_on_some_mesh(
+                    problems[k], p, other, targets[k] if varying else 0.5 * targets[k], kind, own_course, tube, accuracy,
+                    space, out,
                 )  # fmt: skip
                 status[row] = found
                 if found == OK or found == INACCURATE:

@@ -4,20 +4,19 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested
-from .branch import GAMMA, SHEAR, rubber_of
+from .branch import GAMMA, LENGTH, SHEAR, D, H, rubber_of
+from .buckle import find_buckled
 from .course import copy
 from .drawing import draw
-from .find import HELD_LENGTH, find
+from .find import FROM_REST, HELD_LENGTH, find
 from .march import cylinder_multiplier
 from .profile import FIELDS
 from .slack import slack_fibers
-from .status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK, PENDING
+from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK, PENDING
 
 FINER, FINEST = 4, 6144  # times the cells of the base mesh, up to so many: some layers are thin
-CONFIRMED = 0.01  # relative difference of a limit's place from one mesh to the next
-ENDED = 1e-3  # the same: where two meshes agree so well on its place, the branch ends there
+ENDED = 1e-2  # relative difference of a limit's place: where two meshes agree so well, the branch ends there
 THINNEST_LAYER = 100.0  # times it fits into a cell of an even base mesh; thinner ones need a finer mesh from the start
-JUST_BEYOND = 1.0001  # times the pressure
 
 
 @kernel
@@ -50,9 +49,11 @@ def layers(problem, p, other, kind, tube):
 
 
 @kernel
-def find_on_some_mesh(problem, p, other, target, kind, buckled, course, tube, accuracy, space, out):
-    """As :func:`find`, on finer base meshes where one does not do: where the solver fails, or a limit is met that the next
-    mesh has to confirm. Returns also the tube and the scratch that were used.
+def find_on_some_mesh(problem, p, other, target, kind, course, tube, accuracy, space, out):
+    """As :func:`find`, on finer base meshes where one does not do: where the solver fails, misses the accuracy, or meets an
+    end of the way that is not certain. Returns also the tube and the scratch that were used.
+
+    Where the accuracy is missed on all of them, the first mesh's state stands.
     """
     _, edges, cells, free, middle, places = tube
     base, factor = edges[len(edges) - 1], 1
@@ -61,49 +62,52 @@ def find_on_some_mesh(problem, p, other, target, kind, buckled, course, tube, ac
     if factor > 1:
         space, cells = workspace(factor * base, len(cells) > 1)
         tube = (tube[0], factor * edges, cells, free, factor * middle, places)
-    status, before = NOT_CONVERGED, (NOT_CONVERGED, 0.0)
-    while True:
-        copy(course, tube[0])  # a march leaves it changed
-        status, unstable, doublings, now, reached = find(
-            problem, p, other, target, kind, buckled, course, tube, accuracy, space, out
+    copy(course, tube[0])  # a march leaves it changed
+    status, unstable, doublings, now, reached, sure, path = find(
+        problem, p, other, target, kind, course, tube, accuracy, space, out
+    )
+    while not (status == OK or status == COMPRESSED or sure) and FINER * factor * base <= FINEST:
+        factor *= FINER
+        finer_space, cells = workspace(factor * base, len(cells) > 1)
+        finer_tube, finer_out = (tube[0].copy(), factor * edges, cells, free, factor * middle, places), out.copy()
+        copy(course, finer_tube[0])
+        again, others, levels, then, came, certain, way = find(
+            problem, p, other, target, kind, course, finer_tube, accuracy, finer_space, finer_out
         )
-        limit = status == BEYOND_LIMIT or (status == HELD_IMPOSSIBLE and not buckled)
-        confirmed = status == before[0] and abs(reached - before[1]) <= CONFIRMED * reached
-        if (
-            status == NOT_CONVERGED
-            and abs(reached - before[1]) <= ENDED * reached
-            and 0.0 < reached < 1.0
-            and not buckled
-        ):
-            status = BEYOND_LIMIT  # steps die out at one place on any mesh
+        if status == INACCURATE and again != OK:
             break
-        if not (status == NOT_CONVERGED or status == INACCURATE or (limit and not confirmed)):
+        ended = abs(came - reached) <= ENDED * reached and 0.0 < reached < 1.0
+        status, unstable, doublings, now, reached, sure, path = again, others, levels, then, came, certain, way
+        tube, space = finer_tube, finer_space
+        out[:] = finer_out
+        if status != OK and status != INACCURATE and ended:  # steps die out at one place on any mesh
+            status = BEYOND_LIMIT if status == NOT_CONVERGED else status
             break
-        before, factor = (status, reached), FINER * factor
-        if factor * base > FINEST:
-            if status == NOT_CONVERGED and reached == 1.0 and not buckled:  # no mesh holds it: a limit just beyond?
-                copy(course, tube[0])
-                beyond, _, _, _, _ = find(
-                    problem, JUST_BEYOND * p, other, target, kind, buckled, course, tube, accuracy, space, out
-                )
-                status = BEYOND_LIMIT if beyond == BEYOND_LIMIT else status
-            break
-        space, cells = workspace(factor * base, len(cells) > 1)
-        tube = (tube[0], factor * edges, cells, free, factor * middle, places)
-    return status, unstable, doublings, now, tube, space
+    return status, unstable, doublings, now, tube, space, path
+
+
+@kernel
+def at_rest(stations, fields, problem):
+    """Fields of the undeformed tube; the fiber angles of one that varies are put in by who asks."""
+    for j in range(len(stations)):
+        for k in range(FIELDS):
+            fields[k, j] = 0.0
+        fields[0, j], fields[1, j] = 1.0, stations[j]
+        fields[3, j], fields[4, j] = problem[H] + problem[D], problem[H] - problem[D]
 
 
 @entry_point
 def hold_many(
     problem, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds, status, stable,
-    slack, stations, profiles,
+    slack, paths, least, stations, profiles,
 ):  # fmt: skip
     """Held states of one design, for arrays of pressure, of the load that is not unknown, and of the held quantity.
 
     The n-th entries belong together; those whose status is not PENDING are passed over. ``targets`` are in radii (deformed
     length) or radians, of the whole tube; a tube that is the same all along is solved by half (``edges`` and ``places`` of
     one segment), unless ``buckled``. ``values`` and ``bounds`` are (n, 6): length, volume, twist, energy of half the tube,
-    stretch in the middle, multiplier.
+    stretch in the middle, multiplier. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2) the least
+    pressure of the ``buckled`` branch and its bound.
     """
     base = edges[len(edges) - 1]
     half = len(places) == 2
@@ -118,13 +122,35 @@ def hold_many(
         for j in range(len(stations)):
             for k in range(FIELDS):
                 profiles[i, k, j] = np.nan
-        slack[i], stable[i] = 0, 0
+        slack[i], stable[i], paths[i] = 0, 0, FROM_REST
+        least[i, 0], least[i, 1] = np.nan, np.nan
         if status[i] != PENDING:
             continue
         target = 0.5 * targets[i] if half else targets[i]
-        status[i], unstable, doublings, now, tube, space = find_on_some_mesh(
-            problem, pressures[i], others[i], target, kind, buckled, course, first_tube, accuracy, first_space, out
-        )
+        whole = places[len(places) - 1]
+        if (
+            pressures[i] == 0.0
+            and others[i] == 0.0
+            and target == (whole if kind == HELD_LENGTH else 0.0)
+            and not buckled
+        ):
+            rest = 0.5 * problem[LENGTH]
+            status[i], stable[i] = OK, 1
+            values[i, 0], values[i, 1], values[i, 4] = rest, rest, 1.0
+            values[i, 2], values[i, 3], values[i, 5] = 0.0, 0.0, 0.0
+            for k in range(6):
+                bounds[i, k] = 0.0
+            at_rest(stations, profiles[i], problem)
+            continue
+        tube, space, unstable = first_tube, first_space, 0
+        if buckled:
+            status[i], unstable, doublings, now = find_buckled(
+                problem, pressures[i], others[i], target, tube, accuracy, space, out, least[i]
+            )
+        else:
+            status[i], unstable, doublings, now, tube, space, paths[i] = find_on_some_mesh(
+                problem, pressures[i], others[i], target, kind, course, first_tube, accuracy, first_space, out
+            )
         if status[i] == OK or status[i] == INACCURATE:
             for k in range(6):
                 share = 0.5 if not half and k < 4 else 1.0

@@ -80,12 +80,13 @@ def refuse(problem, pressures, others, targets, kind, status):
     from .lanes.hold import seek_lanes
 
     count = len(pressures)
+    some = np.flatnonzero(pressures > 0.0)
     problems = np.repeat(problem[None], count, axis=0)
     problems[:, TORQUE if kind == HELD_LENGTH else FORCE] = others
     constants = YEOH if np.any(problem[[SECOND, THIRD]] != 0.0) else MOONEY_RIVLIN
     found, each = _pending(count), np.arange(count)
     seek_lanes(
-        problems, 0.5 * targets, each, pressures, each, kind == HELD_LENGTH, constants, *found, *np.empty((4, count))
+        problems, 0.5 * targets, each, pressures, some, kind == HELD_LENGTH, constants, *found, *np.empty((4, count))
     )
     none = (found.status == COMPRESSED) | (found.status == HELD_IMPOSSIBLE)
     status[none] = found.status[none]

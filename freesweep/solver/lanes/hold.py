@@ -7,6 +7,8 @@ point, so is the other (:mod:`.guide`): each state on this way is stable under i
 rises with mu. So the way holds no other state with this C, and it is the one :mod:`freesweep.solver.find` goes. Whatever
 else may be is left to that.
 
+Where the wall of that cylinder would have to be pushed at any pressure, the search begins at the tube with nothing held.
+
 A wall cannot be pushed. Where the same way leads to p + f = 0, and the tube is longer there than wanted, no force holds it.
 """
 
@@ -25,9 +27,9 @@ from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 OF_LENGTH, OF_ROTATION = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 RAISE = 1.5  # of the pressure, where the wall of the straight cylinder is not under tension
 TRIALS, CLOSE = 12, 1e-6  # of the search for u, and the share of the way in C that may be left
-LEAST_SHARE, MOST_SHARE = 0.4, 2.5  # of u - 1, from one trial to the next
+LEAST_SHARE, MOST_SHARE = 0.4, 2.5  # of u less where it begins, from one trial to the next
 SAME = 1e-6  # relative difference of u, searched and carried
-NEAR = 1e-12  # |u - 1|: rounding
+NEAR = 1e-12  # difference of u: rounding
 UNSURE = 0.02  # share of the way in C to where the wall would be pushed: so near nothing is decided
 UNCLEAR = 0.01  # relative distance from loss of stability: so near the scalar kernels count
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
@@ -105,6 +107,16 @@ def straight_start(cell, load, length_held, asked):
 
 
 @kernel
+def free_start(cell, load, half, asked, work, more):
+    """The uniform stretch with nothing held, carried from rest, and the length that belongs to it; where there is one."""
+    one, zero = spread(1.0), spread(0.0)
+    rest = one, load[1], load[2], zero, zero, zero, one
+    u, came = guide.follow(one, cell, rest, load, half, asked)
+    u = select(asked & came, u, one)
+    return u, held_integral(u, cell, load, half, True, work, more), asked & came
+
+
+@kernel
 def cylinder_stability(cell, load, half):
     """Where the straight cylinder is stable while C is held, and where that is clear: its first mode is a whole sine."""
     _, _, _, L_yy, _, L_vv = lagrangian.density(spread(1.0), 0.0, cell, load)
@@ -113,28 +125,28 @@ def cylinder_stability(cell, load, half):
 
 
 @kernel
-def search(first, target, half, cell, load, length_held, asked, work, more):
-    """The uniform stretch u whose tube has C = ``target``, by secants from the straight one, which has C = ``first``:
+def search(origin, first, target, half, cell, load, length_held, asked, work, more):
+    """The uniform stretch u whose tube has C = ``target``, by secants from the one at ``origin``, which has C = ``first``:
     ``(u, multiplier, dC/d(multiplier), where they were found)``.
     """
     u = uniform_stretch(target, half, cell, load[0], length_held)
-    todo, found = asked & (abs(u - 1.0) > NEAR), mask_of(0)
-    u = select(todo, u, spread(1.0))
-    mu = multiplier(spread(1.0), cell, load, length_held)
-    u_before, c_before, mu_before, sigma = spread(1.0), first, mu, spread(0.0)
+    todo, found = asked & (abs(u - origin) > NEAR), mask_of(0)
+    u = select(todo, u, origin)
+    mu = multiplier(origin, cell, load, length_held)
+    u_before, c_before, mu_before, sigma = origin, first, mu, spread(0.0)
     for _ in range(TRIALS):
         mu = select(todo, multiplier(u, cell, load, length_held), mu)
         now = under(load, length_held, mu)
         room, _, _, L_yy, _, _ = lagrangian.density(u, 0.0, cell, now)
         fits = todo & (min(room, now[3] + now[4]) > 0.0) & (L_yy < 0.0)
-        c = held_integral(select(fits, u, spread(1.0)), cell, now, half, length_held, work, more)
+        c = held_integral(select(fits, u, origin), cell, now, half, length_held, work, more)
         sigma = select(fits, (c - c_before) / (mu - mu_before), sigma)
         close = fits & (abs(c - target) <= CLOSE * abs(target - first))
         found, todo = found | close, todo & ~close
         if not some(todo):
             break
         ahead = u + (target - c) * (u - u_before) / (c - c_before)
-        ahead = 1.0 + min(max((ahead - 1.0) / (u - 1.0), LEAST_SHARE), MOST_SHARE) * (u - 1.0)
+        ahead = origin + min(max((ahead - origin) / (u - origin), LEAST_SHARE), MOST_SHARE) * (u - origin)
         back = 0.5 * (u + u_before)  # not so far: the wall would have to be pushed
         u_next = select(fits, ahead, back)
         c_before, mu_before = select(fits, c, c_before), select(fits, mu, mu_before)
@@ -143,16 +155,16 @@ def search(first, target, half, cell, load, length_held, asked, work, more):
 
 
 @kernel
-def refused(start, first, target, half, cell, load, length_held, asked, work, more):
+def refused(origin, start, first, target, half, cell, load, length_held, asked, work, more):
     """Where no force or torque holds what is wanted, and where that is too close to tell."""
-    one, pushed, near = spread(1.0), mask_of(0), mask_of(0)
+    pushed, near = mask_of(0), mask_of(0)
     if not length_held:
         return asked & ~(load[3] + load[4] > 0.0), near
     if some(asked):
         limit = under(load, True, -load[3])
-        u, came = guide.follow(one, cell, start, limit, half, asked)
+        u, came = guide.follow(origin, cell, start, limit, half, asked)
         came = came & (u > 1.0)  # the clamped ends are the first to be pushed
-        u = select(came, u, one)
+        u = select(came, u, origin)
         least = held_integral(u, cell, limit, half, True, work, more)
         short, close = least - target, UNSURE * abs(first - least)
         pushed, near = came & (short > close), came & (abs(short) <= close)
@@ -195,9 +207,17 @@ def seek_lanes(
             too_long = todo & (target > (1.0 + LONGER) * half * lagrangian.longest(cell, load[0]))
             todo = todo & ~too_long
         start, fits = straight_start(cell, load, length_held, todo)
-        pushed, todo = todo & ~fits, todo & fits
-        straight = todo & (start[3] == load[3]) & (target == first)
-        again, near = refused(start, first, target, half, cell, load, length_held, todo & ~straight, work, more)
+        pushed, origin = mask_of(0), one
+        straight = todo & fits & (start[3] == load[3]) & (target == first)
+        if not length_held:  # p + f alone decides
+            pushed, todo = todo & ~fits, todo & fits
+        elif some(todo & ~fits):
+            origin, at_free, freely = free_start(cell, load, half, todo & ~fits, work, more)
+            first = select(freely, at_free, first)
+            start_p, start_mu = select(freely, load[3], start[3]), select(freely, spread(0.0), start[4])
+            start = under(at_pressure(load, start_p), True, start_mu)
+            todo = todo & (fits | freely)
+        again, near = refused(origin, start, first, target, half, cell, load, length_held, todo & ~straight, work, more)
         pushed, todo = pushed | again, todo & ~(again | near)
         firm, clear = cylinder_stability(cell, start, half)
         straight, todo = straight & todo & clear, todo & ~straight
@@ -205,9 +225,9 @@ def seek_lanes(
         put(found, 1, ROUNDING * max(abs(load[3]), max(abs(start[4]), abs(start[5]))))
         put(found, 2, mu)
         if some(todo):
-            u, ahead, sigma, there = search(first, target, half, cell, load, length_held, todo, work, more)
+            u, ahead, sigma, there = search(origin, first, target, half, cell, load, length_held, todo, work, more)
             now = under(load, length_held, ahead)
-            carried, came = guide.follow(one, cell, start, now, half, todo & there)
+            carried, came = guide.follow(origin, cell, start, now, half, todo & there)
             todo = todo & there & came & (abs(carried - u) < SAME * u)
             put(found, 0, u)
             put(found, 2, select(todo, ahead, mu))
