@@ -68,7 +68,7 @@ def test_muscles_have_no_rotation_to_hold(muscle):
             ["deformed_length: a value is given twice", "torque: expects a torque", "pressure: found -1",
              "accuracy: found 1", "x: give ascending stations"],
         ),
-        (lambda: blocked_force(B, -2.0, 0.0), ["pressure: found -2; it has to be 0 or more", "deformed_length: found 0"]),
+        (lambda: blocked_force(B, -2.0, 0.0), ["pressure: found -2 Pa; it has to be 0 or more", "deformed_length: found 0"]),
         (lambda: blocked_torque(B, [1e4], np.nan, [[1]]), ["rotation: found nan", "force: found an array of shape (1, 1)"]),
         (lambda: blocked_force(B, 1e4, rotation=0.0), ["rotation: length and rotation are held both"]),
         (lambda: blocked_torque(B, 1e4, deformed_length=0.131), ["deformed_length: length and rotation are held both"]),
