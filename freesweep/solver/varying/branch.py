@@ -11,12 +11,11 @@ from ..held import loaded
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from .fold import locate
 from .meshes import GRADINGS, stand, take
-from .one_state import REGRADES, near_fold, plain, record
+from .one_state import near_fold, plain, record
 
 MOST_STEPS = 3000
 SMALL_STRAIN = 0.02  # of all uniform stretches along the tube: where a branch begins, the wall has one state only
 HALVINGS = 80  # of the load, until that holds
-STABLE = np.bool_(True)
 
 
 @kernel
@@ -61,7 +60,7 @@ def answer(track, space, tube, path, here, ahead, rows, accuracy):
         if rows.status[i] == PENDING and low <= p <= high:
             guess(track, space, here, ahead, p)
             load = loaded(path.origin, path.direction, p)
-            status, doublings = plain(space, tube, load, REGRADES, accuracy)
+            status, doublings = plain(space, tube, load, accuracy)
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
@@ -82,7 +81,7 @@ def end_at_fold(track, roomy, space, tube, path, here, ahead, rows, limit, accur
             continue
         if p < ahead[0]:
             guess(track, space, here, ahead, p)
-            status, doublings = plain(space, tube, load, REGRADES, accuracy)
+            status, doublings = plain(space, tube, load, accuracy)
         if status == NOT_CONVERGED and value == value:
             status, doublings = near_fold(track, space, tube, path, p, here[0], value, accuracy)
         record(space, tube, load, status, doublings, accuracy, rows, i)
@@ -109,9 +108,7 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
             gone = pushed(track.y, loaded(path.origin, path.direction, here[0]))
             return (COMPRESSED if gone else NOT_CONVERGED), here, ahead
         if not is_stable(negative, tangent_mu, sense):
-            ahead = last_alike(
-                lagrangian.density, track, n, own, path, here[0], here[1], made, sense, STABLE, space.work
-            )
+            ahead = last_alike(lagrangian.density, track, n, own, path, here[0], here[1], made, sense, True, space.work)
             if len(rows.pressures) > 0:
                 end_at_fold(track, roomy, space, tube, path, here, ahead, rows, limit, accuracy)
             return (OK if (ahead[0] - far) * sense >= 0.0 else BEYOND_LIMIT), here, ahead

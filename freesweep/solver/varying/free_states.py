@@ -14,12 +14,11 @@ from ..continuation import FOLLOWED, Path
 from ..status import COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from .branch import begin, follow, guess
 from .fold import FINEST
-from .meshes import GRADINGS, stand
-from .one_state import blank, differ, extremes, plain, record
+from .meshes import stand
+from .one_state import blank, cold, differ, extremes, record
 from .space import Rows, make_space, make_track
 
 FINER = 4  # times the cells of the base mesh, for what did not converge on it
-COLD, NONE = np.int64(GRADINGS), np.int64(0)
 
 
 @inlined
@@ -47,19 +46,13 @@ def settle(problem, tube, rows):
 
 
 @inlined
-def cold(space, tube, load, accuracy):
-    """A state of so little strain, or locked, that the uniform stretches ``space.ahead`` guess it well."""
-    guide.start(tube, space.ahead, load, space.x, space.y)
-    return plain(space, tube, load, COLD, accuracy)
-
-
-@inlined
 def lock(problem, tube, space, rows, accuracy):
     """Locked shapes: at infinite pressure."""
     load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
             guide.locked(tube, problem[GAMMA], space.ahead)
+            guide.start(tube, space.ahead, load, space.x, space.y)
             status, doublings = cold(space, tube, load, accuracy)
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
@@ -74,6 +67,7 @@ def first_states(path, first, tube, space, rows, accuracy):
             for k in range(len(space.u)):
                 space.u[k] = 1.0
             if guide.follow(tube, space.u, path.origin, load, space.ahead) == 1.0:
+                guide.start(tube, space.ahead, load, space.x, space.y)
                 status, doublings = cold(space, tube, load, accuracy)
                 record(space, tube, load, status, doublings, accuracy, rows, i)
 
@@ -103,7 +97,7 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
         guess(track, space, here, ahead, 1.0)
         for i in range(len(space.y)):
             track.y[i] = space.y[i]
-        status, negative, _ = stand(track, tube, path, 1.0, 1.0, NONE, space.work)
+        status, negative, _ = stand(track, tube, path, 1.0, 1.0, 0, space.work)
         if status != FOLLOWED or negative > 0 or differ(extremes(space.y, tube[4]), extremes(track.y, tube[4])):
             return NOT_CONVERGED
     return OK
@@ -147,7 +141,7 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
             continue
         for i in range(n + 1):
             track.x[i], track.y[i] = x[i], y[i]
-        status, _, tangent_mu = stand(track, tube, path, settled, sense, NONE, space.work)
+        status, _, tangent_mu = stand(track, tube, path, settled, sense, 0, space.work)
         if status == FOLLOWED:
             status, _, _ = follow(track, roomy, space, tube, path, settled, tangent_mu, far, rows, limit, accuracy)
         else:

@@ -1,14 +1,12 @@
 """The mesh of a branch, graded by the state that stands on it."""
 
-import numpy as np
-
 from ...jit import kernel
 from .. import lagrangian, nested
 from ..continuation import FOLLOWED, correct, make_unit, size_of
 from ..course import fill
 from ..held import loaded
 
-GRADINGS = np.int64(3)  # of the first mesh
+GRADINGS = 3  # of the first mesh
 
 
 @kernel

@@ -18,8 +18,8 @@ from ..status import INACCURATE, NOT_CONVERGED, OK
 MESH_CHANGE = 0.03  # relative difference of a shape from one mesh to the next
 ROOT_STEPS, ROOT = 40, 1e-9  # of the pressure, relative
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-REGRADES = np.int64(1)
-PLAIN, HELD = np.int64(nested.PLAIN), np.int64(nested.HELD)
+REGRADES, COLD = 1, 3  # of the base mesh, from a good guess and from a rough one
+PLAIN, HELD = nested.PLAIN, nested.HELD
 
 
 @kernel
@@ -36,22 +36,29 @@ def differ(one, other):
 
 @kernel
 def solve(space, tube, load, goal, direction, target, regrades, accuracy):
-    """:func:`nested.solve` from the guess in ``space``: ``(status, doublings)``, and that the shape is still the guess's."""
-    guess = extremes(space.y, tube[4])
+    """:func:`nested.solve` from the guess in ``space``: ``(status, doublings)``, and that the state is stable."""
     status, unstable, doublings, _ = nested.solve(
         lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, space.x, space.y, tube, load,
         goal, direction, target, 1.0, regrades, accuracy, space.fine, space.work, space.table, space.out,
     )  # fmt: skip
     solved = status == newton.CONVERGED or status == nested.UNREACHED
-    if not solved or unstable > 0 or differ(guess, extremes(space.y, tube[4])):
+    if not solved or unstable > 0:
         return NOT_CONVERGED, doublings
     return (OK if status == newton.CONVERGED else INACCURATE), doublings
 
 
 @inlined
-def plain(space, tube, load, regrades, accuracy):
-    """The state at ``load``."""
-    return solve(space, tube, load, PLAIN, FLAT, 0.0, regrades, accuracy)
+def cold(space, tube, load, accuracy):
+    """The state at ``load``, from a rough guess: where there is one only."""
+    return solve(space, tube, load, PLAIN, FLAT, 0.0, COLD, accuracy)
+
+
+@inlined
+def plain(space, tube, load, accuracy):
+    """The state at ``load`` that the guess all but is."""
+    guess = extremes(space.y, tube[4])
+    status, doublings = solve(space, tube, load, PLAIN, FLAT, 0.0, REGRADES, accuracy)
+    return (NOT_CONVERGED if differ(guess, extremes(space.y, tube[4])) else status), doublings
 
 
 @kernel
@@ -76,9 +83,10 @@ def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
         share = (target - start) / whole
         for i in range(n + 1):
             space.x[i], space.y[i] = track.x[i], track.y[i] + share * (track.next_y[i] - track.y[i])
+        guess = extremes(space.y, tube[4])
         status, doublings = solve(space, tube, path.origin, HELD, direction, target, REGRADES, accuracy)
-        if status == NOT_CONVERGED:
-            return status, doublings
+        if status == NOT_CONVERGED or differ(guess, extremes(space.y, tube[4])):
+            return NOT_CONVERGED, doublings
         gap = space.out[0, nested.MULTIPLIER] - 1.0
         for k in range(nested.OUTPUTS):
             if made > 0 and gap != last:
