@@ -1,0 +1,25 @@
+"""Walks whose loads all rise in proportion to the first pressure: hard ways for the kernels, of which no actuator asks."""
+
+import numpy as np
+
+from freesweep.census.designs import _tubes
+from freesweep.first_integral.folded import solve_near
+from freesweep.solver import batch
+
+
+def in_proportion(problems, first, pressures, lanes=False):
+    """States of ``problems`` (n, 11), whose loads are at their full size at the first of each one's ``pressures``."""
+    problems, pressures = np.ascontiguousarray(problems), np.ascontiguousarray(pressures, dtype=float)
+    found = batch._nothing(len(problems), len(pressures), batch.NOTHING)
+    asked = np.zeros(len(pressures), bool)
+    batch._walk(
+        problems, np.asarray(first), pressures, asked, batch.uniform(24), 1e-6, batch.NOTHING, lanes, False, found
+    )
+    return found
+
+
+def judged_near(designs, mid_radius):
+    """Values and errors (n, 5) of ``designs`` (n, 10) by the second method, of the equilibria with about such middles."""
+    found = solve_near(_tubes(designs), mid_radius)
+    of_half = np.array([0.5, 0.5, 0.5, 0.5, 1.0])
+    return found.values * of_half, found.errors * of_half
