@@ -46,7 +46,7 @@ def load(kinds, sweep, progress=False):
         if progress:
             print("compiling the kernels in two processes, once for each version: half a minute")
         _compile_aside(missing, rubbers)
-    jobs = ((_typical(kind, rubber), sweep.accuracy, not sweep.profiles) for kind in kinds for rubber in rubbers)
+    jobs = ((_typical(kind, rubber, sweep.profiles), sweep.accuracy) for kind in kinds for rubber in rubbers)
     waiting = Timer(PATIENCE, print, ["compiling the kernels, once for each version: a minute"])
     if progress and not missing:
         waiting.start()
@@ -140,8 +140,13 @@ def _rubbers(sweep):
         yield {}
 
 
-def _typical(kind, constants):
-    """A job of one state, held at rest if its kind is held."""
+def _typical(kind, constants, varies):
+    """A job of one state, held at rest if its kind is held; of a tube that ``varies``, if only in name."""
     row = problem_rows({name: np.array([value]) for name, value in (TYPICAL | constants).items()}, "full")
     target = np.array([TYPICAL["length"] if kind == "blocked_force" else 0.0])
-    return Job(kind, row, target, np.array([0, 1]), np.array([PRESSURE]), [], np.zeros(1, np.int64))
+    courses = []
+    if varies:
+        halves = np.zeros((2, 1, 3, 4))
+        halves[:, 0, :, 0] = row[0, :3]
+        courses = [(halves, np.arange(3) * BASE_CELLS, np.linspace(0.0, TYPICAL["length"], 3))]
+    return Job(kind, row, target, np.array([0, 1]), np.array([PRESSURE]), courses, np.zeros(1, np.int64))
