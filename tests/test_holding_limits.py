@@ -24,11 +24,12 @@ BEYOND = [
 @pytest.mark.parametrize("design", BEYOND)
 def test_states_far_beyond_the_critical_pressure_are_explained(design):
     alpha, beta, length, wall, gamma, ratio, force, pressure, energy, status = design
+    r, c = 5e-3, 1e5
     actuator = Actuator(
-        alpha=alpha, beta=beta, length=length, radius=1.0, wall=wall, material=MooneyRivlin(1.0, ratio),
+        alpha=alpha, beta=beta, length=length * r, radius=r, wall=wall * r, material=MooneyRivlin(c, ratio * c),
         fiber_extension=gamma, energy=energy,
     )  # fmt: skip
-    held = blocked_torque(actuator, [0.02 * pressure, pressure], force=np.pi * force, x=0.0)
+    held = blocked_torque(actuator, np.array([0.02, 1.0]) * pressure * c, force=np.pi * r**2 * c * force, x=0.0)
     assert held["status"].values.tolist()[1] == status
 
 

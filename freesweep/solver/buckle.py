@@ -101,7 +101,9 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
             drift = largest_drift(y, guess)
             solved = status == newton.CONVERGED and drift < STRAY * ahead + NO_SNAP and abs(t - expected) < STRAY
             step = (GROWTH if drift < 0.2 * STRAY * ahead else 1.0) * ahead if solved else 0.5 * ahead
-        if not solved or not 0.0 < t < farthest:
+        if not solved:
+            return NOT_CONVERGED, 0, 0, load
+        if not 0.0 < t < farthest:
             break
         dot = new_t * by_t
         for i in range(n + 1):
