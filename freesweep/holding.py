@@ -167,7 +167,8 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     result.attrs |= thin_wall_attributes(tube)
     if not buckled and np.any(result["held_path"] == 1):
         result.attrs["comment"] = (
-            "held_path: from rest the wall would have to be pushed; some states were found from the free one"
+            "held_path: the way from rest with the undeformed length or rotation held ends elsewhere, or the wall would have"
+            " to be pushed on it; some states were found from the free one"
         )
     return result
 

@@ -103,6 +103,7 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
                 found, mu, reached, turned, way = directly(
                     x, y, tube, course, cell, start, there, direction, wanted, EVERY, work
                 )
+    came_to = found == OK
     status, unstable, doublings, now, reached, sure = settle(
         x, y, tube, way, found, mu, reached, turned, load, wanted, accuracy, space, out
     )
@@ -116,7 +117,8 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
         if necked != NOT_CONVERGED:
             return necked, 1, levels, under, 1.0, True, FROM_REST
     path = FROM_REST
-    if status == COMPRESSED or (not valued(status) and wanted != natural):
+    # not where only finer meshes have no such state: which way is gone must not hang on the accuracy
+    if status == COMPRESSED or (not valued(status) and wanted != natural and not (came_to and status == NOT_CONVERGED)):
         found, mu, came, turned, way = from_free(x, y, tube, course, cell, there, direction, wanted, EVERY, work)
         again, others, levels, under, came, certain = settle(
             x, y, tube, way, found, mu, came, turned, load, wanted, accuracy, space, out
