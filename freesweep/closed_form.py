@@ -136,7 +136,8 @@ def critical_pressure(alpha, beta, length, radius, wall, c10, c01=0.0, energy="f
     """Pressure [Pa] from which a cylinder whose rotation is held buckles: its first mode is antisymmetric.
 
     Lengths in [m], constants in [Pa]; infinite where it never does. Linear stability of y = 1 under Eq. 2.20, where nothing
-    is strained: of a Yeoh rubber only c1 counts, given as ``c10``.
+    is strained: of a Yeoh rubber only c1 counts, given as ``c10``. No safe limit: stable buckled states may exist below it,
+    down to ``least_buckled_pressure`` of ``blocked_torque(..., buckled=True)``.
     """
     ta, tb = _tangents(alpha, beta)
     half_sum, half_difference, q = 0.5 * (ta + tb), 0.5 * (ta - tb), ta * tb
