@@ -98,8 +98,6 @@ class _Points:
         }
         if locked:
             loads = {"pressure": ones, "force": 0.0 * ones, "torque": 0.0 * ones}
-        limp = (loads["pressure"] == 0.0) & (loads["force"] == 0.0)  # torque alone: the limit of falling pressures
-        loads["pressure"] = np.where(limp, NEXT_TO_NOTHING * np.abs(loads["torque"]), loads["pressure"])
         shear = ones * (self.data.attrs["energy"] == "full")
         return Tubes(
             0.5 * (ta + tb), 0.5 * (ta - tb), area, c["fiber_extension"], c["c01"] / c["c10"], shear, **loads,
@@ -110,9 +108,11 @@ class _Points:
 def _free(points, notes):
     """Equilibria under the points' loads; of those past the uniform tube's turn, beginning at the stored middle."""
     tubes = points.tubes()
+    rest = (tubes.pressure == 0.0) & (tubes.force == 0.0) & (tubes.torque == 0.0)
+    limp = (tubes.pressure == 0.0) & (tubes.force == 0.0)  # torque alone: the limit of falling pressures
+    tubes = tubes._replace(pressure=np.where(limp, NEXT_TO_NOTHING * np.abs(tubes.torque), tubes.pressure))
     judged = solve(tubes)
     values, errors, reason = judged
-    rest = (tubes.pressure == 0.0) & (tubes.force == 0.0) & (tubes.torque == 0.0)
     values[rest], errors[rest], reason[rest] = (
         cylinders(tubes.at(rest)._replace(gamma=np.ones(rest.sum()))),
         0.0,

@@ -412,7 +412,7 @@ def test_a_tube_that_torque_draws_in_lets_go_at_one_pressure_whatever_the_list()
     lists = ([0.006176, 1.430731, 9.341646], np.linspace(0.006176, 9.341646, 40), np.linspace(0.006176, 3.0, 200))
     for pressures in lists:
         for lanes in (True, False):
-            walks = in_proportion(drawn[None], [0, len(pressures)], pressures, lanes)
+            walks = in_proportion(np.array([drawn]), [0, len(pressures)], pressures, lanes)
             limit, bound = walks.limits[0]
             assert abs(limit - 1.5552888) < bound + 1e-7
             beyond = np.asarray(pressures) > limit

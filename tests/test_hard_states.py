@@ -59,7 +59,9 @@ def test_long_tube_whose_ends_have_a_stretch_that_pays_more_turns_back_before_th
     H, D, area, gamma, ratio, shear = problem[:6]
     rest = (1.0, (ratio,), shear, 0.0, 0.0, 0.0, 1.0)
     load = (gamma, (ratio,), shear, pressure, 0.0, 0.0, 1.0)
-    u, carried = uniform.follow(lagrangian.density, 1.0, (H, D, area), rest, load, 0.5 * problem[8])
+    cell = (H, D, area)
+    drawn = lagrangian.drawn_in(cell, load)
+    u, carried = uniform.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * problem[8], drawn)
     assert carried == 1.0
     middle, between = (lagrangian.uniform_tube(y, (H, D, area), load)[2] for y in (u, rival))
     assert between > middle

@@ -6,7 +6,7 @@ import pytest
 from freesweep import Actuator, MooneyRivlin, Yeoh, inflate
 from freesweep.solver.branch import FORCE, GAMMA, PROBLEM_SIZE, TORQUE
 from freesweep.solver.load_path import legs, settling_pressure
-from freesweep.status import BEYOND_LIMIT, COMPRESSED, OK
+from freesweep.status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK
 
 R0, C10 = 5e-3, 1e5
 
@@ -105,7 +105,7 @@ def test_a_pulled_tube_is_regular_without_pressure():
 def test_a_tube_under_torque_alone_is_the_limit_of_falling_pressures():
     tube = Actuator(alpha=28.6, beta=-50, length=0.1, radius=R0, wall=1e-3, material=MooneyRivlin(C10, 0.5 * C10))
     found = inflate(tube, [0.0, 1e-4, 1.0], torque=0.01, x=[0.0, 0.05])
-    assert (found["status"] == OK).all()
+    assert np.isin(found["status"], [OK, INACCURATE]).all()  # tensions, where the ends' layers have no length
     rotation = found["rotation"].values
     assert rotation[0] == pytest.approx(rotation[1], abs=1e-5)
     assert abs(rotation[1] - rotation[2]) < 1e-2
