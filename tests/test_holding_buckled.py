@@ -55,10 +55,10 @@ def test_buckled_states_of_one_curve_belong_together():
     assert len(set(np.sign(held["deformed_radius"].values.ravel() - R0))) == 1
 
 
-@pytest.mark.parametrize(("energy", "most"), [("principal", 0.295e6), ("full", 0.35e6)])
-def test_buckled_branch_has_no_gap(energy, most):
+@pytest.mark.parametrize("energy", ["principal", "full"])
+def test_buckled_branch_has_no_gap(energy):
     """From just above the critical pressure on: shorter and harder twisting with each step, on one smooth curve."""
-    pressures = np.linspace(0.23e6, most, 31)
+    pressures = np.linspace(0.23e6, 0.35e6, 31)
     held = blocked_torque(dataclasses.replace(B, energy=energy), pressures, buckled=True, x=B.length / 4)
     assert (held["status"] == OK).all()
     assert (held["stable"] == 1).all()

@@ -14,7 +14,18 @@ from . import held, lagrangian, nested, newton, pinned, turn
 from .branch import GAMMA, SHEAR, rubber_of
 from .climb import largest_drift, regraded
 from .course import at_point
-from .march import GROWTH, LARGEST_CHANGE, NO_SNAP, STRAY, TOLERANCE, cylinder_multiplier, even_mesh, fastest, halt, top
+from .march import (
+    GROWTH,
+    LARGEST_CHANGE,
+    NO_SNAP,
+    STRAY,
+    TOLERANCE,
+    cylinder_multiplier,
+    even_mesh,
+    fastest,
+    halt,
+    top,
+)  # fmt: skip
 from .stability import unstable_directions
 from .status import HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
@@ -23,6 +34,8 @@ STEPS, SMALLEST_STEP = 600, 1e-6
 FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
 DIRECTION = (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 PROBE = 1e-3  # of the pressure
+BUCKLED = 1e-3  # |y - 1| from which a tube counts as swollen, or as thinned
+PRESSURE_STEP = 0.005  # of it, where a front is too steep for steps along the branch
 
 
 @kernel
@@ -36,6 +49,67 @@ def critical(cell, load, length):
         found[k] = L_yy + L_vv * (2.0 * pi / length) ** 2
     p = -found[0] / (found[1] - found[0])
     return p if p > 0.0 else np.nan
+
+
+@kernel
+def is_buckled(y):
+    """Whether a tube swells somewhere and thins somewhere."""
+    return np.max(y) > 1.0 + BUCKLED and np.min(y) < 1.0 - BUCKLED
+
+
+@kernel
+def on_meshes(x, y, tube, load, direction, wanted, mu, accuracy, space, out):
+    """A buckled state of the base mesh on nested ones: ``(status, doublings, load)``; NOT_CONVERGED where it is none that is
+    stable. Its multiplier is left in units of ``direction``.
+    """
+    fine, work, table = space[0], space[1], space[2]
+    n = len(x) - 1
+    status, unstable, doublings, _ = nested.solve(
+        lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube, load, nested.HELD,
+        direction, wanted, mu, 1, accuracy, fine, work, table, out,
+    )  # fmt: skip
+    good = status == newton.CONVERGED or status == nested.UNREACHED
+    if not good or unstable > 0 or not is_buckled(y):
+        return NOT_CONVERGED, 0, load
+    now = held.loaded(load, direction, out[0, nested.MULTIPLIER])
+    _, rounding = unstable_directions(
+        fine[0], fine[1], n << doublings, n, tube, now, direction, abs(wanted), work
+    )  # fmt: skip
+    out[1, nested.MULTIPLIER] += rounding
+    return (OK if status == newton.CONVERGED else INACCURATE), doublings, now
+
+
+@kernel
+def scaled(out, scale):
+    """Turn the multiplier from units of the direction to those of its load."""
+    out[0, nested.MULTIPLIER] *= scale
+    out[1, nested.MULTIPLIER] *= scale
+
+
+@kernel
+def by_pressure(x, y, kept_x, kept_y, tube, way, t, mu, work):
+    """On an even mesh, in steps of the pressure, from a state at share ``t`` of it, which is stable and stays so:
+    ``(whether it came to the end, mu)``.
+    """
+    n, direction, target = len(x) - 1, way[4], way[3]
+    even_mesh(x, tube[5], tube[1])
+    j = 0
+    for i in range(n + 1):
+        while j < n - 1 and kept_x[j + 1] < x[i]:
+            j += 1
+        y[i] = kept_y[j] + (x[i] - kept_x[j]) * (kept_y[j + 1] - kept_y[j]) / (kept_x[j + 1] - kept_x[j])
+    while True:
+        own, now = pinned.at_share(way, tube, x, n, n, t)
+        status, unstable, mu, _ = held.solve_held(
+            lagrangian.density, lagrangian.conjugate, x, y, n, False, own, now, direction, mu, target, TOLERANCE,
+            newton.MAX_ITERATIONS, work,
+        )  # fmt: skip
+        if status != newton.CONVERGED or not is_buckled(y):
+            return False, mu
+        if t == 1.0:
+            return unstable == 0, mu
+        regraded(x, y, n, tube, held.loaded(now, direction, mu), work)
+        t = min(1.0, t + PRESSURE_STEP)
 
 
 @kernel
@@ -101,8 +175,16 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
             drift = largest_drift(y, guess)
             solved = status == newton.CONVERGED and drift < STRAY * ahead + NO_SNAP and abs(t - expected) < STRAY
             step = (GROWTH if drift < 0.2 * STRAY * ahead else 1.0) * ahead if solved else 0.5 * ahead
-        if not solved:
-            return NOT_CONVERGED, 0, 0, load
+        if not solved:  # a front that is too steep for steps along the branch
+            if not (kept_unstable == 0 and kept_t < 1.0 and kept_y[quarter] > 1.0 > kept_y[n - quarter]):
+                return NOT_CONVERGED, 0, 0, load
+            found, mu = by_pressure(x, y, kept_x, kept_y, tube, way, kept_t, kept_mu, work)
+            status, doublings, now = NOT_CONVERGED, 0, load
+            if found:
+                status, doublings, now = on_meshes(x, y, tube, load, direction, wanted, mu, accuracy, space, out)
+            if status != NOT_CONVERGED:
+                scaled(out, scale)
+            return status, 0, doublings, now
         if not 0.0 < t < farthest:
             break
         dot = new_t * by_t
@@ -129,20 +211,10 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
             here_x, here_y, here = x.copy(), y.copy(), work[12].copy()
             found, its_mu = halt(x, y, n, n, tube, way, k, t, mu, new_t, 1.0, work)
             if found:
-                status, unstable, doublings, _ = nested.solve(
-                    lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube, load,
-                    nested.HELD, direction, wanted, its_mu, 1, accuracy, fine, work, table, out,
-                )  # fmt: skip
-                good = status == newton.CONVERGED or status == nested.UNREACHED
-                if good and unstable == 0 and y[quarter] > 1.0 > y[n - quarter]:
-                    now = held.loaded(load, direction, out[0, nested.MULTIPLIER])
-                    _, rounding = unstable_directions(
-                        fine[0], fine[1], n << doublings, n, tube, now, direction, abs(wanted), work
-                    )
-                    out[1, nested.MULTIPLIER] += rounding
-                    out[0, nested.MULTIPLIER] *= scale
-                    out[1, nested.MULTIPLIER] *= scale
-                    return (OK if status == newton.CONVERGED else INACCURATE), 0, doublings, now
+                status, doublings, now = on_meshes(x, y, tube, load, direction, wanted, its_mu, accuracy, space, out)
+                if status != NOT_CONVERGED and y[quarter] > 1.0 > y[n - quarter]:
+                    scaled(out, scale)
+                    return status, 0, doublings, now
             for i in range(n + 1):
                 x[i], y[i], work[12, i] = here_x[i], here_y[i], here[i]
             unstable = kept_unstable
