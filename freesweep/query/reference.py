@@ -140,6 +140,7 @@ def end_effects(variable, kind, points, states, stored, errors, effects, noise):
     """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); NaN where the neighbours have to say."""
     terms = np.empty((len(points), 3))
     references(variable, points, states, terms)
+    stored, errors = stored.copy(), errors.copy()  # arrays of a file may not be written to, which is a type of its own
     _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise)
 
 
