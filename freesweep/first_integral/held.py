@@ -1,7 +1,8 @@
 """Held states: the force that keeps a length, or the torque that keeps a rotation, as the root of the quadrature.
 
 ``kind`` is 0 where a length is held by a force, 1 where a rotation is held by a torque. Inextensible tubes held at their
-undeformed length or rotation stay straight cylinders, q = 1, under the load that makes U'(1) = 0, which is linear in it.
+undeformed length or rotation stay straight cylinders, q = 1, under the load that makes U'(1) = 0, which is linear in it, as
+long as their wall is pulled.
 """
 
 import numpy as np
@@ -46,7 +47,10 @@ def blocked(tubes, kind, target, near):
     with np.errstate(all="ignore"):
         guess = held_stretch(tubes, kind, target)
         straight = np.abs(guess - 1.0) < 100.0 * STILL
-        load[straight] = cylinder_load(tubes.at(straight), kind, np.ones(np.count_nonzero(straight)))
+        cylinders = tubes.at(straight)
+        found = cylinder_load(cylinders, kind, np.ones(np.count_nonzero(straight)))
+        pull = cylinders.pressure + (found if kind == 0 else cylinders.force)
+        load[straight] = np.where(pull > 0.0, found, np.nan)  # a straight wall that is pushed is no state
         todo = np.flatnonzero(~straight)
         tube, start, wanted, about = tubes.at(todo), guess[todo], target[todo], near[todo]
         if todo.size:

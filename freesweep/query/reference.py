@@ -140,7 +140,8 @@ def end_effects(variable, kind, points, states, stored, errors, effects, noise):
     """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); NaN where the neighbours have to say."""
     terms = np.empty((len(points), 3))
     references(variable, points, states, terms)
-    stored, errors = stored.copy(), errors.copy()  # arrays of a file may not be written to, which is a type of its own
+    # arrays that may not be written to, as those of a file, are a type of their own
+    points, stored, errors = (np.require(array, requirements="W") for array in (points, stored, errors))
     _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise)
 
 
