@@ -141,7 +141,7 @@ def end_effects(variable, kind, points, states, stored, errors, effects, noise):
     terms = np.empty((len(points), 3))
     references(variable, points, states, terms)
     # arrays that may not be written to, as those of a file, are a type of their own
-    points, stored, errors = (np.require(array, requirements="W") for array in (points, stored, errors))
+    states, stored, errors = (np.require(array, requirements="W") for array in (states, stored, errors))
     _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise)
 
 
