@@ -1,7 +1,7 @@
 """From designs in SI units to dimensionless problems and back: the one place where scales are known.
 
 Lengths by the fiber surface's radius r0, pressure by C10, force by pi r0^2 C10, torque by pi r0^3 C10. A problem is a row of
-``solver.branch.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda, C20/C10, C30/C10.
+``solver.problem.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda, C20/C10, C30/C10.
 """
 
 import numpy as np

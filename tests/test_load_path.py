@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from freesweep import Actuator, MooneyRivlin, Yeoh, inflate
-from freesweep.solver.branch import FORCE, GAMMA, PROBLEM_SIZE, TORQUE
 from freesweep.solver.load_path import legs, settling_pressure
+from freesweep.solver.problem import FORCE, GAMMA, PROBLEM_SIZE, TORQUE
 from freesweep.status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK
 
 R0, C10 = 5e-3, 1e5

@@ -96,9 +96,9 @@ def _free(rows, pressure, most, accuracy):
 def _held(kind, rows, own, accuracy):
     """Held states of rows (k, 11), each at its own pressure."""
     from ..solver.batch import uniform
-    from ..solver.branch import LENGTH
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold_batch import hold_all
+    from ..solver.problem import LENGTH
 
     count = len(rows)
     length = kind == reference.LENGTH_HELD

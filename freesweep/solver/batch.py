@@ -6,10 +6,10 @@ import numpy as np
 from numba import config
 
 from ..interpret import at_once
-from .branch import MOONEY_RIVLIN, SECOND, THIRD, YEOH, walk_many
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
+from .problem import MOONEY_RIVLIN, SECOND, THIRD, YEOH
 from .profile import FIELDS
-from .status import OK, PENDING
+from .status import PENDING
 from .varying.free_states import follow_many
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
@@ -44,32 +44,37 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     found = _nothing(len(problems), len(pressures), stations)
-    if len(tube[0]) > 0:
-        arguments = (
-            problems, settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
-        )  # fmt: skip
-        if not (soon and at_once(len(pressures), follow_many, follow_many, *arguments)):
-            follow_many(*arguments)
-        return found
     pressures, limp = next_to_nothing(problems, first, pressures)
-    how = tube, accuracy, stations, lanes, soon
-    if np.any(is_loaded(problems)):
-        _walk_legs(problems, first, pressures, how, found)
-    else:
-        _walk(problems, first, pressures, np.zeros(len(pressures), bool), *how, found)
+    arguments = (
+        problems, settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
+    )  # fmt: skip
+    done = False
+    if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
+        from .lanes.walk import solve_lanes
+
+        done = soon and at_once(len(pressures), solve_lanes, follow_many, *arguments)
+        if not done:
+            _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
+    left = 0 if done else np.count_nonzero(found.status == PENDING)
+    if left and not (soon and at_once(left, follow_many, follow_many, *arguments)):
+        follow_many(*arguments)
     found.bounds[limp] += MISSED * np.abs(found.values[limp])
     return found
 
 
-def _walk_legs(problems, first, pressures, how, found):
-    """Walk each loaded problem up and down from the state at which its loads have settled."""
+def _walk_lanes(problems, first, pressures, base, accuracy, stations, found):
+    """Solve what vectors can of tubes that do not vary. A loaded one's stretch is carried up and down from the state at
+    which its loads have settled.
+    """
+    if not np.any(is_loaded(problems)):
+        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), base, accuracy, stations, found)
+        return
     own = legs(problems, first, pressures)
-    passing = own.rows < 0
-    on_the_way = _nothing(len(own.owners), len(own.pressures), how[2])
-    _walk(problems[own.owners], own.first, own.pressures, passing, *how, on_the_way)
+    asked = own.rows >= 0
+    on_the_way = _nothing(len(own.owners), len(own.pressures), stations)
+    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, base, accuracy, stations, on_the_way)
     for name in STATES:
-        getattr(found, name)[own.rows[~passing]] = getattr(on_the_way, name)[~passing]
-    found.limits[own.owners[own.upward]] = on_the_way.limits[own.upward]
+        getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
 
 
 def _nothing(problems, states, stations):
@@ -80,35 +85,26 @@ def _nothing(problems, states, stations):
     )  # fmt: skip
 
 
-def _walk(problems, first, pressures, passing, tube, accuracy, stations, lanes, soon, found):
-    """Walk tubes that do not vary, each along pressures that rise or fall; ``passing`` states need no values."""
-    scalar = (problems, first, pressures, tube[1], accuracy, *found[:5], stations, found.profiles)
-    if lanes and not config.DISABLE_JIT:
-        from .lanes.walk import carry_lanes, solve_lanes
+def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, found):
+    """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
+    from .lanes.walk import carry_lanes, solve_lanes
 
-        if soon and at_once(np.count_nonzero(~passing), solve_lanes, walk_many, *scalar):
-            return
-        # what shares a vector should need much the same work: as many pressures, as steep ends
-        steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
-        owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
-        stretches, cosines = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
-        drawn = (stations, found.profiles) if len(stations) else (None, None)
-        for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
-            if not np.any(some):
-                continue
-            carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
-            carried = some[owners] & (found.status == PENDING) & np.isfinite(stretches)
-            found.status[carried & passing] = OK  # to be solved only where a scalar walk begins there
-            for cells in (int(tube[1][-1]), FINER * int(tube[1][-1])):
-                rows = np.flatnonzero(carried & (found.status == PENDING))
-                alike = np.argsort(_steepness(cosines[rows]), kind="stable")
-                solve_lanes(
-                    problems, owners, pressures, stretches, rows[alike], constants, cells, accuracy, *found[:4], *drawn
-                )
-        if not np.any(found.status == PENDING):
-            return
-    if not (soon and at_once(np.count_nonzero((found.status == PENDING) & ~passing), walk_many, walk_many, *scalar)):
-        walk_many(*scalar)
+    # what shares a vector should need much the same work: as many pressures, as steep ends
+    steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
+    owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
+    stretches, cosines = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
+    drawn = (stations, found.profiles) if len(stations) else (None, None)
+    for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
+        if not np.any(some):
+            continue
+        carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
+        carried = some[owners] & asked & np.isfinite(stretches)
+        for cells in (base, FINER * base):
+            rows = np.flatnonzero(carried & (found.status == PENDING))
+            alike = np.argsort(_steepness(cosines[rows]), kind="stable")
+            solve_lanes(
+                problems, owners, pressures, stretches, rows[alike], constants, cells, accuracy, *found[:4], *drawn
+            )
 
 
 def _steepness(cosines):

@@ -4,9 +4,9 @@ import numpy as np
 
 from ..jit import entry_point
 from . import guide, lagrangian, nested
-from .branch import FORCE, GAMMA, LENGTH, TORQUE
 from .find import HELD_LENGTH
 from .hold import find_on_some_mesh, workspace
+from .problem import FORCE, GAMMA, LENGTH, TORQUE
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
 
 

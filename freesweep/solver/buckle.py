@@ -11,9 +11,8 @@ import numpy as np
 
 from ..jit import kernel
 from . import held, lagrangian, nested, newton, pinned, turn
-from .branch import GAMMA, SHEAR, rubber_of
-from .climb import largest_drift, regraded
 from .course import at_point
+from .held import largest_drift
 from .march import (
     GROWTH,
     LARGEST_CHANGE,
@@ -26,6 +25,7 @@ from .march import (
     halt,
     top,
 )  # fmt: skip
+from .problem import GAMMA, SHEAR, rubber_of
 from .stability import unstable_directions
 from .status import HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
@@ -108,7 +108,7 @@ def by_pressure(x, y, kept_x, kept_y, tube, way, t, mu, work):
             return False, mu
         if t == 1.0:
             return unstable == 0, mu
-        regraded(x, y, n, tube, held.loaded(now, direction, mu), work)
+        nested.regrade(lagrangian.density, lagrangian.integrands, x, y, n, tube, held.loaded(now, direction, mu), work)
         t = min(1.0, t + PRESSURE_STEP)
 
 
@@ -165,7 +165,9 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
             mu, t = kept_mu + ahead * by_mu, kept_t + ahead * by_t
             own, now = pinned.at_share(way, tube, x, n, n, t)
             if newton.admissible(lagrangian.density, x, y, n, own, held.loaded(now, direction, mu)):
-                regraded(x, y, n, tube, held.loaded(now, direction, mu), work)
+                nested.regrade(
+                    lagrangian.density, lagrangian.integrands, x, y, n, tube, held.loaded(now, direction, mu), work
+                )
             for i in range(n + 1):
                 guess[i] = y[i]
             expected, value = t, y[k]

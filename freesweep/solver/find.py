@@ -19,11 +19,10 @@ import numpy as np
 
 from ..jit import kernel
 from . import guide, held, lagrangian, march, neck_march, neck_shape, nested, newton, pinned, turn
-from .branch import GAMMA, SHEAR, rubber_of
-from .climb import pushed
 from .march import EVERY, NO_TURN, begin, cylinder_multiplier, from_free, from_rest
 from .pinned import BY_SHARE
-from .stability import unstable_directions
+from .problem import GAMMA, SHEAR, rubber_of
+from .stability import pushed, unstable_directions
 from .status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
 HELD_LENGTH, HELD_ROTATION = 0, 1

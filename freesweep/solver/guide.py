@@ -88,36 +88,6 @@ def start(tube, u, load, x, y):
         y[i] = 1.0 + (stretch_at(u, x[i] / total) - 1.0) * layer
 
 
-@kernel
-def carry(u, ahead, total, x, y):
-    """Scale a shape from the uniform stretches ``u`` to those ``ahead``."""
-    for i in range(len(y)):
-        old, new = stretch_at(u, x[i] / total), stretch_at(ahead, x[i] / total)
-        if abs(old - 1.0) > 1e-9:
-            y[i] = 1.0 + (y[i] - 1.0) * (new - 1.0) / (old - 1.0)
-
-
-@kernel
-def strays(y, u, middle, tube, load):
-    """Whether the shape leaves the interval from 1 to the uniform stretch, or its middle is not near one that draws the tube
-    in, though the end is far: another branch.
-    """
-    if len(u) > 1:
-        return False  # neighbouring places pull a shape beyond what each would do alone
-    cell = cell_along(tube, 0.5)
-    drawn = lagrangian.drawn_in(cell, load)
-    if u[0] < drawn and middle - u[0] > FAR_FROM * (1.0 - u[0]):
-        _, _, _, L_yy, _, L_vv = lagrangian.density(u[0], 0.0, cell, load)
-        if not uniform.may_let_go(u[0], L_yy, L_vv, (1.0 if tube[3] else 0.5) * tube[5][len(tube[5]) - 1], drawn):
-            return True
-    slack = STRAY * abs(u[0] - 1.0) + 1e-6
-    low, high = min(1.0, u[0]) - slack, max(1.0, u[0]) + slack
-    for i in range(len(y)):
-        if not low <= y[i] <= high:
-            return True
-    return False
-
-
 @inlined
 def begin(tube, load, u, ahead, x, y):
     """A small part of the way to ``load``, half at most, and its first shape; returns that part, 0 where there is none."""

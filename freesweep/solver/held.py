@@ -1,4 +1,4 @@
-"""One integral held: Newton's method with its multiplier as one more unknown, and turning points.
+"""One integral held: Newton's method with its multiplier as one more unknown.
 
 With ``C = sum h c(y_mid, slope)`` held at a target t, the load ``mu`` conjugate to it (c = dL/dmu) is unknown::
 
@@ -15,7 +15,6 @@ from .newton import (
     CONVERGED,
     INFEASIBLE,
     MAX_HALVINGS,
-    MAX_ITERATIONS,
     STALLED,
     UNKNOWN,
     assemble,
@@ -24,16 +23,6 @@ from .newton import (
     settled,
     substitute,
 )
-
-FIRST_CHANGE = 1e-3  # relative change of y of the first step of the search for a turning point
-SEARCH_STEPS = 80
-MOST_GAIN = 1.5  # of the multiplier, times the larger of the two linear predictions: more is another branch
-MOST_STRAY = 0.03  # relative difference from the linear prediction: more is another branch
-LARGEST_GROWTH = 3.0  # of the step from one to the next
-OVERSHOOT = 1.2  # times the way to where the slope would vanish: the search wants both sides
-TURNING_GAIN = 1e-8  # of mu between the two sides, relative: the cubic between them is exact to rounding then
-ROUNDING_GAIN = 1e-11  # of mu
-SMALLEST_SHARE = 1e-13  # of the held integral
 
 
 @kernel
@@ -134,100 +123,9 @@ def largest_change(y, response, n):
 
 
 @kernel
-def strayed(y, n, start, response, change):
-    """Largest relative difference of ``y`` from its linear prediction."""
+def largest_drift(y, other):
+    """Largest relative difference of two shapes on the same nodes."""
     largest = 0.0
-    for i in range(n + 1):
-        expected = start[i] + change * response[i]
-        largest = max(largest, abs(y[i] - expected) / abs(expected))
+    for i in range(len(y)):
+        largest = max(largest, abs(y[i] - other[i]) / other[i])
     return largest
-
-
-@kernel
-def turning_point(density, conjugate, x, y, n, free, cells, load, direction, mu, tolerance, work):
-    """The turning point of ``mu`` nearest along the branch through ``y``: ``(status, multiplier)``.
-
-    Steps of the held integral C toward it until the slope dmu/dC = 1/sigma changes sign, then false position (Illinois)
-    between. Only states are taken that are stable while C is held and close to their linear prediction. The nearest of
-    them on this side is left in ``y``, the first in ``work[12]``.
-    """
-    near_y, near_response, first_y = work[10], work[11], work[12]
-    target = hold(conjugate, x, y, n, cells, loaded(load, direction, mu), direction, work[8])
-    status, _, mu, sigma = solve_held(
-        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, MAX_ITERATIONS, work
-    )
-    if status != CONVERGED:
-        return status, mu
-    near, near_slope, near_mu = target, 1.0 / sigma, mu
-    far, far_slope, far_mu = 0.0, 0.0, 0.0
-    near_weight, far_weight = 1.0, 1.0
-    for i in range(n + 1):
-        first_y[i], near_y[i], near_response[i] = y[i], y[i], work[9, i] * near_slope
-    # a positive slope lies before the turning point: step toward it, whichever side this is
-    step = FIRST_CHANGE * sigma / largest_change(y, work[9], n)
-    between, status = False, STALLED
-    for _ in range(SEARCH_STEPS):
-        target = near + step
-        for i in range(n + 1):
-            y[i] = near_y[i] + step * near_response[i]
-        found, unstable, mu, sigma = solve_held(
-            density, conjugate, x, y, n, free, cells, load, direction, near_mu, target, tolerance, MAX_ITERATIONS, work
-        )
-        slope = 1.0 / sigma
-        gain = MOST_GAIN * max(abs(slope), abs(near_slope)) * abs(step) + ROUNDING_GAIN * max(1.0, abs(near_mu))
-        if (
-            found != CONVERGED
-            or unstable > 0
-            or abs(mu - near_mu) > gain
-            or strayed(y, n, near_y, near_response, step) > MOST_STRAY
-        ):
-            step *= 0.25  # back to the last good state, and not so far
-            if abs(step) < SMALLEST_SHARE * abs(near):
-                break
-            continue
-        if slope * near_slope > 0.0:
-            bend = (slope - near_slope) / step
-            growth = LARGEST_GROWTH * step
-            full = -OVERSHOOT * slope / bend if bend * slope * step < 0.0 else growth
-            if not between:
-                step = full if abs(full) < abs(growth) else growth
-            near, near_slope, near_mu = target, slope, mu
-            near_weight, far_weight = 1.0, 0.5 * far_weight
-            for i in range(n + 1):
-                near_y[i], near_response[i] = y[i], work[9, i] * slope
-        else:
-            far, far_slope, far_mu, between = target, slope, mu, True
-            far_weight, near_weight = 1.0, 0.5 * near_weight
-        if between:
-            width = far - near
-            # the tangent bounds mu from above
-            if near_slope * width < TURNING_GAIN * max(1.0, abs(near_mu)) or abs(width) < SMALLEST_SHARE * abs(near):
-                t = near_slope / (near_slope - far_slope)  # top of the cubic through values and slopes at both ends
-                rest = 1.0 - t
-                mu = (1.0 + 2.0 * t) * rest * rest * near_mu + t * t * (3.0 - 2.0 * t) * far_mu
-                mu += t * rest * width * (rest * near_slope - t * far_slope)
-                status = CONVERGED
-                break
-            step = width * near_weight * near_slope / (near_weight * near_slope - far_weight * far_slope)
-    for i in range(n + 1):
-        y[i] = near_y[i]
-    return status, mu
-
-
-@kernel
-def solve(density, conjugate, x, y, n, free, cells, load, direction, mu, target, turning, tolerance, work):
-    """Solve with the conjugate integral held at ``target``, or, if ``turning``, find the turning point of ``mu``.
-
-    Returns ``(status, unstable directions, mu)``. ``y`` is changed in place, but for a turning point: that is no safe start
-    on another mesh.
-    """
-    if turning:
-        status, mu = turning_point(density, conjugate, x, y, n, free, cells, load, direction, mu, tolerance, work)
-        if status == CONVERGED:
-            for i in range(n + 1):
-                y[i] = work[12, i]
-        return status, 0, mu
-    status, unstable, mu, _ = solve_held(
-        density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, MAX_ITERATIONS, work
-    )
-    return status, unstable, mu

@@ -6,12 +6,12 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested
-from .branch import GAMMA, LENGTH, SHEAR, D, H, rubber_of
 from .buckle import find_buckled
 from .course import copy
 from .drawing import draw
 from .find import FROM_REST, HELD_LENGTH, find
 from .march import cylinder_multiplier
+from .problem import GAMMA, LENGTH, SHEAR, D, H, rubber_of
 from .profile import FIELDS
 from .slack import slack_fibers
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK, PENDING

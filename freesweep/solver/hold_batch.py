@@ -13,9 +13,9 @@ from numba import config
 
 from ..interpret import at_once
 from .block import block_many
-from .branch import FORCE, MOONEY_RIVLIN, SECOND, THIRD, TORQUE, YEOH
 from .find import HELD_LENGTH
 from .lagrangian import ROUNDING
+from .problem import FORCE, MOONEY_RIVLIN, SECOND, THIRD, TORQUE, YEOH
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 5  # solutions of one state, at most; two do nearly always

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .branch import FORCE, GAMMA, TORQUE
+from .problem import FORCE, GAMMA, TORQUE
 
 
 def is_loaded(problems) -> np.ndarray:

@@ -7,9 +7,10 @@ one node. So the branch is regular where the share turns back; that point is fou
 import numpy as np
 
 from ..jit import kernel
-from . import guide, held, lagrangian, newton, pinned
-from .climb import largest_drift, pushed, regraded
+from . import guide, held, lagrangian, nested, newton, pinned
+from .held import largest_drift
 from .pinned import BY_SHARE
+from .stability import pushed
 from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 from .uniform import between
 
@@ -121,7 +122,9 @@ def march(x, y, tube, way, share, until, mu, allowed, work):
             t = until if k == BY_SHARE and until - t < ARRIVED else t
             own, load = pinned.at_share(way, tube, x, n, n, t)
             if newton.admissible(lagrangian.density, x, y, n, own, held.loaded(load, way[4], mu)):
-                regraded(x, y, n, tube, held.loaded(load, way[4], mu), work)
+                nested.regrade(
+                    lagrangian.density, lagrangian.integrands, x, y, n, tube, held.loaded(load, way[4], mu), work
+                )
             for i in range(n + 1):
                 guess[i] = y[i]
             expected, value = t, t if k == BY_SHARE else y[k]

@@ -24,7 +24,7 @@ SAFETY = 3.3
 FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
 TINY = 1e-300
 
-PLAIN, HELD, TURNING_POINT = 0, 1, 2
+PLAIN, HELD = 0, 1
 UNREACHED = 3  # the accuracy was not met on the finest mesh
 
 
@@ -117,6 +117,17 @@ def adapt(density, integrands, x, y, n, tube, load, work):
 
 
 @kernel
+def regrade(density, integrands, x, y, n, tube, load, work):
+    """:func:`adapt`, unless that would leave the solution inadmissible."""
+    old_x, old_y = work[10], work[11]
+    for i in range(n + 1):
+        old_x[i], old_y[i] = x[i], y[i]
+    if not adapt(density, integrands, x, y, n, tube, load, work):
+        for i in range(n + 1):
+            x[i], y[i] = old_x[i], old_y[i]
+
+
+@kernel
 def split(x, n, edges, factor, out):
     """A finer mesh: each cell of the base mesh in ``factor``, smoothly within each segment."""
     for s in range(len(edges) - 1):
@@ -174,21 +185,19 @@ def solve(
     course, edges, cells, free, center, _ = tube
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     error, coarser, where, far = tolerance, tolerance, middle.NOT_LONG, 1.0
-    passes, level, count, on_base, first_mu = 0, 1, n, mu, mu
+    passes, level, count, on_base = 0, 1, n, mu
     unstable, rate, shrunk = 0, newton.UNKNOWN, False
     xs, ys = x, y
     while True:
         own = fill(course, edges, xs, count, n, cells)
-        if goal == TURNING_POINT:
-            mu = first_mu
         coarser = error
         if goal == PLAIN:
             status, unstable, rate, error = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
         else:
-            turning = goal == TURNING_POINT
-            status, unstable, mu = held.solve(
-                density, conjugate, xs, ys, count, free, own, load, direction, mu, target, turning, tolerance, work
-            )
+            status, unstable, mu, _ = held.solve_held(
+                density, conjugate, xs, ys, count, free, own, load, direction, mu, target, tolerance, newton.MAX_ITERATIONS,
+                work,
+            )  # fmt: skip
         if status == newton.INFEASIBLE and not shrunk:
             shrunk = True
             now = loaded(load, direction, mu)

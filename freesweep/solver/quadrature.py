@@ -8,7 +8,7 @@ The first integral gives s without any difference (:mod:`meridian`). Nodes are d
 from math import exp, sqrt
 
 from ..jit import kernel
-from . import beside, finest, lagrangian, meridian, nested, uniform
+from . import beside, finest, lagrangian, meridian, nested
 from .guide import cell_along
 from .status import INACCURATE, NOT_CONVERGED, OK
 
@@ -51,21 +51,16 @@ def finish(table, out):
 
 
 @kernel
-def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
-    """The state between the clamped end and the uniform stretch ``u`` or, where that is NaN, the one whose middle is about
-    ``near``, as :func:`nested.solve` leaves it: ``(status, doublings)`` of ``base`` cells. NOT_CONVERGED where there is
-    none, or where a tube drawn in may have let go.
+def solve(tube, near, load, base, accuracy, space):
+    """The state whose middle is about ``near``, as :func:`nested.solve` leaves it: ``(status, doublings)`` of ``base``
+    cells. NOT_CONVERGED where there is none.
     """
-    cell, half = cell_along(tube, 0.0), tube[5][1]
-    traced = u != u
-    if traced:
-        u = beside.stationary(cell, load, near)
-    layered, top, rate = u == u, near, 0.0
+    cell, half, curve, table, out = cell_along(tube, 0.0), tube[5][1], space.curve, space.table, space.out
+    u, top, rate = beside.stationary(cell, load, near), near, 0.0
+    layered = u == u
     if layered:
         _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
         top, rate = u, sqrt(L_yy / L_vv)
-        if not traced and uniform.may_let_go(u, L_yy, L_vv, half, lagrangian.drawn_in(cell, load)):
-            return NOT_CONVERGED, 0
     if not abs(top - 1.0) > STILL:
         return NOT_CONVERGED, 0
     _, _, _, G_1, G_y, _ = lagrangian.kinematics(1.0, cell, load)
@@ -81,15 +76,15 @@ def solve(tube, u, near, load, base, accuracy, fine, curve, table, out):
             return NOT_CONVERGED, 0
         integrate(cell, load, u, rate, half, min(total, half), count, curve, row)
         if k >= ROWS - finest.MESHES:
-            x, y = finest.mesh_of(ROWS - 1 - k, nodes // 2, fine)
+            x, y = finest.mesh_of(ROWS - 1 - k, nodes // 2, space.fine)
             for i in range(count + 1):
                 x[i], y[i] = curve[0, i], curve[1, i]
             x[count] = half
-        if traced and not beside.is_near(row[nested.MIDDLE], near):
+        if not beside.is_near(row[nested.MIDDLE], near):
             return NOT_CONVERGED, 0
     out[2], out[3] = lagrangian.scales(table[ROWS - 1], cell, load, half, nested.SMALLEST_TOLERANCE)
     largest = finish(table, out)
-    finest.leave_loads(table[:, nested.MULTIPLIER], ROWS - 1, 0.0, load, finest.NO_MESH, fine)
+    finest.leave_loads(table[:, nested.MULTIPLIER], ROWS - 1, 0.0, load, finest.NO_MESH, space.fine)
     return (OK if largest <= accuracy else INACCURATE), nested.MAX_DOUBLINGS
 
 
@@ -102,12 +97,13 @@ def end_cosine(x, y, tube, load):
 
 
 @kernel
-def sharpen(x, y, tube, toward, load, accuracy, fine, curve, table, out, status, doublings):
+def sharpen(tube, load, accuracy, space, status, doublings):
     """``(status, doublings)`` of a state that meshes have solved, or of its quadrature where its ends are too upright for
-    them; ``toward`` is the uniform stretch that its middle approaches, NaN where there is none.
+    them.
     """
-    if end_cosine(x, y, tube, load) < UPRIGHT:
-        better, levels = solve(tube, toward, out[0, nested.MIDDLE], load, len(x) - 1, accuracy, fine, curve, table, out)
+    if end_cosine(space.x, space.y, tube, load) < UPRIGHT:
+        near, base = space.out[0, nested.MIDDLE], len(space.x) - 1
+        better, levels = solve(tube, near, load, base, accuracy, space)
         if better != NOT_CONVERGED:
             return better, levels
     return status, doublings

@@ -1,10 +1,23 @@
-"""Stability of a held state: the second variation on the whole tube, whichever half of it was solved."""
+"""Whether a state can be: the wall's tension, and the second variation of a held one on the whole tube, whichever half of it
+was solved.
+"""
 
 from ..jit import kernel
 from . import held, lagrangian, newton
 from .course import fill
 
 ROUNDING = 4e-15  # of the sum over a fine mesh
+PUSHED = 0.02  # share of its largest part to which the resultant p y^2 + f has fallen where a branch ends in it
+
+
+@kernel
+def pushed(y, load):
+    """Whether the meridional resultant p y^2 + f has all but vanished somewhere."""
+    for i in range(len(y)):
+        part = load[3] * y[i] * y[i]
+        if part + load[4] < PUSHED * max(abs(part), abs(load[4])):
+            return True
+    return False
 
 
 @kernel

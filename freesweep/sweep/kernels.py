@@ -105,10 +105,10 @@ def _compile_aside(missing, rubbers):
 
 def compile_idle(words):
     """Compile the entry points named among the ``words``, for the families of rubbers among them; no state is solved."""
-    from ..solver.branch import MOONEY_RIVLIN, PROBLEM_SIZE
-    from ..solver.branch import YEOH as YEOH_COLUMNS
     from ..solver.lanes.hold import seek_lanes
     from ..solver.lanes.walk import carry_lanes, solve_lanes
+    from ..solver.problem import MOONEY_RIVLIN, PROBLEM_SIZE
+    from ..solver.problem import YEOH as YEOH_COLUMNS
 
     numbers, whole, states = np.empty(0), np.empty(0, np.int64), np.empty((0, 5))
     problems, first, four = np.empty((0, PROBLEM_SIZE)), np.zeros(1, np.int64), (numbers,) * 4

@@ -16,9 +16,9 @@ from math import pi, sqrt
 
 from ...jit import entry_point, kernel
 from .. import lagrangian
-from ..branch import FORCE, TORQUE
 from ..find import RAISES
 from ..lagrangian import ROUNDING
+from ..problem import FORCE, TORQUE
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, OK
 from . import guide, layer
 from .seat import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads

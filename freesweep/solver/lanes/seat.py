@@ -4,7 +4,7 @@ import numpy as np
 
 from ...jit import kernel
 from .. import lagrangian
-from ..branch import AREA, FORCE, GAMMA, LENGTH, PROBLEM_SIZE, RATIO, SECOND, SHEAR, THIRD, TORQUE, D, H, rubber_of
+from ..problem import AREA, FORCE, GAMMA, LENGTH, PROBLEM_SIZE, RATIO, SECOND, SHEAR, THIRD, TORQUE, D, H, rubber_of
 from ..profile import at_stations
 from ..status import COMPRESSED, INVALID, OK
 from .nested import OUTPUTS

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from .. import lagrangian
-from ..branch import AREA, GAMMA, D, H, rubber_of
+from ..problem import AREA, GAMMA, D, H, rubber_of
 from . import guide, layer, nested
 from .seat import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
 from .seat import LENGTH as HALF

@@ -4,16 +4,16 @@ import numpy as np
 
 from ...jit import inlined, kernel
 from .. import guide, lagrangian
-from ..climb import pushed
-from ..continuation import CHANGE, FIRST_STEP, FOLLOWED, advance, between, is_stable, last_alike
+from ..continuation import CHANGE, FIRST_STEP, FOLLOWED, advance, between, is_flat, is_stable, last_alike
 from ..course import fill
 from ..held import loaded
+from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from .fold import locate
 from .meshes import GRADINGS, stand, take
 from .one_state import near_fold, plain, record
 
-MOST_STEPS = 3000
+MOST_STEPS = 600
 SMALL_STRAIN = 0.02  # of all uniform stretches along the tube: where a branch begins, the wall has one state only
 HALVINGS = 80  # of the load, until that holds
 
@@ -65,12 +65,11 @@ def answer(track, space, tube, path, here, ahead, rows, accuracy):
 
 
 @inlined
-def end_at_fold(track, roomy, space, tube, path, here, ahead, rows, limit, accuracy):
-    """What rows still wait for, where the branch ends on a step: states before the fold are solved, the rest lie beyond."""
-    if here[1] < 0.0:  # the pressure falls, but a limit pressure is one of rising pressures
-        answer(track, space, tube, path, here, ahead, rows, accuracy)
-        return
-    value, bound = locate(track, roomy, space, tube, path, here, ahead)
+def end_at_fold(track, space, tube, path, here, ahead, fold, rows, limit, accuracy):
+    """What rows still wait for, where the branch of a rising pressure ends on a step, at the ``fold`` (load, bound): states
+    before it are solved, the rest lie beyond.
+    """
+    value, bound = fold
     for i in range(len(rows.pressures)):
         p = rows.pressures[i]
         if rows.status[i] != PENDING or p < here[0] or p == np.inf:
@@ -104,14 +103,26 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
             lagrangian.density, track, n, own, path, here[0], here[1], step, space.work
         )
         ahead = (mu, tangent_mu, made)
-        if status != FOLLOWED:
+        lost = status != FOLLOWED
+        if lost and not is_flat(here[0], here[1], path):
             gone = pushed(track.y, loaded(path.origin, path.direction, here[0]))
             return (COMPRESSED if gone else NOT_CONVERGED), here, ahead
-        if not is_stable(negative, tangent_mu, sense):
-            ahead = last_alike(lagrangian.density, track, n, own, path, here[0], here[1], made, sense, True, space.work)
-            if len(rows.pressures) > 0:
-                end_at_fold(track, roomy, space, tube, path, here, ahead, rows, limit, accuracy)
-            return (OK if (ahead[0] - far) * sense >= 0.0 else BEYOND_LIMIT), here, ahead
+        if lost or not is_stable(negative, tangent_mu, sense):
+            if lost:  # no step leads round so sharp a fold: it lies here
+                ahead = (here[0], here[1], 0.0)
+                for i in range(n + 1):
+                    track.next_y[i], track.next_tangent[i] = track.y[i], track.tangent[i]
+            else:
+                ahead = last_alike(
+                    lagrangian.density, track, n, own, path, here[0], here[1], made, sense, True, space.work
+                )
+            passed = (ahead[0] - far) * sense >= 0.0
+            if sense < 0.0 or (passed and len(rows.pressures) == 0):  # a limit pressure is one of rising pressures
+                answer(track, space, tube, path, here, ahead, rows, accuracy)
+                return (OK if passed else BEYOND_LIMIT), here, ahead
+            fold = locate(track, roomy, space, tube, path, here, ahead, sense)
+            end_at_fold(track, space, tube, path, here, ahead, fold, rows, limit, accuracy)
+            return (OK if passed else BEYOND_LIMIT if fold[0] == fold[0] else NOT_CONVERGED), here, ahead
         answer(track, space, tube, path, here, ahead, rows, accuracy)
         if (mu - far) * sense >= 0.0:
             return OK, here, ahead

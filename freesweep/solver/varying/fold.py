@@ -15,6 +15,7 @@ from ..continuation import (
     Track,
     advance,
     correct,
+    is_flat,
     is_stable,
     last_alike,
     make_unit,
@@ -29,12 +30,12 @@ ROUNDING = 4e-9  # of its load, relative: where a load is flat, many shapes are 
 
 
 @kernel
-def nodes_of(track, n):
+def nodes_of(track, n, free):
     """The first n + 1 nodes of a track that has room for more."""
     m = n + 1
     return Track(
         track.x[:m], track.y[:m], track.tangent[:m], track.next_y[:m], track.next_tangent[:m], track.normal[:m],
-        track.spare[:m], track.other[:m],
+        track.spare[:m], track.other[:m], n if free else n - 1,
     )  # fmt: skip
 
 
@@ -50,15 +51,16 @@ def carry(old_x, old, x, y):
 
 @kernel
 def edge(track, n, cells, path, mu, tangent_mu, sense, work):
-    """The load at the edge of stability nearest to the state in ``track`` on its own mesh; NaN if there is none near."""
+    """The load at the edge of stability nearest to the state in ``track`` on its own mesh, NaN if there is none near; and
+    by how much it may be missed where a branch that is flat was lost.
+    """
     unit, step = size_of(mu, path), FIRST_STEP * CHANGE
     for i in range(n + 1):
         track.normal[i] = track.tangent[i] / (n * track.y[i] * track.y[i])
     status, negative, mu, tangent_mu = correct(
-        lagrangian.density, track.x, track.y, mu, n, cells, path, track.normal, tangent_mu / (unit * unit), track.tangent,
-        work,
-    )  # fmt: skip
-    tangent_mu = make_unit(track.y, track.tangent, n, mu, tangent_mu, path)
+        lagrangian.density, track, track.y, mu, n, cells, path, tangent_mu / (unit * unit), track.tangent, work
+    )
+    tangent_mu = make_unit(track, n, mu, tangent_mu, path)
     stable = is_stable(negative, tangent_mu, sense)
     if not stable:  # turn round
         sense, tangent_mu = -sense, -tangent_mu
@@ -66,35 +68,39 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
             track.tangent[i] = -track.tangent[i]
     for _ in range(STEPS):
         if status != FOLLOWED:
-            break
+            return (mu if is_flat(mu, tangent_mu, path) else np.nan), CHANGE * abs(tangent_mu)
         status, negative, next_mu, next_tangent_mu, made, step = advance(
             lagrangian.density, track, n, cells, path, mu, tangent_mu, step, work
         )
         if status == FOLLOWED and is_stable(negative, next_tangent_mu, sense) != stable:
-            return last_alike(lagrangian.density, track, n, cells, path, mu, tangent_mu, made, sense, stable, work)[0]
-        for i in range(n + 1):
-            track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
-        mu, tangent_mu = next_mu, make_unit(track.y, track.tangent, n, next_mu, next_tangent_mu, path)
-    return np.nan
+            found, _, _ = last_alike(
+                lagrangian.density, track, n, cells, path, mu, tangent_mu, made, sense, stable, work
+            )
+            return found, 0.0
+        if status == FOLLOWED:
+            for i in range(n + 1):
+                track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
+            mu, tangent_mu = next_mu, make_unit(track, n, next_mu, next_tangent_mu, path)
+    return np.nan, 0.0
 
 
 @kernel
-def locate(track, roomy, space, tube, path, here, ahead):
+def locate(track, roomy, space, tube, path, here, ahead, sense):
     """The load at which the branch ends, from the state ``here`` in ``track``; ``ahead`` is where the base mesh has that
     edge. ``(load, bound)``, NaN where some mesh has none near; ``roomy`` is a track for the finest.
     """
     n = len(track.x) - 1
-    course, edges, cells, _, _, _ = tube
+    course, edges, cells, free, _, _ = tube
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.next_y[i]
     now = loaded(path.origin, path.direction, ahead[0])
     if not nested.adapt(lagrangian.density, lagrangian.integrands, space.x, space.y, n, tube, now, space.work):
         for i in range(n + 1):
             space.x[i] = track.x[i]
-    loads = space.table[0]
+    loads, doubt = space.table[0], 0.0
     for k in range(len(COUNTS)):
         count = n * COUNTS[k] // 2
-        own = nodes_of(roomy, count)
+        own = nodes_of(roomy, count, free)
         if COUNTS[k] == 1:
             for i in range(count + 1):
                 own.x[i] = space.x[2 * i]
@@ -103,9 +109,10 @@ def locate(track, roomy, space, tube, path, here, ahead):
         carry(track.x, track.y, own.x, own.y)
         carry(track.x, track.tangent, own.x, own.tangent)
         filled = fill(course, edges, own.x, count, n, cells)
-        loads[k] = edge(own, count, filled, path, here[0], here[1], 1.0 if here[1] > 0.0 else -1.0, space.work)
+        loads[k], missed = edge(own, count, filled, path, here[0], here[1], sense, space.work)
+        doubt = max(doubt, missed)
     first, second, third = (
         (4.0 * loads[1] - loads[0]) / 3.0, (4.0 * loads[2] - loads[1]) / 3.0, (4.0 * loads[3] - loads[2]) / 3.0
     )  # fmt: skip
     estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
-    return third, nested.SAFETY * estimate + ROUNDING * abs(third)
+    return third, nested.SAFETY * estimate + ROUNDING * abs(third) + doubt

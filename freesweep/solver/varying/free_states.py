@@ -8,14 +8,16 @@ nested meshes from the two states of the branch that enclose it.
 import numpy as np
 
 from ...jit import entry_point, inlined, kernel
-from .. import guide, lagrangian
-from ..branch import FORCE, GAMMA, SHEAR, TORQUE, rubber_of
+from .. import guide, lagrangian, nested, quadrature
 from ..continuation import FOLLOWED, Path
-from ..status import COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
+from ..held import loaded
+from ..problem import FORCE, GAMMA, LENGTH, SHEAR, TORQUE, rubber_of
+from ..retrace import retrace
+from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from .branch import begin, follow, guess
 from .fold import FINEST
 from .meshes import stand
-from .one_state import blank, cold, differ, extremes, record
+from .one_state import blank, cold, differ, extremes, plain, record
 from .space import Rows, make_space, make_track
 
 FINER = 4  # times the cells of the base mesh, for what did not converge on it
@@ -25,7 +27,7 @@ FINER = 4  # times the cells of the base mesh, for what did not converge on it
 def settle(problem, tube, rows):
     """Write the rows that need no solving."""
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
-    clamped, whole = 1.0, tube[5][len(tube[5]) - 1]
+    clamped, half = 1.0, (1.0 if tube[3] else 0.5) * tube[5][len(tube[5]) - 1]
     for end in range(2):
         cell = guide.cell_along(tube, 1.0 * end)
         clamped = min(clamped, 1.0 + lagrangian.kinematics(1.0, cell, (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3])
@@ -40,21 +42,9 @@ def settle(problem, tube, rows):
             rows.status[i] = OK
             for k in range(5):
                 rows.values[i, k], rows.bounds[i, k] = 0.0, 0.0
-            rows.values[i, 0], rows.values[i, 1], rows.values[i, 4] = 0.5 * whole, 0.5 * whole, 1.0
+            rows.values[i, 0], rows.values[i, 1], rows.values[i, 4] = half, half, 1.0
         elif not p + f > 0.0:
             rows.status[i] = COMPRESSED
-
-
-@inlined
-def lock(problem, tube, space, rows, accuracy):
-    """Locked shapes: at infinite pressure."""
-    load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
-    for i in range(len(rows.pressures)):
-        if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
-            guide.locked(tube, problem[GAMMA], space.ahead)
-            guide.start(tube, space.ahead, load, space.x, space.y)
-            status, doublings = cold(space, tube, load, accuracy)
-            record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
 @inlined
@@ -82,10 +72,12 @@ def leave(rows, status, low, high):
 
 @inlined
 def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
-    """Stand on the state at which all loads are at their full size; its status."""
+    """Stand on the state at which all loads are at their full size: ``(status, share of the way, stretch in the middle)``
+    where the mesh still held the branch.
+    """
     status, mu, tangent_mu = begin(track, space, tube, path)
     if status != FOLLOWED:
-        return NOT_CONVERGED
+        return NOT_CONVERGED, 0.0, 1.0
     if mu < 1.0:
         none = Rows(
             rows.pressures[:0], rows.values[:0], rows.bounds[:0], rows.status[:0], rows.slack[:0], rows.stations,
@@ -93,24 +85,84 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
         )  # fmt: skip
         status, here, ahead = follow(track, roomy, space, tube, path, mu, tangent_mu, 1.0, none, limit, accuracy)
         if status != OK:
-            return status
+            return status, here[0], track.y[tube[4]]
         guess(track, space, here, ahead, 1.0)
         for i in range(len(space.y)):
             track.y[i] = space.y[i]
         status, negative, _ = stand(track, tube, path, 1.0, 1.0, 0, space.work)
         if status != FOLLOWED or negative > 0 or differ(extremes(space.y, tube[4]), extremes(track.y, tube[4])):
-            return NOT_CONVERGED
-    return OK
+            return NOT_CONVERGED, here[0], track.y[tube[4]]
+    return OK, 1.0, track.y[tube[4]]
+
+
+@inlined
+def lock(problem, tube, track, roomy, space, rows, limit, accuracy):
+    """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way there
+    from rest, along which the wall fades.
+    """
+    load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
+    for i in range(len(rows.pressures)):
+        if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
+            guide.locked(tube, problem[GAMMA], space.ahead)
+            guide.start(tube, space.ahead, load, space.x, space.y)
+            status, doublings = cold(space, tube, load, accuracy)
+            if status == NOT_CONVERGED:
+                rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
+                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0)
+                found, _, middle = settle_loads(way, track, roomy, space, tube, rows, limit, accuracy)
+                if found == OK:
+                    for k in range(len(space.x)):
+                        space.x[k], space.y[k] = track.x[k], track.y[k]
+                    status, doublings = plain(space, tube, load, accuracy)
+                    if status == NOT_CONVERGED and tube[3]:
+                        status, doublings = quadrature.solve(tube, middle, load, len(space.x) - 1, accuracy, space)
+            record(space, tube, load, status, doublings, accuracy, rows, i)
+
+
+@inlined
+def go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy):
+    """Rows that still wait, from pressure ``low`` to ``high``, of a tube that is the same all along, whose branch the mesh
+    has lost at the load ``mu``, with this stretch in the ``middle``.
+    """
+    for i in range(len(rows.pressures)):
+        p = rows.pressures[i]
+        if rows.status[i] == PENDING and low <= p <= high:
+            load = loaded(path.origin, path.direction, p)
+            status, doublings, share, bound = retrace(
+                space, tube, middle, loaded(path.origin, path.direction, mu), load, accuracy
+            )
+            record(space, tube, load, status, doublings, accuracy, rows, i)
+            if status == BEYOND_LIMIT and p > mu and limit[0] != limit[0]:
+                limit[0], limit[1] = mu + share * (p - mu), bound * (p - mu)
+
+
+@inlined
+def along_pressure(
+    track, roomy, space, tube, path, status, start, middle, tangent_mu, sense, far, rows, limit, accuracy
+):
+    """The states from the pressure ``start`` on, where the ``track`` stands if its ``status`` is FOLLOWED, to the pressure
+    ``far``; rows on that side that no state belongs to get a status.
+    """
+    mu = start
+    if status == FOLLOWED:
+        status, here, _ = follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, accuracy)
+        mu, middle = here[0], track.y[tube[4]]
+    else:
+        status = NOT_CONVERGED
+    low, high = (start, np.inf) if sense > 0.0 else (0.0, start)
+    if status == NOT_CONVERGED and tube[3]:
+        go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy)
+    leave(rows, status if status != OK else NOT_CONVERGED, low, high)
 
 
 @inlined
 def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
     """All states of one design; rows whose status is not PENDING are passed over. ``settled`` is its settling pressure,
-    ``limit`` (2,) the limit pressure and its bound, NaN if none was met. See :func:`freesweep.solver.branch.walk`.
+    ``limit`` (2,) the limit pressure and its bound, NaN if none was met. Rows: see :func:`follow_many`.
     """
     limit[0], limit[1] = np.nan, np.nan
     settle(problem, tube, rows)
-    lock(problem, tube, space, rows, accuracy)
+    lock(problem, tube, track, roomy, space, rows, limit, accuracy)
     least, most = np.inf, -1.0
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING:
@@ -124,17 +176,26 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
         status, mu, tangent_mu = begin(track, space, tube, path)
         if status == FOLLOWED:
             first_states(path, mu, tube, space, rows, accuracy)
-            status = OK
-            if most > mu:
-                status, _, _ = follow(track, roomy, space, tube, path, mu, tangent_mu, most, rows, limit, accuracy)
-        leave(rows, status, 0.0, np.inf)
+        else:
+            mu = 0.0
+        if most > mu:
+            along_pressure(
+                track, roomy, space, tube, path, status, mu, 1.0, tangent_mu, 1.0, most, rows, limit, accuracy
+            )
+        leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
     first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0)
-    status = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
+    path, n = Path((gamma, rubber, shear, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
+    status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
+    if status == NOT_CONVERGED and tube[3]:
+        load = loaded(path.origin, path.direction, settled)
+        status, _, _, _ = retrace(space, tube, middle, loaded(first.origin, first.direction, share), load, accuracy)
+        if status == OK or status == INACCURATE:
+            go_on(space, tube, path, settled, space.out[0, nested.MIDDLE], 0.0, most, rows, limit, accuracy)
+            status = NOT_CONVERGED
     if status != OK:
         leave(rows, status, 0.0, np.inf)
         return
-    path, n = Path((gamma, rubber, shear, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
     x, y = track.x.copy(), track.y.copy()
     for sense, far in ((1.0, most), (-1.0, least)):
         if (far - settled) * sense < 0.0:
@@ -142,11 +203,9 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
         for i in range(n + 1):
             track.x[i], track.y[i] = x[i], y[i]
         status, _, tangent_mu = stand(track, tube, path, settled, sense, 0, space.work)
-        if status == FOLLOWED:
-            status, _, _ = follow(track, roomy, space, tube, path, settled, tangent_mu, far, rows, limit, accuracy)
-        else:
-            status = NOT_CONVERGED
-        leave(rows, status, settled if sense > 0.0 else 0.0, np.inf if sense > 0.0 else settled)
+        along_pressure(
+            track, roomy, space, tube, path, status, settled, middle, tangent_mu, sense, far, rows, limit, accuracy
+        )
 
 
 @entry_point
@@ -154,20 +213,43 @@ def follow_many(
     problems, settled, first, pressures, course, edges, places, accuracy, values, bounds, status, slack, limits, stations,
     profiles,
 ):  # fmt: skip
-    """:func:`walk` for each row of ``problems``, of tubes that share one ``course``; arguments as of
-    :func:`freesweep.solver.branch.walk_many`, and the ``settled`` pressure of each.
+    """Equilibria of many designs, each on its own branch: see :func:`walk`.
+
+    Arguments
+    ---------
+    problems : (k, PROBLEM_SIZE) the designs, dimensionless; problem i owns rows ``first[i]`` to ``first[i + 1]`` of the rest
+    settled : (k,) pressure at which the loads of each are full
+    pressures : (n,) p = P/C10; infinity is the locked shape, where the wall no longer counts
+    course, edges, places : what varies along the tubes, and where segments begin and end on the base mesh and along x; an
+        empty ``course`` for tubes that are the same all along, of which half is solved
+    accuracy : bound to reach, scaled
+    values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds
+    status, slack : (n,) codes; rows that are not PENDING are passed over; values are NaN unless the status is OK or
+        INACCURATE
+    limits : (k, 2) limit pressure and its bound, NaN if none was met
+    stations, profiles : (m,), (n, FIELDS, m): see :func:`profile.at_stations`; m = 0 for none
     """
+    same = len(course) == 0
     middle, half = edges[len(edges) - 1], 0.5 * places[len(places) - 1]
     for k in range(len(places)):
         if abs(places[k] - half) < 1e-9 * half:
             middle = edges[k]
+    own_course, own_places = (np.zeros((1, 1, 3, 4)), np.zeros(2)) if same else (course, places)
     for k in range(len(problems)):
         own = slice(first[k], first[k + 1])
+        if not np.any(status[own] == PENDING):
+            limits[k, 0], limits[k, 1] = np.nan, np.nan
+            continue
+        if same:
+            own_places[1] = 0.5 * problems[k, LENGTH]
+            for i in range(3):
+                own_course[0, 0, i, 0] = problems[k, i]
         for factor in (1, FINER):
             base = factor * edges[len(edges) - 1]
-            space, track, roomy = make_space(base), make_track(base), make_track(FINEST * base)
-            cells = np.zeros((len(space.fine[0]), 3))
-            tube = (course, factor * edges, cells, False, factor * middle, places)
+            space = make_space(base, 1 if same else guide.PLACES)
+            track, roomy = make_track(base, same), make_track(FINEST * base, same)
+            cells = np.zeros((1 if same else len(space.fine[0]), 3))
+            tube = (own_course, factor * edges, cells, same, factor * middle, own_places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
             walk(problems[k], settled[k], tube, track, roomy, space, rows, limits[k], accuracy)
             again = False

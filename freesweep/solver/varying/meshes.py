@@ -38,10 +38,10 @@ def stand(track, tube, path, mu, sense, gradings, work):
     while True:
         own = fill(course, edges, track.x, n, n, cells)
         status, negative, _, tangent_mu = correct(
-            lagrangian.density, track.x, track.y, mu, n, own, path, track.normal, sense, track.tangent, work
+            lagrangian.density, track, track.y, mu, n, own, path, sense, track.tangent, work
         )
         if status != FOLLOWED or made == gradings or not regrade(track, tube, path, mu, work):
-            return status, negative, make_unit(track.y, track.tangent, n, mu, tangent_mu, path)
+            return status, negative, make_unit(track, n, mu, tangent_mu, path)
         made += 1
 
 
@@ -54,7 +54,7 @@ def take(track, tube, path, mu, tangent_mu, work):
     course, edges, cells, _, _, _ = tube
     for i in range(n + 1):
         track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
-    tangent_mu = make_unit(track.y, track.tangent, n, mu, tangent_mu, path)
+    tangent_mu = make_unit(track, n, mu, tangent_mu, path)
     if not regrade(track, tube, path, mu, work):
         return mu, tangent_mu
     j = 0
@@ -67,13 +67,12 @@ def take(track, tube, path, mu, tangent_mu, work):
     unit = size_of(mu, path)
     own = fill(course, edges, track.x, n, n, cells)
     status, _, new_mu, new_tangent_mu = correct(
-        lagrangian.density, track.x, track.next_y, mu, n, own, path, track.normal, tangent_mu / (unit * unit),
-        track.next_tangent, work,
-    )  # fmt: skip
+        lagrangian.density, track, track.next_y, mu, n, own, path, tangent_mu / (unit * unit), track.next_tangent, work
+    )
     if status != FOLLOWED:
         for i in range(n + 1):
             track.x[i], track.y[i] = track.spare[i], track.other[i]
         return mu, tangent_mu
     for i in range(n + 1):
         track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
-    return new_mu, make_unit(track.y, track.tangent, n, new_mu, new_tangent_mu, path)
+    return new_mu, make_unit(track, n, new_mu, new_tangent_mu, path)

@@ -8,7 +8,7 @@ through the fold, and made such that the extrapolated pressure is the one asked 
 import numpy as np
 
 from ...jit import inlined, kernel
-from .. import held, lagrangian, nested, newton
+from .. import held, lagrangian, nested, newton, quadrature
 from ..course import fill
 from ..drawing import draw
 from ..profile import FIELDS
@@ -48,16 +48,25 @@ def solve(space, tube, load, goal, direction, target, regrades, accuracy):
 
 
 @inlined
+def free(space, tube, load, regrades, accuracy):
+    """The state at ``load``, from a guess."""
+    status, doublings = solve(space, tube, load, PLAIN, FLAT, 0.0, regrades, accuracy)
+    if status != NOT_CONVERGED and tube[3]:
+        status, doublings = quadrature.sharpen(tube, load, accuracy, space, status, doublings)
+    return status, doublings
+
+
+@inlined
 def cold(space, tube, load, accuracy):
     """The state at ``load``, from a rough guess: where there is one only."""
-    return solve(space, tube, load, PLAIN, FLAT, 0.0, COLD, accuracy)
+    return free(space, tube, load, COLD, accuracy)
 
 
 @inlined
 def plain(space, tube, load, accuracy):
     """The state at ``load`` that the guess all but is."""
     guess = extremes(space.y, tube[4])
-    status, doublings = solve(space, tube, load, PLAIN, FLAT, 0.0, REGRADES, accuracy)
+    status, doublings = free(space, tube, load, REGRADES, accuracy)
     return (NOT_CONVERGED if differ(guess, extremes(space.y, tube[4])) else status), doublings
 
 
@@ -116,7 +125,7 @@ def record(space, tube, load, status, doublings, accuracy, rows, i):
         return
     base = len(space.x) - 1
     for k in range(5):
-        share = 0.5 if k < 4 else 1.0  # of half the tube
+        share = 1.0 if tube[3] or k == nested.MIDDLE else 0.5  # of half the tube
         rows.values[i, k], rows.bounds[i, k] = share * space.out[0, k], share * space.out[1, k]
     rows.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << doublings, base, tube, load)
     if len(rows.stations) > 0:

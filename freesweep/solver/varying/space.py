@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from .. import guide, nested
+from .. import nested
 from ..continuation import Track
 
 
@@ -36,18 +36,20 @@ class Rows(NamedTuple):
 
 
 @kernel
-def make_space(base):
-    """Scratch for a base mesh of ``base`` cells."""
+def make_space(base, places):
+    """Scratch for a base mesh of ``base`` cells, and uniform stretches at so many ``places``."""
     size = (base << nested.MAX_DOUBLINGS) + 2
     return Space(
         np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
         np.zeros((5, size)), np.zeros((4, nested.OUTPUTS)), np.zeros(base + 1), np.zeros(base + 1),
-        np.zeros(guide.PLACES), np.zeros(guide.PLACES),
+        np.zeros(places), np.zeros(places),
     )  # fmt: skip
 
 
 @kernel
-def make_track(base):
-    """Scratch of a branch on ``base`` cells."""
+def make_track(base, free):
+    """Scratch of a branch on ``base`` cells, whose last node is a plane of symmetry or held."""
     nodes = np.zeros((8, base + 1))
-    return Track(nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], nodes[5], nodes[6], nodes[7])
+    return Track(
+        nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], nodes[5], nodes[6], nodes[7], base if free else base - 1
+    )
