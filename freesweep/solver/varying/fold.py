@@ -60,6 +60,8 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
     status, negative, mu, tangent_mu = correct(
         lagrangian.density, track, track.y, mu, n, cells, path, tangent_mu / (unit * unit), track.tangent, work
     )
+    if status != FOLLOWED:
+        return np.nan, 0.0
     tangent_mu = make_unit(track, n, mu, tangent_mu, path)
     stable = is_stable(negative, tangent_mu, sense)
     if not stable:  # turn round
@@ -72,15 +74,14 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
         status, negative, next_mu, next_tangent_mu, made, step = advance(
             lagrangian.density, track, n, cells, path, mu, tangent_mu, step, work
         )
-        if status == FOLLOWED and is_stable(negative, next_tangent_mu, sense) != stable:
+        if is_stable(negative, next_tangent_mu, sense) != stable:
             found, _, _ = last_alike(
                 lagrangian.density, track, n, cells, path, mu, tangent_mu, made, sense, stable, work
             )
             return found, 0.0
-        if status == FOLLOWED:
-            for i in range(n + 1):
-                track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
-            mu, tangent_mu = next_mu, make_unit(track, n, next_mu, next_tangent_mu, path)
+        for i in range(n + 1):
+            track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
+        mu, tangent_mu = next_mu, make_unit(track, n, next_mu, next_tangent_mu, path)
     return np.nan, 0.0
 
 

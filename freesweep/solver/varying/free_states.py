@@ -20,7 +20,7 @@ from .meshes import stand
 from .one_state import blank, cold, differ, extremes, plain, record
 from .space import Rows, make_space, make_track
 
-FINER = 4  # times the cells of the base mesh, for what did not converge on it
+FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for what did not converge
 
 
 @inlined
@@ -97,8 +97,8 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
 
 @inlined
 def lock(problem, tube, track, roomy, space, rows, limit, accuracy):
-    """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way there
-    from rest, along which the wall fades.
+    """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way
+    from rest along which the wall fades.
     """
     load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
     for i in range(len(rows.pressures)):
@@ -244,7 +244,7 @@ def follow_many(
             own_places[1] = 0.5 * problems[k, LENGTH]
             for i in range(3):
                 own_course[0, 0, i, 0] = problems[k, i]
-        for factor in (1, FINER):
+        for factor in FINER:
             base = factor * edges[len(edges) - 1]
             space = make_space(base, 1 if same else guide.PLACES)
             track, roomy = make_track(base, same), make_track(FINEST * base, same)
@@ -258,6 +258,6 @@ def follow_many(
                     again = True
             if not again:
                 break
-            if factor == 1:
+            if factor < FINER[len(FINER) - 1]:
                 for i in range(first[k], first[k + 1]):
                     status[i] = PENDING
