@@ -7,13 +7,13 @@ from freesweep.first_integral.folded import solve_near
 from freesweep.solver import batch
 
 
-def in_proportion(problems, first, pressures, lanes=False):
+def in_proportion(problems, first, pressures):
     """States of ``problems`` (n, 11), whose loads are at their full size at the first of each one's ``pressures``."""
     problems, pressures = np.ascontiguousarray(problems), np.ascontiguousarray(pressures, dtype=float)
-    found = batch._nothing(len(problems), len(pressures), batch.NOTHING)
-    asked = np.zeros(len(pressures), bool)
-    batch._walk(
-        problems, np.asarray(first), pressures, asked, batch.uniform(24), 1e-6, batch.NOTHING, lanes, False, found
+    first, nothing = np.asarray(first), batch.NOTHING
+    found = batch._nothing(len(problems), len(pressures), nothing)
+    batch.follow_many(
+        problems, pressures[first[:-1]], first, pressures, *batch.uniform(24), 1e-6, *found[:5], nothing, found.profiles
     )
     return found
 

@@ -411,10 +411,9 @@ def test_a_tube_that_torque_draws_in_lets_go_at_one_pressure_whatever_the_list()
     drawn = tube(53.64526, -43.69847, 3.21144, 0.07825 * 2.07825, 0.253916, "principal", f=1.055777, m=1.048992)
     lists = ([0.006176, 1.430731, 9.341646], np.linspace(0.006176, 9.341646, 40), np.linspace(0.006176, 3.0, 200))
     for pressures in lists:
-        for lanes in (True, False):
-            walks = in_proportion(np.array([drawn]), [0, len(pressures)], pressures, lanes)
-            limit, bound = walks.limits[0]
-            assert abs(limit - 1.5552888) < bound + 1e-7
-            beyond = np.asarray(pressures) > limit
-            assert np.all(walks.status == np.where(beyond, BEYOND_LIMIT, OK))
-            assert np.all(walks.values[~beyond, 4] < 0.3)
+        walks = in_proportion(np.array([drawn]), [0, len(pressures)], pressures)
+        limit, bound = walks.limits[0]
+        assert abs(limit - 1.5552888) < bound + 1e-7
+        beyond = np.asarray(pressures) > limit
+        assert np.all(walks.status == np.where(beyond, BEYOND_LIMIT, OK))
+        assert np.all(walks.values[~beyond, 4] < 0.3)

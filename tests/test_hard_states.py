@@ -140,14 +140,13 @@ DRAWN_IN = [
 ]
 
 
-@pytest.mark.parametrize("lanes", [True, False])
-def test_walk_stays_with_the_drawn_in_tube_where_another_shape_is_stable_too(lanes):
+def test_walk_stays_with_the_drawn_in_tube_where_another_shape_is_stable_too():
     """From 2.2 to 2.478 the tube may be drawn in to 0.165, or hardly at all: the branch from P = 0 has one of the two, until
     it ends.
     """
     pressures = np.concatenate([[0.008, 0.18], np.linspace(2.2, 4.2, 41)])
     problem = Drawn(np.array([DRAWN_IN]), None).problems()
-    walk = in_proportion(problem, [0, len(pressures)], pressures, lanes)
+    walk = in_proportion(problem, [0, len(pressures)], pressures)
     end = np.count_nonzero(pressures < 2.478)
     assert walk.status.tolist() == [OK] * end + [BEYOND_LIMIT] * (len(pressures) - end)
     middle = walk.values[:end, 4]

@@ -141,7 +141,7 @@ def test_only_what_vectors_leave_counts(monkeypatch):
 
     monkeypatch.setattr(lanes, "carry_lanes", lambda *given: given[8].fill(1.0))
     monkeypatch.setattr(lanes, "solve_lanes", solve_all_but_one)
-    monkeypatch.setattr(batch, "walk_many", lambda *_: None)
+    monkeypatch.setattr(batch, "follow_many", lambda *_: None)
     problems = np.zeros((40, 11))
     batch.walk_all(problems, np.arange(41), np.ones(40), batch.uniform(24), 1e-6, soon=True)
     assert [states for states, _ in asked] == [40, 1]

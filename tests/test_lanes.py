@@ -232,7 +232,7 @@ def test_what_vectors_leave_they_solve_on_a_finer_mesh(monkeypatch):
     first, pressures = np.arange(len(problems) + 1), np.full(len(problems), np.inf)
     scalar = walked(problems, first, pressures, lanes=False)
     monkeypatch.setattr(batch, "FINER", 1)
-    monkeypatch.setattr(batch, "walk_many", lambda *arguments: None)
+    monkeypatch.setattr(batch, "follow_many", lambda *arguments: None)
     assert np.all(walked(problems, first, pressures).status == PENDING)
     monkeypatch.setattr(batch, "FINER", 2)
     found = walked(problems, first, pressures)
@@ -247,7 +247,7 @@ def test_narrow_vectors_give_the_same_numbers_to_rounding(tmp_path):
     """A machine without AVX-512: the same states, with bounds that differ by less than a bound."""
     program = (
         "import numpy as np, test_lanes; from freesweep.solver.lanes.vector import WIDTH; "
-        "test_lanes.batch.walk_many = lambda *arguments: None; "  # what lanes leave would compile the scalar kernels anew
+        "test_lanes.batch.follow_many = lambda *arguments: None; "  # what lanes leave would compile the scalar kernels anew
         "w = test_lanes.walked(*test_lanes.designs(20, 11)); "
         f"np.savez(r'{tmp_path / 'narrow.npz'}', width=WIDTH, values=w.values, status=w.status)"
     )

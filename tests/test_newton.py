@@ -16,6 +16,8 @@ import pytest
 from scipy.optimize import brentq
 
 from freesweep.solver import held, mesh, nested, newton
+from freesweep.solver.continuation import FOLLOWED, Path, advance, correct, is_stable, last_alike, make_unit
+from freesweep.solver.varying.space import make_track
 
 X = 0.5
 FILM, BRATU = 0.0, 1.0
@@ -183,16 +185,34 @@ def test_a_chain_of_given_length_hangs_as_a_catenary():
     assert values[2] == pytest.approx(length, abs=1e-12)
 
 
-@pytest.mark.parametrize("begin", [0.5, 2.0, 3.4])
-def test_the_turning_point_of_bratus_problem(begin):
-    x, y = start()
+def fold_of_bratu(cells, begin):
+    """Strength at the fold of Bratu's problem on one mesh, by continuation from a state of that strength."""
+    x, y = start(cells)
     load = (0.0, 0.0, 0.0, begin, 0.0, 0.0, 0.0)
     assert on_one_mesh(x, y, BRATU, load)[0] == newton.CONVERGED
-    status, _, _, values, bounds, _ = on_nested_meshes(
-        x, y, BRATU, load, goal=nested.TURNING_POINT, direction=ALONG_MU, accuracy=1e-8
-    )
-    assert status == newton.CONVERGED
-    assert abs(begin + values[nested.MULTIPLIER] - BRATU_LIMIT) <= bounds[nested.MULTIPLIER] < 2e-8
+    track = make_track(cells, True)
+    track.x[:], track.y[:] = x, y
+    path, own, work = Path(REST, ALONG_MU, 0.0), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
+    status, _, mu, slope = correct(density, track, track.y, begin, cells, own, path, 1.0, track.tangent, work)
+    assert status == FOLLOWED
+    slope, step = make_unit(track, cells, mu, slope, path), 0.01
+    while True:
+        status, negative, ahead, next_slope, made, step = advance(
+            density, track, cells, own, path, mu, slope, step, work
+        )
+        assert status == FOLLOWED
+        if not is_stable(negative, next_slope, 1.0):
+            return last_alike(density, track, cells, own, path, mu, slope, made, 1.0, True, work)[0]
+        track.y[:], track.tangent[:] = track.next_y, track.next_tangent
+        mu, slope = ahead, make_unit(track, cells, ahead, next_slope, path)
+
+
+@pytest.mark.parametrize("begin", [0.5, 2.0, 3.4])
+def test_the_fold_of_bratus_problem(begin):
+    folds = np.array([fold_of_bratu(cells, begin) for cells in (48, 96, 192)])
+    assert np.all(np.diff(abs(folds - BRATU_LIMIT)) < 0.0)
+    extrapolated = (4.0 * folds[1:] - folds[:-1]) / 3.0
+    assert extrapolated[-1] == pytest.approx(BRATU_LIMIT, abs=2e-8)
 
 
 def test_no_state_is_found_beyond_the_turning_point():

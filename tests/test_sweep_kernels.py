@@ -53,7 +53,7 @@ def test_kernels_are_loaded_before_the_threads_begin(text, needed, tmp_path, mon
         return noted
 
     entries = [(walk, "carry_lanes"), (walk, "solve_lanes"), (hold, "seek_lanes")]
-    for module, name in [*entries, (batch, "walk_many"), (batch, "follow_many"), (hold_batch, "block_many")]:
+    for module, name in [*entries, (batch, "follow_many"), (hold_batch, "block_many")]:
         monkeypatch.setattr(module, name, noting(getattr(module, name)))
     early, late, idle = set(), set(), set()
     monkeypatch.setattr(kernels, "load", then(kernels.load, early))
@@ -72,7 +72,7 @@ def test_a_first_sweep_needs_no_scalar_kernel(tmp_path, monkeypatch):
     def never(*_):
         raise AssertionError("a scalar kernel is needed")
 
-    monkeypatch.setattr(batch, "walk_many", never)
+    monkeypatch.setattr(batch, "follow_many", never)
     monkeypatch.setattr(hold_batch, "block_many", never)
     found = make(tmp_path / "atlas.nc", QUICK)
     assert set(np.unique(found["status"])) == {0, 1}

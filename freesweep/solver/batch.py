@@ -37,7 +37,7 @@ def uniform(cells):
 
 
 def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes=True, soon=False) -> Walks:
-    """Walk each problem along its pressures; arguments as of :func:`branch.walk_many`, ``tube`` its (course, edges, places).
+    """Walk each problem along its pressures; arguments as of :func:`follow_many`, ``tube`` its (course, edges, places).
 
     Vectors of designs serve where tubes do not vary. Their numbers do not depend on which
     designs share a vector; those of the scalar kernels alone (``lanes=False``) differ by less than the bounds.

@@ -16,7 +16,7 @@ def block_many(
 ):  # fmt: skip
     """The force that holds a length (``kind`` HELD_LENGTH), or the torque that holds a rotation, of rows of problems.
 
-    ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of :func:`branch.walk_many`;
+    ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of :func:`free_states.follow_many`;
     ``targets`` (k,) the deformed lengths in radii or the rotations in radians, of the whole tube. A problem keeps its torque
     while its length is held, its force while its rotation is. At zero pressure and no load the undeformed
     state is at rest. Rows whose

@@ -15,7 +15,7 @@ LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more tha
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
 SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
 TOGETHER = 32  # problems that are solved at once, as vectors need them
-KERNELS = {FREE: ("solve_lanes", "walk_many")} | dict.fromkeys(
+KERNELS = {FREE: ("solve_lanes", "follow_many")} | dict.fromkeys(
     ("blocked_force", "blocked_torque"), ("seek_lanes", "solve_lanes", "block_many")
 )
 VARIED = KERNELS | {FREE: ("follow_many",)}

@@ -1,4 +1,4 @@
-"""The walk of :mod:`freesweep.solver.branch` along its quick way, for a vector of designs at a time.
+"""Free states of tubes that are the same all along, a vector of designs at a time.
 
 First each design's uniform tube is carried along its pressures, as far as it rises without a turning point. Then the
 states are solved, in vectors of states that are alike, whichever designs they belong to: each begins with the shape of a
@@ -90,7 +90,7 @@ def solve_lanes(
     stations, profiles,
 ):  # fmt: skip
     """Solve the rows in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]`` and has the uniform
-    stretch ``stretches[i]``. Other arguments as of :func:`branch.walk_many`; rows that a lane could not do keep the status
+    stretch ``stretches[i]``. Other arguments as of :func:`follow_many`; rows that a lane could not do keep the status
     that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
     """
     size = (base << nested.LANE_DOUBLINGS) + 2
