@@ -1,4 +1,7 @@
-"""Fixtures that several files of tests share."""
+"""Fixtures that several files of tests share, and the machine code that all of them need."""
+
+import subprocess
+import sys
 
 import pytest
 from grids import make
@@ -18,3 +21,35 @@ def reference(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "SHARD_EQUILIBRIA", SHARD)
         return make(tmp_path_factory.mktemp("reference") / "atlas.nc", SWEEP, threads=1)
+
+
+STATES = """
+import freesweep as fs
+from freesweep import interpret
+interpret.FEW = interpret.FEWER = -1
+sections = dict(length=0.1, radius=5e-3, wall=1.5e-3, material=fs.MooneyRivlin(1e5, 5e4))
+alike, varying = fs.Actuator(alpha=40, beta=-20, **sections), fs.Actuator(alpha=[(0, 40), (1, 41)], beta=-20, **sections)
+"""
+HELD = """
+import numpy as np
+from freesweep.solver import batch, find, hold_batch
+fs.blocked_force(alike, 1e4)
+none = np.zeros((0, 11)), np.zeros(0), find.HELD_LENGTH, np.zeros(1, np.int64), np.zeros(0)
+hold_batch.hold_all(*none, batch.uniform(24), 1e-6, lanes=False)
+"""
+FREE = """
+from freesweep.sweep import kernels
+fs.inflate(varying, 1e4)
+fs.inflate(alike, 1e4)
+kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes", "seek_lanes", "query"])
+"""
+
+
+def pytest_sessionstart(session):
+    """Before the whole suite: two processes compile side by side, or each worker would compile the same for itself."""
+    options = session.config.option
+    whole = [*session.config.args] in ([], ["tests"], ["tests/"])
+    if whole and not hasattr(session.config, "workerinput") and not options.collectonly and not options.keyword:
+        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (HELD, FREE)]
+        for part in parts:
+            part.wait()

@@ -7,19 +7,26 @@ way.
 
 import numpy as np
 
-from ..jit import inlined
+from ..jit import kernel
 from . import beside, lagrangian, meridian, nested, newton, quadrature, trail
 from .guide import cell_along
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK
 
 FINER, MOST_NODES = 4, 16 * meridian.NODES  # times the nodes of a trace where it does not tell enough, up to so many
+RUN_OUT = 0.05  # cosine of the meridian's angle at an end
 CLOSE = 0.02  # of the way: two traces' difference that is good enough
 CAUTION = 10.0  # times the bounds of shapes so steep: their errors fall to fourth order only on finer meshes
 STRAY = 0.02  # share of |middle - 1| by which a mesh's middle may differ from the trace's
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@inlined
+@kernel
+def is_upright(track, tube, load):
+    """Whether a clamped end of a tube that is the same all along stands so upright that node values run out there."""
+    return tube[3] and quadrature.end_cosine(track.x, track.y, tube, load) < RUN_OUT
+
+
+@kernel
 def retrace(space, tube, origin, before, load, accuracy):
     """The state at ``load``, from one at ``before`` whose stretch in the middle is ``origin``, left as :func:`nested.solve`
     leaves it: ``(status, doublings, share of the way at a fold, its bound)``.
@@ -52,4 +59,5 @@ def retrace(space, tube, origin, before, load, accuracy):
             status, doublings = quadrature.solve(tube, middle, load, len(x) - 1, accuracy, space)
             if status != NOT_CONVERGED:
                 return status, doublings, np.nan, np.nan
-    return NOT_CONVERGED, 0, np.nan, np.nan
+    status, doublings = quadrature.solve(tube, origin, load, len(x) - 1, accuracy, space)  # it may hardly move at all
+    return status, doublings, np.nan, np.nan

@@ -3,10 +3,11 @@
 import numpy as np
 
 from ...jit import inlined, kernel
-from .. import guide, lagrangian
+from .. import guide, lagrangian, quadrature
 from ..continuation import CHANGE, FIRST_STEP, FOLLOWED, advance, between, is_flat, is_stable, last_alike
 from ..course import fill
 from ..held import loaded
+from ..retrace import is_upright
 from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from .fold import locate
@@ -51,28 +52,32 @@ def guess(track, space, here, ahead, pressure):
     between(track, n, here[0], here[1], ahead[0], ahead[1], ahead[2], pressure, space.y)
 
 
-@inlined
-def answer(track, space, tube, path, here, ahead, rows, accuracy):
-    """Solve the rows that wait for a pressure on the step from ``here`` to what is ``ahead``."""
-    low, high = min(here[0], ahead[0]), max(here[0], ahead[0])
+@kernel
+def answer(track, space, tube, path, first, here, ahead, rows, accuracy):
+    """Solve the rows that wait for a pressure on the step from ``here`` to what is ``ahead``; the step before ended at the
+    load ``first``, on another mesh.
+    """
+    low, high = min(min(first, here[0]), ahead[0]), max(max(first, here[0]), ahead[0])
     for i in range(len(rows.pressures)):
         p = rows.pressures[i]
         if rows.status[i] == PENDING and low <= p <= high:
             guess(track, space, here, ahead, p)
-            load = loaded(path.origin, path.direction, p)
+            load, middle = loaded(path.origin, path.direction, p), space.y[tube[4]]
             status, doublings = plain(space, tube, load, accuracy)
+            if status == NOT_CONVERGED and tube[3]:
+                status, doublings = quadrature.solve(tube, middle, load, len(space.x) - 1, accuracy, space)
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
 @inlined
-def end_at_fold(track, space, tube, path, here, ahead, fold, rows, limit, accuracy):
+def end_at_fold(track, space, tube, path, first, here, ahead, fold, rows, limit, accuracy):
     """What rows still wait for, where the branch of a rising pressure ends on a step, at the ``fold`` (load, bound): states
     before it are solved, the rest lie beyond.
     """
     value, bound = fold
     for i in range(len(rows.pressures)):
         p = rows.pressures[i]
-        if rows.status[i] != PENDING or p < here[0] or p == np.inf:
+        if rows.status[i] != PENDING or p < first or p == np.inf:
             continue
         load, status, doublings = loaded(path.origin, path.direction, p), NOT_CONVERGED, 0
         if p >= value - bound:
@@ -96,7 +101,7 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
     n = len(track.x) - 1
     course, edges, cells, _, _, _ = tube
     sense, step = (1.0 if tangent_mu > 0.0 else -1.0), FIRST_STEP * CHANGE
-    here = (mu, tangent_mu)
+    here, first = (mu, tangent_mu), mu
     for _ in range(MOST_STEPS):
         own = fill(course, edges, track.x, n, n, cells)
         status, negative, mu, tangent_mu, made, step = advance(
@@ -118,13 +123,15 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
                 )
             passed = (ahead[0] - far) * sense >= 0.0
             if sense < 0.0 or (passed and len(rows.pressures) == 0):  # a limit pressure is one of rising pressures
-                answer(track, space, tube, path, here, ahead, rows, accuracy)
+                answer(track, space, tube, path, first, here, ahead, rows, accuracy)
                 return (OK if passed else BEYOND_LIMIT), here, ahead
             fold = locate(track, roomy, space, tube, path, here, ahead, sense)
-            end_at_fold(track, space, tube, path, here, ahead, fold, rows, limit, accuracy)
+            end_at_fold(track, space, tube, path, first, here, ahead, fold, rows, limit, accuracy)
             return (OK if passed else BEYOND_LIMIT if fold[0] == fold[0] else NOT_CONVERGED), here, ahead
-        answer(track, space, tube, path, here, ahead, rows, accuracy)
+        answer(track, space, tube, path, first, here, ahead, rows, accuracy)
         if (mu - far) * sense >= 0.0:
             return OK, here, ahead
-        here = take(track, tube, path, mu, tangent_mu, space.work)
+        first, here = mu, take(track, tube, path, mu, tangent_mu, space.work)
+        if is_upright(track, tube, loaded(path.origin, path.direction, here[0])):
+            break
     return NOT_CONVERGED, here, (here[0], here[1], 0.0)

@@ -25,6 +25,7 @@ from ..course import fill
 from ..held import loaded
 
 COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
+FALLING, SMALL = 0.5, 1e-7  # of the change from mesh to mesh, whose order is two: more and the meshes do not agree
 STEPS = 40  # along the branch, to the edge
 ROUNDING = 4e-9  # of its load, relative: where a load is flat, many shapes are equilibria to rounding
 
@@ -88,7 +89,7 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
 @kernel
 def locate(track, roomy, space, tube, path, here, ahead, sense):
     """The load at which the branch ends, from the state ``here`` in ``track``; ``ahead`` is where the base mesh has that
-    edge. ``(load, bound)``, NaN where some mesh has none near; ``roomy`` is a track for the finest.
+    edge. ``(load, bound)``, NaN where some mesh has none near, or they do not agree; ``roomy`` is a track for the finest.
     """
     n = len(track.x) - 1
     course, edges, cells, free, _, _ = tube
@@ -115,5 +116,9 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     first, second, third = (
         (4.0 * loads[1] - loads[0]) / 3.0, (4.0 * loads[2] - loads[1]) / 3.0, (4.0 * loads[3] - loads[2]) / 3.0
     )  # fmt: skip
+    changes = abs(loads[1] - loads[0]), abs(loads[2] - loads[1]), abs(loads[3] - loads[2])
+    least = SMALL * abs(third)  # where rounding counts, nothing need fall
+    if not (changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least):
+        return np.nan, 0.0
     estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
     return third, nested.SAFETY * estimate + ROUNDING * abs(third) + doubt

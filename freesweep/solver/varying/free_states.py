@@ -12,7 +12,7 @@ from .. import guide, lagrangian, nested, quadrature
 from ..continuation import FOLLOWED, Path
 from ..held import loaded
 from ..problem import FORCE, GAMMA, LENGTH, SHEAR, TORQUE, rubber_of
-from ..retrace import retrace
+from ..retrace import is_upright, retrace
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from .branch import begin, follow, guess
 from .fold import FINEST
@@ -70,7 +70,7 @@ def leave(rows, status, low, high):
             rows.status[i] = status
 
 
-@inlined
+@kernel
 def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
     """Stand on the state at which all loads are at their full size: ``(status, share of the way, stretch in the middle)``
     where the mesh still held the branch.
@@ -119,7 +119,7 @@ def lock(problem, tube, track, roomy, space, rows, limit, accuracy):
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
-@inlined
+@kernel
 def go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy):
     """Rows that still wait, from pressure ``low`` to ``high``, of a tube that is the same all along, whose branch the mesh
     has lost at the load ``mu``, with this stretch in the ``middle``.
@@ -136,7 +136,7 @@ def go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy):
                 limit[0], limit[1] = mu + share * (p - mu), bound * (p - mu)
 
 
-@inlined
+@kernel
 def along_pressure(
     track, roomy, space, tube, path, status, start, middle, tangent_mu, sense, far, rows, limit, accuracy
 ):
@@ -150,7 +150,7 @@ def along_pressure(
     else:
         status = NOT_CONVERGED
     low, high = (start, np.inf) if sense > 0.0 else (0.0, start)
-    if status == NOT_CONVERGED and tube[3]:
+    if status == NOT_CONVERGED and is_upright(track, tube, loaded(path.origin, path.direction, mu)):
         go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy)
     leave(rows, status if status != OK else NOT_CONVERGED, low, high)
 
@@ -187,9 +187,9 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
     first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0)
     path, n = Path((gamma, rubber, shear, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
-    if status == NOT_CONVERGED and tube[3]:
-        load = loaded(path.origin, path.direction, settled)
-        status, _, _, _ = retrace(space, tube, middle, loaded(first.origin, first.direction, share), load, accuracy)
+    load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
+    if status == NOT_CONVERGED and is_upright(track, tube, before):
+        status, _, _, _ = retrace(space, tube, middle, before, load, accuracy)
         if status == OK or status == INACCURATE:
             go_on(space, tube, path, settled, space.out[0, nested.MIDDLE], 0.0, most, rows, limit, accuracy)
             status = NOT_CONVERGED

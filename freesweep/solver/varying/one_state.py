@@ -7,7 +7,7 @@ through the fold, and made such that the extrapolated pressure is the one asked 
 
 import numpy as np
 
-from ...jit import inlined, kernel
+from ...jit import kernel
 from .. import held, lagrangian, nested, newton, quadrature
 from ..course import fill
 from ..drawing import draw
@@ -47,7 +47,7 @@ def solve(space, tube, load, goal, direction, target, regrades, accuracy):
     return (OK if status == newton.CONVERGED else INACCURATE), doublings
 
 
-@inlined
+@kernel
 def free(space, tube, load, regrades, accuracy):
     """The state at ``load``, from a guess."""
     status, doublings = solve(space, tube, load, PLAIN, FLAT, 0.0, regrades, accuracy)
@@ -56,13 +56,13 @@ def free(space, tube, load, regrades, accuracy):
     return status, doublings
 
 
-@inlined
+@kernel
 def cold(space, tube, load, accuracy):
     """The state at ``load``, from a rough guess: where there is one only."""
     return free(space, tube, load, COLD, accuracy)
 
 
-@inlined
+@kernel
 def plain(space, tube, load, accuracy):
     """The state at ``load`` that the guess all but is."""
     guess = extremes(space.y, tube[4])
