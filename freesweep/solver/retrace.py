@@ -1,8 +1,7 @@
 """Where node values have no digit to spare for a tube that is the same all along: its branch goes on by its first integral,
 and what that shows is solved on a mesh that begins there, or by quadrature.
 
-A fold is told by two traces, one of more nodes than the other: they differ by less than its distance to either end of the
-way.
+A fold is told by traces of more and more nodes: the last two differ by less than its distance to either end of the way.
 """
 
 import numpy as np
@@ -42,8 +41,6 @@ def retrace(space, tube, origin, before, load, accuracy):
                 return COMPRESSED, 0, np.nan, np.nan
         elif what == trail.TURNED:
             turned, doubt = share, abs(share - turned) if turned == turned else np.inf
-            if doubt < CLOSE and doubt < min(turned, 1.0 - turned):
-                return BEYOND_LIMIT, 0, turned, doubt
         else:
             status, unstable, doublings, _ = nested.solve(
                 lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube, load,
@@ -59,5 +56,7 @@ def retrace(space, tube, origin, before, load, accuracy):
             status, doublings = quadrature.solve(tube, middle, load, len(x) - 1, accuracy, space)
             if status != NOT_CONVERGED:
                 return status, doublings, np.nan, np.nan
+    if doubt < CLOSE and doubt < min(turned, 1.0 - turned):
+        return BEYOND_LIMIT, 0, turned, doubt
     status, doublings = quadrature.solve(tube, origin, load, len(x) - 1, accuracy, space)  # it may hardly move at all
     return status, doublings, np.nan, np.nan

@@ -72,12 +72,12 @@ def answer(track, space, tube, path, first, here, ahead, rows, accuracy):
 @inlined
 def end_at_fold(track, space, tube, path, first, here, ahead, fold, rows, limit, accuracy):
     """What rows still wait for, where the branch of a rising pressure ends on a step, at the ``fold`` (load, bound): states
-    before it are solved, the rest lie beyond.
+    before it are solved, the rest lie beyond; they wait on where the fold is not known.
     """
     value, bound = fold
     for i in range(len(rows.pressures)):
         p = rows.pressures[i]
-        if rows.status[i] != PENDING or p < first or p == np.inf:
+        if rows.status[i] != PENDING or p < first or p == np.inf or (value != value and p >= ahead[0]):
             continue
         load, status, doublings = loaded(path.origin, path.direction, p), NOT_CONVERGED, 0
         if p >= value - bound:

@@ -25,7 +25,8 @@ from ..course import fill
 from ..held import loaded
 
 COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
-FALLING, SMALL = 0.5, 1e-7  # of the change from mesh to mesh, whose order is two: more and the meshes do not agree
+FALLING, SMALL = 0.5, 1e-7  # of the change from mesh to mesh, and of the load: else no order is seen
+AGREED = 1e-4  # of the load: by more the meshes do not agree
 STEPS = 40  # along the branch, to the edge
 ROUNDING = 4e-9  # of its load, relative: where a load is flat, many shapes are equilibria to rounding
 
@@ -118,7 +119,9 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     )  # fmt: skip
     changes = abs(loads[1] - loads[0]), abs(loads[2] - loads[1]), abs(loads[3] - loads[2])
     least = SMALL * abs(third)  # where rounding counts, nothing need fall
-    if not (changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least):
+    estimate = max(abs(third - second), abs(second - first))
+    if changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least:
+        estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
+    if not estimate < AGREED * abs(third):
         return np.nan, 0.0
-    estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
     return third, nested.SAFETY * estimate + ROUNDING * abs(third) + doubt
