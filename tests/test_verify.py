@@ -163,6 +163,9 @@ def test_attributes_are_held_against_the_specification(atlas, tmp_path):
     }.items():
         (fault,) = changed(atlas, tmp_path, lambda data, name=name, value=value: data.assign_attrs({name: value}))
         assert fault.startswith(f"its attribute {name} is ")
+    for name, value in {"thin_wall_ratio": 1.0, "thin_wall_note": "wall/radius 0.03"}.items():
+        (fault,) = changed(atlas, tmp_path, lambda data, name=name, value=value: data.assign_attrs({name: value}))
+        assert fault.startswith("its note on thick walls, ")
 
 
 def test_limit_pressures_are_held_against_statuses_and_solved_anew(tmp_path):

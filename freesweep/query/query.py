@@ -11,6 +11,7 @@ from ..atlas.schema import PARAMETERS, attributes
 from ..given import described
 from ..options import read_choice, read_switch
 from ..status import NOT_INTERPOLABLE, OUTSIDE, status_attributes
+from ..thick_wall import DESIGN, NOTES, attributes_of
 from . import calibration
 from .answer import CUBIC, LINEAR, Inquiry
 from .ask import read_question
@@ -180,12 +181,25 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
         for name, count in coarse:
             counts[name] += count
         attrs["too_coarse"] = ", ".join(f"{name} ({count:,})" for name, count in counts.most_common())
-    result = xr.Dataset(dataset, _coordinates(reader, question, axes), attrs)
+    result = xr.Dataset(dataset, _coordinates(reader, question, axes), attrs | _of_thick_walls(reader, question))
     if x is not None:
         from .refine import profiles
 
         result = xr.merge([result, profiles(reader, question, x)])
     return result
+
+
+def _of_thick_walls(reader, question):
+    """Attributes of an answer for tubes with thick walls."""
+    frame, values = reader.frame, reader.complete(question.values, question.size)
+    for name in frame.by_design:
+        values[name] = frame.values[name][values["design"].astype(int)] if "design" in values else frame.values[name]
+    if not frame.uniform_along_x:
+        return {key: reader.data.attrs[key] for key in NOTES if key in reader.data.attrs}
+    if any(name not in values for name in DESIGN if name in frame.values):
+        return {}  # what was asked for does not depend on all of them: the wall is not felt
+    values.setdefault("fiber_radius", values["radius"])
+    return attributes_of(*(values[name] for name in DESIGN), frame.energy)
 
 
 def curve(reader, along, values, rest):

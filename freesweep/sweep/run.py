@@ -236,4 +236,6 @@ def summary(atlas, tables, solving, total) -> str:
         lines += [f"  {kind.replace('_', ' ')}"] if kind != "free" else []
         counts = atlas.status_counts(name).items()
         lines += [f"  {count:>12,}  {meaning}: {sentences[meaning]}" for meaning, count in counts]
+    if note := atlas.data.attrs.get("thin_wall_note"):
+        lines.append(f"  note: {note}")
     return "\n".join([*lines, f"  {atlas.path}"])
