@@ -151,6 +151,9 @@ def _of_limits(data):
         )
         wrong += int((codes.isin(VALUED) & (pressure > limit + bound)).sum())
         wrong += int(((codes == BEYOND_LIMIT) & (pressure < limit - bound)).sum())
+        # without loads there is no way to the pressures on which a branch can end
+        alone = (data["force"] == 0.0) & (data["torque"] == 0.0) & (data["fiber_extension"] == 1.0)
+        wrong += int(((codes == BEYOND_LIMIT) & alone & ~np.isfinite(limit)).sum())
     return [f"limit_pressure: {wrong:,} states beyond it, or none below it"] if wrong else []
 
 
