@@ -7,7 +7,8 @@ import numpy as np
 
 from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
 from .faults import ActuatorError
-from .given import described, read_number
+from .given import numbers, read_number
+from .options import read_choice
 from .profiles import ProfileError, as_profile, is_profile, together
 from .unit_warnings import doubts, warn_of
 
@@ -81,8 +82,7 @@ class Actuator:
                 f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01), NeoHookean(c10) or"
                 " Yeoh(c1, c2, c3), in [Pa], or material(name)"
             )
-        if not isinstance(self.energy, str) or self.energy not in ENERGIES:
-            faults.append(f"energy: found {described(self.energy)}; choose one of {', '.join(map(repr, ENERGIES))}")
+        read_choice("energy", self.energy, ENERGIES, faults)
         for name, value in read.items():
             object.__setattr__(self, name, value)
         if not faults:
@@ -143,11 +143,26 @@ class Actuator:
         return any(is_profile(getattr(self, name)) for name in VARYING)
 
     def angles(self, share):
-        """Both fiber angles [degree] at shares x/l of the length; on a jump the left ones."""
+        """Both fiber angles [degree] at shares x/l of the length, 0 to 1; on a jump the left ones.
+
+        Raises :class:`ActuatorError`.
+        """
+        try:
+            share = numbers(share, "1")
+        except ValueError as error:
+            raise ActuatorError([f"share: {error}"]) from None
+        if not np.all((share >= 0.0) & (share <= 1.0)):
+            raise ActuatorError(["share: a place x/l lies beyond the tube; give numbers from 0 to 1"])
         return self.profile("alpha").at(share), self.profile("beta").at(share)
 
     def profile(self, name):
-        """Fiber angle [degree] or wall [m] along the tube, as a :class:`freesweep.profiles.Profile`, numbers too."""
+        """Fiber angle [degree] or wall [m] along the tube, as a :class:`freesweep.profiles.Profile`, numbers too.
+
+        ``name`` is "alpha", "beta" or "wall". Raises :class:`ActuatorError`.
+        """
+        faults = []
+        if read_choice("name", name, VARYING, faults) is None:
+            raise ActuatorError(faults)
         return as_profile(getattr(self, name), VARYING[name])
 
     @property

@@ -18,7 +18,8 @@ import inspect
 import numpy as np
 
 from .faults import ActuatorError
-from .given import described, numbers
+from .given import numbers
+from .options import read_choice
 
 UNITS = {
     **{"alpha": "degree", "beta": "degree", "fiber_extension": "1", "stretch": "1"},
@@ -47,9 +48,8 @@ def _formula(function):
         except ValueError:
             found = ", ".join(f"{name} {shape}" for name, shape in sorted(shapes.items()) if shape)
             faults.append(f"the arrays do not broadcast: {found}; give equal lengths")
-        energy = bound.arguments.get("energy", "full")
-        if not isinstance(energy, str) or energy not in ("full", "principal"):
-            faults.append(f"energy: found {described(energy)}; choose one of 'full', 'principal'")
+        if "energy" in bound.arguments:
+            read_choice("energy", bound.arguments["energy"], ("full", "principal"), faults)
         if faults:
             raise ActuatorError(sorted(faults))
         with np.errstate(all="ignore"):  # poles, and what has no meaning: NaN or infinite

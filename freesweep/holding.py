@@ -10,8 +10,9 @@ import numpy as np
 
 from .actuator import Actuator
 from .faults import ActuatorError
-from .given import described, numbers
+from .given import numbers
 from .loads import read_load, read_stations, warn_of_loads
+from .options import read_switch
 from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
@@ -74,8 +75,10 @@ def blocked_torque(
     """
     if deformed_length is not None:
         raise ActuatorError([f"deformed_length: {BOTH_HELD}"])
-    if not isinstance(buckled, (bool, np.bool_)):
-        raise ActuatorError([f"buckled: found {described(buckled)}; give True or False"])
+    faults = []
+    buckled = read_switch("buckled", buckled, faults)
+    if faults:
+        raise ActuatorError(faults)
     if isinstance(tube, Actuator):
         alpha, beta = tube.angles(np.linspace(0.0, 1.0, 257))
         if np.all(alpha == -beta):

@@ -40,7 +40,7 @@ def read_stations(tube, x, accuracy, faults):
             faults.append(f"x: give ascending stations from 0 to the undeformed length {tube.length:g} m, in [m]")
     if faults:
         raise ActuatorError(faults)
-    return stations, accuracy
+    return np.minimum(stations, tube.length), accuracy
 
 
 def warn_of_loads(tube, stacklevel=3, **loads):

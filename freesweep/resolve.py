@@ -30,18 +30,20 @@ class Compared(NamedTuple):
         return self.difference > self.bound + self.own
 
 
-def resolve(data, count, seed=0):
-    """Draw ``count`` points with results from an atlas' Dataset and solve them anew; ``(comparisons, notes)``.
-
-    ``notes`` are sentences on what could not be judged, or not without help. Raises ValueError for an atlas in which the
-    tubes vary along their length: they have no first integral.
+def draw(data, count, seed=0):
+    """``count`` points with results from an atlas' Dataset; raises ValueError where its tubes vary along their length: they
+    have no first integral.
     """
     if missing := [name for name in DESIGN if name not in data.coords]:
         raise ValueError(
             f"--resolve: {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} no number in this atlas; the first"
             " integral exists only for tubes that are the same all along"
         )
-    points = _Points(data, count, seed)
+    return Points(data, count, seed)
+
+
+def resolve(points):
+    """Solve ``points`` of an atlas anew; ``(comparisons, notes)``, sentences on what could not be judged without help."""
     if not points.count:
         return [], ["no point of this atlas has a result"]
     notes = []
@@ -56,7 +58,7 @@ def resolve(data, count, seed=0):
     return found, notes
 
 
-class _Points:
+class Points:
     """Points of the grid drawn among those with results, and what is stored there."""
 
     def __init__(self, data, count, seed):
@@ -84,6 +86,15 @@ class _Points:
             mine = at[0] == row
             numbers[mine] = variable[int(row)].values[tuple(index[mine] for index in at[1:])]
         return numbers
+
+    def target(self, kind):
+        """What is held: deformed length in radii (``kind`` 0), or rotation in radians (1)."""
+        if kind == 1:
+            return np.radians(self.stored("held_rotation")) if "held_rotation" in self.data else 0.0 * self.radius
+        if "held_length" in self.data:
+            return self.stored("held_length") / self.radius
+        ratio = self.stored("held_length_ratio") if "held_length_ratio" in self.data else 1.0
+        return ratio * self.column["length"] / self.radius
 
     def tubes(self, locked=False, **changes):
         """The points' dimensionless problems."""
@@ -170,19 +181,9 @@ def _blocked(points):
         good = np.flatnonzero(np.isfinite(near) & ~nothing)
         mine = tubes._replace(**{held.LOADS[kind]: 0.0 * r}).at(good)
         value, own = np.full((2, points.count), np.nan)
-        value[good], own[good] = held.blocked(mine, kind, _target(points, kind)[good], near[good])
+        value[good], own[good] = held.blocked(mine, kind, points.target(kind)[good], near[good])
         value[nothing], own[nothing] = 0.0, 0.0
         yield _compare(points, name, value * unit, own * unit)
-
-
-def _target(points, kind):
-    """What is held: deformed length in radii, or rotation in radians."""
-    if kind == 1:
-        return np.radians(points.stored("held_rotation")) if "held_rotation" in points.data else 0.0 * points.radius
-    if "held_length" in points.data:
-        return points.stored("held_length") / points.radius
-    ratio = points.stored("held_length_ratio") if "held_length_ratio" in points.data else 1.0
-    return ratio * points.column["length"] / points.radius
 
 
 def _ideal(points):

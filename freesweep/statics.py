@@ -129,13 +129,6 @@ def undeformed(tube, stations):
 def read_course(tube, accuracy):
     """The course along a tube that varies, as the kernels take it, and its error; raises :class:`ActuatorError`."""
     try:
-        course, error = profiles.course(tube)
+        return profiles.follow(tube, accuracy)
     except profiles.ProfileError as fault:
         raise ActuatorError([f"alpha, beta, wall: {fault}"]) from None
-    if SENSITIVITY * error > 0.5 * accuracy:
-        raise ActuatorError(
-            [
-                f"accuracy: found {accuracy:g}; the profiles of this tube can be followed to {2.0 * SENSITIVITY * error:.1g}"
-            ]
-        )
-    return course, error

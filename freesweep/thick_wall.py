@@ -12,6 +12,12 @@ changes, less is wrong.
 
 import numpy as np
 
+from .profiles import as_profile
+
+NOTES = ("thin_wall_ratio", "thin_wall_note")
+DESIGN = ("alpha", "beta", "radius", "wall", "fiber_radius")
+SHARE = np.linspace(0.0, 1.0, 33)  # places along a tube
+FEW = dict(zip(DESIGN, (33, 33, 5, 9, 5)))  # of an axis' values, the ends among them: enough to tell a size
 THIN = 0.1  # of wall over radius: up to here the effect is that of other things a designer does not know
 
 
@@ -26,16 +32,51 @@ def softer(alpha, beta, radius, wall, fiber_radius, energy):
 
 def thin_wall_attributes(tube) -> dict:
     """Attributes of an answer whose tube has a wall thicker than a tenth of its radius somewhere; none for others."""
-    share = np.linspace(0.0, 1.0, 33)
-    alpha, beta = tube.angles(share)
-    wall = tube.profile("wall").at(share)
-    thickness = float(wall.max() / tube.radius)
-    if thickness <= THIN:
+    alpha, beta = tube.angles(SHARE)
+    return attributes_of(alpha, beta, tube.radius, tube.profile("wall").at(SHARE), tube.fiber_surface, tube.energy)
+
+
+def attributes_of(alpha, beta, radius, wall, fiber_radius, energy) -> dict:
+    """Attributes of what holds such tubes, arrays that broadcast, if some have a thick wall: [degree, m]."""
+    thickness = np.divide(wall, radius)
+    largest = np.max(thickness, initial=0.0, where=np.isfinite(thickness))
+    if not largest > THIN:
         return {}
-    ratios = softer(alpha, beta, tube.radius, wall, tube.fiber_surface, tube.energy)
-    worst = float(ratios[np.argmax(np.abs(np.log(ratios)))])
-    return {
-        "thin_wall_ratio": worst,
-        "thin_wall_note": f"wall/radius {thickness:.2g}: this model takes a thin wall; a thick one deforms {worst:.3g} times"
-        " as much at small pressure, and much the same near the locked shape",
+    with np.errstate(all="ignore"):
+        ratios = softer(alpha, beta, radius, wall, fiber_radius, energy)
+    ratios = ratios[np.isfinite(ratios) & (thickness > THIN)]
+    if not ratios.size:
+        return {}
+    low, high = ratios.min(), ratios.max()
+    times = " to ".join(dict.fromkeys((f"{low:.3g}", f"{high:.3g}")))
+    up_to = "up to " if np.ptp(thickness) > 0.0 else ""
+    note = (
+        f"wall/radius {up_to}{largest:.2g}: this model takes a thin wall; a thick one deforms {times} times as much at small"
+        " pressure, and much the same near the locked shape"
+    )
+    return dict(zip(NOTES, (float(max(low, high, key=lambda ratio: abs(np.log(ratio)))), note)))
+
+
+def grid_attributes(data) -> dict:
+    """Attributes of an atlas' Dataset, of which coordinates and attributes count, if some of its tubes have a thick wall."""
+    import xarray as xr
+
+    arrays = {name: data[name] for name in DESIGN if name in data.coords}
+    for name in (name for name in DESIGN if f"profile_{name}" in data.attrs):
+        pairs = np.reshape(data.attrs[f"profile_{name}"], (-1, 2)).tolist()
+        arrays[name] = xr.DataArray(as_profile(pairs).at(SHARE), dims="x")
+    arrays.setdefault("fiber_radius", arrays["radius"])
+    few = {
+        name: array.isel({name: _some(len(array), FEW[name])}) for name, array in arrays.items() if name in array.dims
     }
+    arrays |= {name: array.reset_coords(drop=True) for name, array in (arrays | few).items()}
+    alpha, beta, radius, wall, fibers = (array.values for array in xr.broadcast(*(arrays[name] for name in DESIGN)))
+    inside = (fibers >= radius) & (fibers <= (radius + wall) * (1.0 + 1e-12))  # others are no tubes
+    return attributes_of(
+        alpha[inside], beta[inside], radius[inside], wall[inside], fibers[inside], data.attrs["energy"]
+    )
+
+
+def _some(count, most):
+    """Places among ``count``, the first and the last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))

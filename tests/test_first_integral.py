@@ -13,7 +13,7 @@ from freesweep.first_integral.divided_differences import Divided
 from freesweep.first_integral.roots import find_roots
 from freesweep.first_integral.tube import NO_GUIDE, SOLVED, solve
 from freesweep.first_integral.uniform import Tubes, density, follow, stretch
-from freesweep.resolve import resolve
+from freesweep.resolve import draw, resolve
 from freesweep.sweep.spec import parse
 
 WALL = 1.59 / 4.76
@@ -193,7 +193,7 @@ def atlas(tmp_path_factory):
 
 def test_stored_points_lie_within_their_bounds(atlas, capsys):
     with open_atlas(atlas) as opened:
-        comparisons, notes = resolve(opened.data, 200, seed=3)
+        comparisons, notes = resolve(draw(opened.data, 200, seed=3))
         names = {compared.name for compared in comparisons}
         assert names >= {"rotation", "volume", "locked_strain_energy", "blocked_force", "ideal_blocked_torque"}
         assert all(note.startswith("not judged: shapes that turn back") for note in notes)
@@ -213,14 +213,14 @@ def test_a_number_outside_its_bound_is_found(atlas, tmp_path, capsys):
         data = opened.data.load()
     where = tuple(axis[0] for axis in np.nonzero(np.abs(data["rotation"].values) > 1.0))
     data["rotation"].values[where] *= 1.0 + 1e-4
-    comparisons, _ = resolve(data, data["status"].size)
+    comparisons, _ = resolve(draw(data, data["status"].size))
     assert {compared.name: int(compared.broken.sum()) for compared in comparisons if compared.broken.any()} == {
         "rotation": 1
     }
     store(data, tmp_path / "wrong.nc")
     for name, factor in (("rotation_error", 1e-2), ("locked_volume_error", 1e-3), ("blocked_force_error", 1e-2)):
         smaller = data.assign({name: data[name] * np.float32(factor)})
-        judged = {compared.name: compared.broken for compared in resolve(smaller, 100)[0]}
+        judged = {compared.name: compared.broken for compared in resolve(draw(smaller, 100))[0]}
         assert judged[name.removesuffix("_error")].any()
     assert run("verify", str(tmp_path / "wrong.nc"), "--resolve", "100000") == 2
     assert "1 stored numbers lie farther" in capsys.readouterr().err
@@ -229,13 +229,13 @@ def test_a_number_outside_its_bound_is_found(atlas, tmp_path, capsys):
 def test_atlases_of_one_point_and_of_none(atlas):
     with open_atlas(atlas) as opened:
         one = opened.data.isel({name: -1 for name in opened.data["status"].dims})
-        comparisons, _ = resolve(one, 5)
+        comparisons, _ = resolve(draw(one, 5))
         assert {len(compared.difference) for compared in comparisons if compared.name == "rotation"} == {1}
         none = opened.data.isel(alpha=[2], beta=[1])  # alpha = beta: degenerate
-        assert resolve(none, 5) == ([], ["no point of this atlas has a result"])
+        assert resolve(draw(none, 5)) == ([], ["no point of this atlas has a result"])
 
 
 def test_what_cannot_be_solved_anew_is_refused(atlas, capsys):
     with open_atlas(atlas) as opened, pytest.raises(ValueError, match="alpha is no number in this atlas"):
-        resolve(opened.data.isel(alpha=0).drop_vars("alpha"), 5)
+        draw(opened.data.isel(alpha=0).drop_vars("alpha"), 5)
     assert "give 1 or more" in refused(capsys, "verify", str(atlas), "--resolve", "0")

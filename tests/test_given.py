@@ -13,6 +13,7 @@ import xarray as xr
 import freesweep as fs
 from freesweep import closed_form
 from freesweep.given import numbers, read_column, read_number
+from freesweep.loads import read_stations
 
 RUBBER = fs.MooneyRivlin(0.11e6, 0.06e6)
 TUBE = fs.Actuator(alpha=30, beta=-30, length=0.192, radius=4.76e-3, wall=1.59e-3, material=RUBBER)
@@ -237,11 +238,14 @@ ODD = [
     *(np.array([(1, 2.0)], dtype="i4,f8"), xr.DataArray([1.0], dims="x", attrs={"units": "furlong"}), xr.Dataset()),
     *(Quantity([1, 2], "kPa"), Quantity(1, "mm"), Wrapped(1, "kPa"), Wrapped("a", "kPa"), Wrapped(None, "mm")),
 ]
+FEW = fs.Measurement(TUBE, 1e4, deformed_length=0.0999)  # one value, which tells no parameter
 ARGUMENTS = {
     fs.Actuator: {
         "alpha": 30, "beta": -30, "length": 0.2, "radius": 5e-3, "wall": 1e-3, "material": RUBBER, "fiber_extension": 1.0,
         "fiber_radius": None, "energy": "full",
     },
+    TUBE.angles: {"share": 0.5},
+    TUBE.profile: {"name": "alpha"},
     fs.MooneyRivlin: {"c10": 1e5, "c01": 0.0, "largest_stretch": None, "source": ""},
     fs.Yeoh: {"c1": 1e5, "c2": 0.0, "c3": 0.0},
     fs.NeoHookean: {"c10": 1e5},
@@ -259,7 +263,8 @@ ARGUMENTS = {
     fs.Measurement: {
         "tube": TUBE, "pressure": [1e4, 2e4], "deformed_length": [0.19, 0.18], "force": None, "measured": (), "sigma": {},
     },
-    fs.calibrate: {"measurements": None, "fit": None},
+    FEW.imposed: {"name": "force"},
+    fs.calibrate: {"measurements": FEW, "fit": None, "own_extension": False},
     fs.read_measurements: {"paths": [], "measured": (), "material": RUBBER, "energy": "full", "alpha": 30},
     closed_form.locked_stretch: {"alpha": 30, "beta": -30, "fiber_extension": 1.0},
     closed_form.uniform_state: {"alpha": 30, "beta": -30, "stretch": 1.1},
@@ -325,6 +330,12 @@ def test_random_odd_calls_give_faults_and_nothing_else(seed):
         only_clear_errors(call, given)
 
 
+def test_the_end_of_a_tube_is_a_station_however_it_is_rounded():
+    """A rounding beyond the length was a place without fiber angles."""
+    stations, _ = read_stations(TUBE, [0.0, np.nextafter(TUBE.length, 1.0)], 1e-6, [])
+    assert stations[-1] == TUBE.length
+
+
 def test_every_public_callable_is_tried():
     tried = {call.__name__ for call in ARGUMENTS} | {"around"}
     apart = {
@@ -338,5 +349,8 @@ def test_every_public_callable_is_tried():
         "closed_form",
     }
     assert set(fs.__all__) - apart <= tried
-    formulas = {name for name, made in vars(closed_form).items() if inspect.isfunction(made) and name[0] != "_"}
-    assert formulas - {"numbers", "described", "locked_angles"} <= tried
+    made = (
+        one for one in vars(closed_form).values() if inspect.isfunction(one) and one.__module__ == closed_form.__name__
+    )
+    formulas = {one.__name__ for one in made if one.__name__[0] != "_"}
+    assert formulas - {"locked_angles"} <= tried

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import freesweep as fs
-from freesweep.status import COMPRESSED, FLAGS, INACCURATE, OK
+from freesweep.status import COMPRESSED, FLAGS, OK
 
 R, C = 5e-3, 1e5
 
@@ -80,10 +80,15 @@ def test_a_tube_pulled_without_pressure_resists_being_turned():
     assert fs.blocked_torque(tube, 0.0, 3.0, x=0.0)["status"] == COMPRESSED
 
 
-def test_a_status_does_not_depend_on_the_accuracy():
+def test_a_held_state_does_not_depend_on_the_accuracy():
+    """Far beyond its critical pressure many branches lie close to the straight one: a base mesh of 48 cells comes to another
+    state, -0.919 N m, that finer ones do not come to. There the way from rest turns back at 0.57 of the rotation.
+    """
     tube = actuator(5.1643, -36.8185, 23.76, 0.1719, 0.14506)
-    loose, tight = (fs.blocked_torque(tube, 7.6342 * C, 12.113, x=0.0, accuracy=a) for a in (1e-6, 1e-9))
-    assert {loose["status"].item(), tight["status"].item()} <= {OK, INACCURATE}
+    for accuracy in (1e-4, 1e-6, 1e-8):
+        held = fs.blocked_torque(tube, 7.6342 * C, 12.113, x=0.0, accuracy=accuracy)
+        assert (held["status"], held["stable"], held["held_path"]) == (OK, 0, 1)
+        assert held["torque"].item() == pytest.approx(-0.4573856, abs=1e-6)
 
 
 def test_rotation_of_a_varying_tube_is_held_as_far_as_its_branch_goes():

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from held_tubes import by_collocation
 
-from freesweep import Actuator, ActuatorError, MooneyRivlin, closed_form, inflate, lock
+from freesweep import Actuator, ActuatorError, MooneyRivlin, blocked_force, blocked_torque, closed_form, inflate, lock
 from freesweep.atlas.schema import PROFILES
-from freesweep.profiles import as_profile, widened
+from freesweep.profiles import SENSITIVITY, as_profile, widened
 from freesweep.statics import read_course
 from freesweep.status import OK
 
@@ -309,6 +309,58 @@ def test_a_ring_that_a_callable_makes_by_jumps_is_refused_where_it_lies(half_wid
         course_of(ring)
 
 
+@pytest.mark.filterwarnings("ignore:wall .* is thicker than the inner radius")
+def test_a_ring_of_five_walls_is_solved_from_pairs_and_refused_as_a_callable():
+    rubber, low, high = MooneyRivlin(0.11e6, 0.06e6), RING - 9e-3, RING + 9e-3
+    pairs = [(0, WALL), (low, WALL), (low, 5 * WALL), (high, 5 * WALL), (high, WALL), (1, WALL)]
+    state = inflate(tube(30, -30, 0.2, wall=pairs, material=rubber), 1e5, x=0.0)
+    assert state["deformed_length"].item() == pytest.approx(0.18033278, abs=5e-9)
+    plain = inflate(tube(30, -30, 0.2, material=rubber), 1e5, x=0.0)
+    assert plain["deformed_length"].item() == pytest.approx(0.17987261, abs=5e-9)  # which the ring was dropped for
+    ring = tube(30, -30, 0.2, material=rubber, wall=lambda u: WALL * np.where(np.abs(u - RING) < 9e-3, 5, 1))
+    with pytest.raises(ActuatorError, match="changes too fast to be followed"):
+        inflate(ring, 1e5)
+
+
+STEEP = [  # both angles of six steps, length in radii, area of the wall, force or torque held: the most sensitive of 250
+    ([76.0, 82.7, 75.5, 83.0, 81.0, 75.8], [-24.6, -24.7, -28.7, -27.4, -26.1, -24.5], 18.0, lock),
+    ([-75.2, -66.4, -78.2, -79.3, -77.0, -68.2], [15.7, 4.6, 6.6, 19.8, 13.7, 11.2], 4.5, blocked_force),
+    ([-16.5, -23.6, -19.1, -17.7, -9.1, -22.8], [77.0, 77.9, 67.7, 80.8, 69.9, 66.7], 56.1, blocked_torque),
+    ([-17.8, -14.6, -28.7, -27.1, -20.8, -19.8], [60.8, 62.2, 68.3, 62.9, 58.1, 61.9], 13.2, inflate),
+]
+
+
+@pytest.mark.parametrize(("alpha", "beta", "length", "solve"), STEEP)
+def test_no_output_answers_an_error_of_the_profiles_more_than_it_is_taken_to(alpha, beta, length, solve):
+    """H, D and the section of each step off by a relative 1e-5, each the worse way: the sum of all changes."""
+    pressure, off, rubber = 0.5e5, 1e-5, MooneyRivlin(1e5, 0.17e5)
+    ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
+
+    def outputs(H, D, area):
+        def steps(values):
+            return [(place / 6, value) for k, value in enumerate(values) for place in (k, k + 1)]
+
+        made = tube(
+            steps(np.degrees(np.arctan(H + D))), steps(np.degrees(np.arctan(H - D))), length * R0, material=rubber,
+            wall=steps(R0 * (np.sqrt(1.0 + area) - 1.0)), energy="principal",
+        )  # fmt: skip
+        state = solve(made, *([] if solve is lock else [pressure]), x=0.0, accuracy=1e-9)
+        assert state["status"] == OK
+        units = {"deformed_length": R0, "volume": np.pi * R0**3, "rotation": np.degrees(1.0), "mid_radius": R0}
+        units |= {"strain_energy": np.pi * R0**3 * 1e5, "force": np.pi * R0**2 * 1e5, "torque": np.pi * R0**3 * 1e5}
+        return np.array([state[name].item() / unit for name, unit in units.items() if name in state])
+
+    given = [0.5 * (ta + tb), 0.5 * (ta - tb), np.full(6, 0.3)]
+    at, total = outputs(*given), 0.0
+    for k in range(3):
+        for step in range(6):
+            other = [array.copy() for array in given]
+            other[k][step] *= 1.0 + off
+            total = total + np.abs(outputs(*other) - at) / off
+    reached = np.max(total / np.maximum(np.abs(at), 1.0))
+    assert 3.0 < reached < SENSITIVITY / 2.0
+
+
 def course_of(actuator):
     return read_course(actuator, 1e-6)
 
@@ -339,7 +391,7 @@ def test_places_that_only_rounding_parts_are_one():
 
 
 def test_the_error_of_splines_enters_the_bounds():
-    assert widened(np.array([3.0, 0.1]), np.array([1e-9, 1e-9]), 1e-10) == pytest.approx([4e-9, 2e-9])
+    assert widened(np.array([3.0, 0.1]), np.array([1e-9, 1e-9]), 1e-11) == pytest.approx([4e-9, 2e-9])
     rough = tube(30, -30, 0.2, wall=lambda share: WALL * (1.0 + 0.3 * np.tanh((share - 0.4) / 1e-4)))
     _, error = course_of(rough)
     with pytest.raises(ActuatorError, match="accuracy: found 1e-10; the profiles of this tube can be followed to"):

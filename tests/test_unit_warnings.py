@@ -4,13 +4,16 @@ import warnings
 
 import numpy as np
 import pytest
+import xarray as xr
 from commands import run
+from grids import swept
 
 from freesweep import Actuator, MooneyRivlin, inflate
 from freesweep.closed_form import region
 from freesweep.statics import thin_wall_attributes
-from freesweep.thick_wall import softer
+from freesweep.thick_wall import grid_attributes, softer
 from freesweep.unit_warnings import doubts
+from freesweep.verify import faults
 
 USUAL = {"alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1.59e-3, "c10": 0.11e6}
 
@@ -112,3 +115,51 @@ def test_thin_walls_carry_no_note():
     given = {"alpha": 30, "beta": -30, "length": 0.2, "radius": 5e-3, "material": MooneyRivlin(1e5)}
     assert thin_wall_attributes(Actuator(**given, wall=4.9e-4)) == {}
     assert thin_wall_attributes(Actuator(**given, wall=[(0, 4e-4), (1, 5.1e-4)]))["thin_wall_ratio"] > 1.05
+
+
+def test_sweeps_and_their_answers_say_what_the_thin_wall_leaves_out(tmp_path, capsys):
+    axes = {"alpha": [20.0, 30.0], "beta": [-50.0, -45.0], "wall": [2e-4, 1.59e-3], "pressure": [0.0, 5e4]}
+    with swept(tmp_path, axes) as atlas:
+        thick = Actuator(alpha=30, beta=-45, length=0.1, radius=4.76e-3, wall=1.59e-3, material=MooneyRivlin(1e5))
+        alone = thin_wall_attributes(thick)["thin_wall_ratio"]
+        ratios = [softer(a, b, 4.76e-3, 1.59e-3, 4.76e-3, "full") for a in axes["alpha"] for b in axes["beta"]]
+        assert alone in ratios
+        assert atlas.data.attrs["thin_wall_ratio"] == pytest.approx(max(ratios), rel=1e-12)
+        assert f"deforms {min(ratios):.3g} to {max(ratios):.3g} times" in atlas.data.attrs["thin_wall_note"]
+        place = {"alpha": 30.0, "beta": -45.0, "pressure": 5e4}
+        answer = atlas.query("rotation", wall=1.59e-3, **place)
+        assert answer.attrs["thin_wall_ratio"] == pytest.approx(alone, rel=1e-12)
+        assert "thin_wall_note" not in atlas.query("rotation", wall=2e-4, **place).attrs
+        assert "thin_wall_note" not in atlas.query("ideal_blocked_torque", alpha=30, beta=-45, pressure=5e4).attrs
+    assert faults(atlas.path) == []
+    run("info", str(atlas.path))
+    assert "wall/radius up to 0.33: this model takes a thin wall" in capsys.readouterr().out
+    run(
+        "query",
+        str(atlas.path),
+        "--alpha=30",
+        "--beta=-45",
+        "--wall=1.59mm",
+        "--pressure=50kPa",
+        "--variable",
+        "rotation",
+    )
+    assert "freesweep: note: wall/radius 0.33: this model takes a thin wall" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("profiles", [True, False], ids=("profiles", "designs"))
+def test_the_note_of_an_atlas_is_that_of_its_worst_tube(profiles):
+    angles = np.array([10.0, 35.0, 60.0])
+    design = ("design",) if not profiles else ()
+    data = xr.Dataset(
+        coords={
+            "radius": ((), 5e-3), "fiber_radius": (("fiber_radius",), [5e-3, 5.5e-3, 8e-3]), "wall": ((), 1e-3),
+            **({} if profiles else {"alpha": (design, angles), "beta": (design, -2.0 * angles[::-1] + 40.0)}),
+        },
+        attrs={"energy": "full"} | ({"profile_alpha": [0, 10, 1, 60], "profile_beta": [0, -80, 1, 20]} if profiles else {}),
+    )  # fmt: skip
+    alpha = np.linspace(10.0, 60.0, 33) if profiles else angles
+    beta = np.linspace(-80.0, 20.0, 33) if profiles else -2.0 * angles[::-1] + 40.0
+    ratios = np.stack([softer(alpha, beta, 5e-3, 1e-3, fibers, "full") for fibers in (5e-3, 5.5e-3)])
+    worst = ratios.ravel()[np.argmax(np.abs(np.log(ratios)))]
+    assert grid_attributes(data)["thin_wall_ratio"] == pytest.approx(worst, rel=1e-12)

@@ -11,7 +11,8 @@ from grids import CHILD_ENVIRONMENT, GRID, SMALL, make, spec, store
 
 from freesweep import open_atlas
 from freesweep.atlas.seal import SIZE, seal_fault, sealed
-from freesweep.resolve import resolve
+from freesweep.resolve import draw, resolve
+from freesweep.restate import faults as restated
 from freesweep.sweep import run as sweep_run
 from freesweep.sweep.spec import parse
 from freesweep.verify import faults
@@ -163,6 +164,25 @@ def test_attributes_are_held_against_the_specification(atlas, tmp_path):
     }.items():
         (fault,) = changed(atlas, tmp_path, lambda data, name=name, value=value: data.assign_attrs({name: value}))
         assert fault.startswith(f"its attribute {name} is ")
+    for name, value in {"thin_wall_ratio": 1.0, "thin_wall_note": "wall/radius 0.03"}.items():
+        (fault,) = changed(atlas, tmp_path, lambda data, name=name, value=value: data.assign_attrs({name: value}))
+        assert fault.startswith("its note on thick walls, ")
+
+
+def test_bounds_that_were_widened_are_found_by_solving_anew(atlas, tmp_path, capsys):
+    """Sealed anew with bounds of which a second method finds nothing wrong: they hold."""
+    with open_atlas(atlas) as opened:
+        data = opened.data.load()
+    assert restated(draw(data, 40)) == []
+    names = [name for name in data if name.endswith("_error") and not name.startswith(("ideal", "limit"))]
+    store(data.assign({name: (data[name] * 1e7).assign_attrs(data[name].attrs) for name in names}), tmp_path / "a.nc")
+    assert faults(tmp_path / "a.nc") == []
+    assert run("verify", str(tmp_path / "a.nc"), "--resolve", "40") == 2
+    told = capsys.readouterr().err
+    for name in ("deformed_length", "blocked_force", "locked_rotation"):
+        assert f"{name}_error: " in told
+    (found,) = restated(draw(data.assign(rotation_error=data["rotation_error"] * 1e7), 40))
+    assert found.startswith("rotation_error: ")
 
 
 def test_limit_pressures_are_held_against_statuses_and_solved_anew(tmp_path):
@@ -179,8 +199,25 @@ def test_limit_pressures_are_held_against_statuses_and_solved_anew(tmp_path):
     for factor in (0.5, 2.0):
         store(times(factor), tmp_path / "changed.nc")
         assert faults(tmp_path / "changed.nc") == ["limit_pressure: 2 states beyond it, or none below it"]
+
+    def error(factor, wider):
+        bound = data["limit_pressure_error"] * wider
+        return times(factor).assign(limit_pressure_error=bound.assign_attrs(data["limit_pressure_error"].attrs))
+
+    assert restated(draw(data, 100)) == []
+    (fault,) = restated(draw(error(1.0, 1e6), 100))
+    assert fault.startswith("limit_pressure_error: 4 of 4 bounds are more than 100 times as wide")
+    assert "limit_pressure: 4 times it is another" in restated(draw(error(1.0 + 1e-5, 1e6), 100))
+    none = data["limit_pressure"].where(False).assign_attrs(data["limit_pressure"].attrs)
+    removed = data.assign(
+        limit_pressure=none, limit_pressure_error=none.assign_attrs(data["limit_pressure_error"].attrs)
+    )
+    removed["limit_found"] = (data["limit_found"] * 0).assign_attrs(data["limit_found"].attrs)
+    store(removed, tmp_path / "changed.nc")
+    assert faults(tmp_path / "changed.nc") == ["limit_pressure: 2 states beyond it, or none below it"]
+    assert "limit_pressure: 4 times it is not there" in restated(draw(removed, 100))
     for factor, broken in ((1.0, 0), (1.0 + 1e-5, 4)):
-        compared = {compared.name: compared for compared in resolve(times(factor), 100)[0]}
+        compared = {compared.name: compared for compared in resolve(draw(times(factor), 100))[0]}
         assert compared["limit_pressure"].broken.sum() == broken
 
 

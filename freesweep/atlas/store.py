@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..given import described
+from ..options import read_choice, read_path
 from ..status import STATUSES
 from . import netcdf
 from .content import faults
@@ -42,7 +44,16 @@ class Atlas:
     path: Path
 
     def __post_init__(self):
-        object.__setattr__(self, "_place", self.path.absolute())  # wherever the process goes
+        import xarray as xr
+
+        faults = []
+        path = read_path("path", self.path, "an atlas", faults)
+        if not isinstance(self.data, xr.Dataset):
+            faults.append(f"data: found {described(self.data)}; give an xarray Dataset, or use open_atlas(path)")
+        if faults:
+            raise AtlasError("\n  - ".join(["this makes no atlas:", *faults]))
+        object.__setattr__(self, "path", path)
+        object.__setattr__(self, "_place", path.absolute())  # wherever the process goes
 
     def __reduce__(self):
         return _reopened, (self._place,)
@@ -53,7 +64,13 @@ class Atlas:
         return f"<Atlas {self.path.name}: {self.data.attrs.get('title', '')}\n  {axes}\n  {counts}>"
 
     def status_counts(self, name="status") -> dict:
-        """How many points of the grid have which status, of the equilibrium or of another state: meaning -> count."""
+        """How many points of the grid have which status, of the equilibrium or of another state: meaning -> count.
+
+        Raises :class:`AtlasError` for a ``name`` that is no status of this atlas.
+        """
+        faults = []
+        if read_choice("name", name, [status for status in STATUS_OF if status in self.data], faults) is None:
+            raise AtlasError(*faults)
         codes = self.data[name]
         rows = max(1, READ_AT_ONCE * len(codes) // codes.size) if codes.ndim else 1
         slabs = [codes[k : k + rows] for k in range(0, len(codes), rows)] if codes.ndim else [codes]
@@ -125,9 +142,11 @@ def open_atlas(path) -> Atlas:
     The file may be anybody's: nothing but this file is read, and it is refused with the reason unless it is an atlas in
     structure and content (:func:`freesweep.verify.faults` says whether every bit is the one that was written). A file
     without a seal, as of tools that add an attribute or join atlases, gives an :class:`UnsealedWarning`.
-    Raises FileNotFoundError, EnvironmentFault, or :class:`AtlasError` for a file that is no atlas of this program.
+    Raises FileNotFoundError, EnvironmentFault, or :class:`AtlasError` for what is no path, or no atlas of this program.
     """
-    path = Path(path)
+    unread = []
+    if (path := read_path("path", path, "an atlas", unread)) is None:
+        raise AtlasError(*unread)
     if not path.exists():
         raise FileNotFoundError(f"no atlas at {path}; make one with: freesweep sweep SPEC -o {path.name}")
     data = open_results(path)

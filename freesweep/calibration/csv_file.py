@@ -3,13 +3,12 @@
 import csv
 import difflib
 import re
-from pathlib import Path
 
 import numpy as np
 
 from ..actuator import Actuator, ActuatorError, MooneyRivlin
 from ..atlas.schema import PARAMETERS
-from ..given import described
+from ..options import read_path
 from ..units import NEAR, quantity, shown
 from .measured import COLUMNS, Measurement, default_measured, measured_faults, read_names
 
@@ -43,11 +42,7 @@ def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full"
     faults = []
     paths = list(paths) if isinstance(paths, (list, tuple)) else [paths]
     measured = read_names("measured", measured, faults)
-    faults += [
-        f"paths: found {described(path)}; give paths of CSV files"
-        for path in paths
-        if not isinstance(path, (str, Path))
-    ]
+    paths = [read_path("paths", path, "a CSV file", faults) for path in paths]
     unknown = sorted(set(tube) - set(TUBE))
     faults += [f"{name}: no such part of an actuator; known: {', '.join(TUBE)}" for name in unknown]
     made, seen = [], set()
@@ -57,7 +52,7 @@ def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full"
             seen |= set(columns)
             made += _measurements(columns, measured, tube, {"material": material, "energy": energy})
         except ActuatorError as error:
-            faults += [f"{Path(path).name}: {fault}" for fault in error.faults]
+            faults += [f"{path.name or path}: {fault}" for fault in error.faults]
     if not faults:
         faults = [f"measured: no file has a column {name!r:.40}" for name in measured if name not in seen]
     if faults:
@@ -111,11 +106,13 @@ def _measurements(columns, measured, tube, others):
 
 def _table(path, faults):
     """Heads and rows of a file, as texts; rows come with their line numbers."""
-    size = Path(path).stat().st_size
+    if path.is_dir():
+        raise ActuatorError(["is a folder; give the paths of CSV files"])
+    size = path.stat().st_size
     if size > LARGEST_FILE:
         raise ActuatorError([f"{size:,} bytes; at most {LARGEST_FILE:,} are read"])
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise ActuatorError(["not a text in UTF-8; save it as CSV (UTF-8)"]) from None
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]

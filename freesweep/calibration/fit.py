@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..actuator import ActuatorError
+from ..options import read_switch
 from .identify import covariance_of, notes_of, relative
 from .measured import Measurement, read_names
 from .problem import EXTENSION, Problem
@@ -79,7 +80,7 @@ def calibrate(measurements, fit=None, *, own_extension=False) -> Calibration:
     are hardly separable from one curve: ``notes`` and the covariance say how well. Returns a :class:`Calibration`. Raises
     :class:`ActuatorError`.
     """
-    measurements, names = _checked(measurements, fit)
+    measurements, names, own_extension = _checked(measurements, fit, own_extension)
     problem = Problem(measurements, names, own_extension)
     if len(problem.measured) <= len(problem.names):
         counts = f"{len(problem.measured)} values cannot tell {len(problem.names)} parameters"
@@ -124,8 +125,8 @@ def _scatter(residuals, slopes, rows, here):
     return np.sqrt(np.sum(residuals[here] ** 2) / freedom)
 
 
-def _checked(measurements, fit):
-    """Measurements as a tuple, and the names to fit."""
+def _checked(measurements, fit, own_extension):
+    """Measurements as a tuple, the names to fit, and whether each actuator has an extension of its own."""
     if not isinstance(measurements, (list, tuple)):
         measurements = (measurements,)
     strangers = [
@@ -137,6 +138,7 @@ def _checked(measurements, fit):
         raise ActuatorError(strangers or ["measurements: found none; give one or more"])
     materials = {type(m.tube.material) for m in measurements}
     faults = []
+    own_extension = read_switch("own_extension", own_extension, faults)
     if len(materials) > 1:
         faults.append(
             f"measurements: materials differ in kind, {' and '.join(sorted(t.__name__ for t in materials))}; give one"
@@ -148,7 +150,7 @@ def _checked(measurements, fit):
         faults.append(f"fit: nothing to fit; choose among {', '.join(known)}")
     if faults:
         raise ActuatorError(faults)
-    return tuple(measurements), [name for name in known if name in names]
+    return tuple(measurements), [name for name in known if name in names], own_extension
 
 
 def _effects(problem, derivative, rows):

@@ -9,6 +9,7 @@ import numpy as np
 from ..actuator import Actuator
 from ..faults import ActuatorError
 from ..given import described, read_column
+from ..options import read_choice
 
 COLUMNS = {"deformed_length": "m", "rotation": "degree", "mid_radius": "m", "force": "N", "torque": "N m"}
 DOMAINS = {"pressure": {"least": 0.0}, "deformed_length": {"positive": True}, "mid_radius": {"positive": True}}
@@ -91,7 +92,10 @@ class Measurement:
         return len(self.pressure)
 
     def imposed(self, name):
-        """An imposed column (n,); where the bench left it out, what it is then."""
+        """An imposed column (n,); where the bench left it out, what it is then. Raises :class:`ActuatorError`."""
+        faults = []
+        if read_choice("name", name, tuple(COLUMNS), faults) is None:
+            raise ActuatorError(faults)
         if getattr(self, name) is not None and name not in self.measured:
             return getattr(self, name)
         return np.full(len(self), self.tube.length if name == "deformed_length" else 0.0)

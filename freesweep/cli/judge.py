@@ -53,13 +53,18 @@ def _run_verify(options):
 
 def _resolve(atlas, options):
     from ..atlas.store import AtlasError
-    from ..resolve import resolve, table
+    from ..resolve import draw, resolve, table
+    from ..restate import faults
 
-    comparisons, notes = resolve(atlas.data, options.resolve, options.seed)
+    points = draw(atlas.data, options.resolve, options.seed)
+    comparisons, notes = resolve(points)
     print("solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n")
     print(*([table(comparisons)] if comparisons else []), *notes, sep="\n")
     if broken := sum(int(compared.broken.sum()) for compared in comparisons):
         raise AtlasError(f"{broken:,} stored numbers lie farther from the second method's than both errors allow")
+    if found := faults(points):
+        raise AtlasError("\n  - ".join(["what is stated of its numbers is not what the solver states:", *found]))
+    print("\nbounds and limit pressures are those that the solver states anew")
 
 
 def _run_bench(options):

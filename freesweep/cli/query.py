@@ -1,5 +1,7 @@
 """The command query: one point, or a CSV of points with units in its header; out as table, CSV or JSON."""
 
+import sys
+
 MAX_ROWS = 1_000_000  # of a CSV
 MOST_FAULTS = 20  # of one that are listed
 FORMATS = ("table", "csv", "json")
@@ -43,6 +45,8 @@ def _run(options):
         axes = _axes(options)
         found = atlas.query(options.variable, options.method, options.refine, **axes)
     text = {"table": _table, "csv": _csv, "json": _json}[options.format](found)
+    if note := found.attrs.get("thin_wall_note"):
+        print(f"freesweep: note: {note}", file=sys.stderr)
     if options.out:
         write_whole(options.out, (text + "\n").encode())
         print(options.out)

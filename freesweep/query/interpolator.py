@@ -6,6 +6,7 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..given import numbers
+from ..options import read_switch
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import reference
 from .answer import Inquiry
@@ -52,6 +53,9 @@ class Interpolator:
         """Values, and with ``gradient`` their derivatives; raises :class:`QueryError`."""
         if len(values) != len(self.axes):
             raise QueryError([f"found {len(values)} values; give {len(self.axes)}: {', '.join(self.axes)}"])
+        faults = []
+        if (gradient := read_switch("gradient", gradient, faults)) is None:
+            raise QueryError(faults)
         try:
             read = [numbers(value, PARAMETERS[name].units) for name, value in zip(self.axes, values)]
             arrays = np.broadcast_arrays(*read)

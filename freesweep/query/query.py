@@ -8,7 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from ..atlas.schema import PARAMETERS, attributes
+from ..given import described
+from ..options import read_choice, read_switch
 from ..status import NOT_INTERPOLABLE, OUTSIDE, status_attributes
+from ..thick_wall import DESIGN, NOTES, attributes_of
 from . import calibration
 from .answer import CUBIC, LINEAR, Inquiry
 from .ask import read_question
@@ -141,8 +144,8 @@ def check_names(reader, variables) -> list:
         return list(reader.names)
     try:
         names = list(dict.fromkeys([variables] if isinstance(variables, str) else variables))
-    except TypeError:
-        raise QueryError([f"variables: found {type(variables).__name__}; give a name or a list of names"]) from None
+    except Exception:  # no list, or of what has no hash
+        raise QueryError([f"variables: found {described(variables)}; give a name or a list of names"]) from None
     faults = [unknown("variable", name, reader.names) for name in names if name not in reader.names]
     if faults or not names:
         raise QueryError(faults or [f"variables: found none; known: {', '.join(reader.names)}"])
@@ -155,11 +158,8 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
 
     names = check_names(reader, variables)
     faults = []
-    if method not in (CUBIC, LINEAR):
-        faults.append(f"method: found {method!r:.40}; allowed: {CUBIC}, {LINEAR}")
-    if not isinstance(refine, bool | np.bool_):
-        faults.append(f"refine: found {refine!r:.40}; give True or False")
-    elif x is not None and not refine:
+    read_choice("method", method, (CUBIC, LINEAR), faults)
+    if read_switch("refine", refine, faults) is False and x is not None:
         faults.append("x: an atlas stores no profiles along the tube; refine=True solves for them")
     if faults:
         raise QueryError(faults)
@@ -181,7 +181,7 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
         for name, count in coarse:
             counts[name] += count
         attrs["too_coarse"] = ", ".join(f"{name} ({count:,})" for name, count in counts.most_common())
-    result = xr.Dataset(dataset, _coordinates(reader, question, axes), attrs)
+    result = xr.Dataset(dataset, _coordinates(reader, question, axes), attrs | _of_thick_walls(reader, question))
     if x is not None:
         from .refine import profiles
 
@@ -189,10 +189,23 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
     return result
 
 
+def _of_thick_walls(reader, question):
+    """Attributes of an answer for tubes with thick walls."""
+    frame, values = reader.frame, reader.complete(question.values, question.size)
+    for name in frame.by_design:
+        values[name] = frame.values[name][values["design"].astype(int)] if "design" in values else frame.values[name]
+    if not frame.uniform_along_x:
+        return {key: reader.data.attrs[key] for key in NOTES if key in reader.data.attrs}
+    if any(name not in values for name in DESIGN if name in frame.values):
+        return {}  # what was asked for does not depend on all of them: the wall is not felt
+    values.setdefault("fiber_radius", values["radius"])
+    return attributes_of(*(values[name] for name in DESIGN), frame.energy)
+
+
 def curve(reader, along, values, rest):
     """The answers along one axis: see :meth:`freesweep.Atlas.curve`."""
-    if along not in reader.frame.ranges or along in reader.frame.by_design:
-        axes = [name for name in reader.frame.asked if name in reader.frame.ranges]
+    axes = [name for name in reader.frame.asked if name in reader.frame.ranges]
+    if not isinstance(along, str) or along not in reader.frame.ranges or along in reader.frame.by_design:
         raise QueryError([unknown("axis", along, axes)])
     if along in rest:
         raise QueryError([f"{along}: given as a number, too; the curve runs along it"])

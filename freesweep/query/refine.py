@@ -104,7 +104,9 @@ def profiles(reader, question, x):
         for name in arrays if state is not None else ():
             arrays[name][k] = state[name].values
     dims = (*question.dims, "x")
-    data = {name: (dims, array.reshape(*question.shape, -1), attributes(name)) for name, array in arrays.items()}
+    data = {
+        name: (dims, array.reshape(*question.shape, len(stations)), attributes(name)) for name, array in arrays.items()
+    }
     return xr.Dataset(data, {"x": ("x", stations, attributes("x"))})
 
 

@@ -9,7 +9,7 @@ from . import guide, held, lagrangian, nested
 from .buckle import find_buckled
 from .course import copy
 from .drawing import draw
-from .find import FROM_REST, HELD_LENGTH, find
+from .find import FROM_REST, HELD_LENGTH, MESH_CHANGE, find, valued
 from .march import cylinder_multiplier
 from .problem import GAMMA, LENGTH, SHEAR, D, H, rubber_of
 from .profile import FIELDS
@@ -55,7 +55,8 @@ def find_on_some_mesh(problem, p, other, target, kind, course, tube, accuracy, s
     """As :func:`find`, on finer base meshes where one does not do: where the solver fails, misses the accuracy, or meets an
     end of the way that is not certain. Returns also the tube and the scratch that were used.
 
-    Where the accuracy is missed on all of them, the first mesh's state stands.
+    Where the accuracy is missed on all of them, the first mesh's state stands. Among unstable states branches lie close to
+    each other, and a mesh that sees too little of them leads astray: such a state is given where two meshes lead to it.
     """
     _, edges, cells, free, middle, places = tube
     base, factor = edges[len(edges) - 1], 1
@@ -68,7 +69,8 @@ def find_on_some_mesh(problem, p, other, target, kind, course, tube, accuracy, s
     status, unstable, doublings, now, reached, sure, path = find(
         problem, p, other, target, kind, course, tube, accuracy, space, out
     )
-    while not (status == OK or status == COMPRESSED or sure) and FINER * factor * base <= FINEST:
+    doubtful, differed = valued(status) and unstable > 0 and out[0, nested.MIDDLE] != 1.0, False
+    while (doubtful or not (status == OK or status == COMPRESSED or sure)) and FINER * factor * base <= FINEST:
         factor *= FINER
         finer_space, cells = workspace(factor * base, len(cells) > 1)
         finer_tube, finer_out = (tube[0].copy(), factor * edges, cells, free, factor * middle, places), out.copy()
@@ -76,18 +78,36 @@ def find_on_some_mesh(problem, p, other, target, kind, course, tube, accuracy, s
         again, others, levels, then, came, certain, way = find(
             problem, p, other, target, kind, course, finer_tube, accuracy, finer_space, finer_out
         )
-        if status == INACCURATE and again != OK:
+        same = valued(status) and valued(again) and alike(out, finer_out)
+        if status == INACCURATE and again != OK and (same or not doubtful):
+            differed = False
             break
+        if doubtful and same and status == OK:
+            differed = False
+            break
+        differed = doubtful and not same
         ended = abs(came - reached) <= ENDED * reached and 0.0 < reached < 1.0
         status, unstable, doublings, now, reached, sure, path = again, others, levels, then, came, certain, way
         tube, space = finer_tube, finer_space
         for row in range(out.shape[0]):
             for k in range(out.shape[1]):
                 out[row, k] = finer_out[row, k]
+        doubtful = valued(status) and unstable > 0 and not same
         if status != OK and status != INACCURATE and ended:  # steps die out at one place on any mesh
             status = BEYOND_LIMIT if status == NOT_CONVERGED else status
             break
+    if doubtful and differed:
+        status = NOT_CONVERGED
     return status, unstable, doublings, now, tube, space, path
+
+
+@kernel
+def alike(out, other):
+    """Whether the outputs of two base meshes are those of one state."""
+    same = True
+    for k in range(nested.MULTIPLIER):
+        same = same and abs(out[0, k] - other[0, k]) <= MESH_CHANGE * out[2, k]
+    return same
 
 
 @kernel

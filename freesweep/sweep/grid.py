@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..profiles import ProfileError, as_profile, course
+from ..profiles import ProfileError, as_profile, follow
 
 
 class Grid:
@@ -50,7 +50,7 @@ def coordinates(sweep) -> dict:
 
 
 def tubes(grid, at):
-    """Courses along the designs ``at`` where some profile varies, each once, and which is whose: see ``Job``."""
+    """Courses, with errors, of the designs ``at`` where some profile varies, each once, and which is whose: see ``Job``."""
     profiles = grid.sweep.profiles
     if not profiles:
         return [], np.zeros(len(at), np.int64)
@@ -62,7 +62,7 @@ def tubes(grid, at):
         numbers = dict(zip(names, design)) | profiles
         numbers["fiber_surface"] = numbers.pop("fiber_radius")
         try:
-            found.append(course(SimpleNamespace(**numbers))[0])  # of pairs: exact to the last digits
+            found.append(follow(SimpleNamespace(**numbers), grid.sweep.accuracy))
         except ProfileError:
             found.append(None)
     return found, which

@@ -29,8 +29,8 @@ class PlanError(RuntimeError):
 class Job(NamedTuple):
     """Problems (k, TARGET) of one kind, what each holds, where each one's pressures begin, and the pressures.
 
-    ``courses`` are (course, edges, places) of tubes that vary, None where a profile cannot be followed; ``course`` says
-    which is each problem's.
+    ``courses`` are ((course, edges, places), its error) of tubes that vary, None where a profile cannot be followed;
+    ``course`` says which is each problem's.
     """
 
     kind: str

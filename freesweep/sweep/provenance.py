@@ -4,6 +4,8 @@ import platform
 
 import numpy as np
 
+from ..thick_wall import grid_attributes
+from .grid import coordinates
 from .rubber import rubber_attributes
 
 FOLLOWING = ("interpolation_tolerance", "material", "material_source", "largest_stretch")  # only of some specifications
@@ -24,6 +26,12 @@ def specified(sweep) -> dict:
     }
 
 
+def _of_thick_walls(sweep):
+    import xarray as xr
+
+    return grid_attributes(xr.Dataset(coords=coordinates(sweep), attrs=specified(sweep)))
+
+
 def provenance(sweep, tables, identity, started) -> dict:
     """All of it; ``identity`` of specification and code, ``started`` when the sweep was begun."""
     return {
@@ -31,6 +39,7 @@ def provenance(sweep, tables, identity, started) -> dict:
         "Conventions": "CF-1.11",
         "source": f"freesweep {identity['version']}",
         **specified(sweep),
+        **_of_thick_walls(sweep),
         **identity,
         "started": started,
         "distinct_problems": sum(table.count for table in tables.values()),

@@ -1,16 +1,16 @@
 """Run a sweep: shards of distinct problems on threads, resumed after any interruption, collected into an atlas."""
 
 import contextlib
-import numbers
 import os
 import time
 import warnings
-from pathlib import Path
 
 import numpy as np
 
 from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
+from ..given import described
+from ..options import read_count, read_path, read_switch
 from ..status import STATUSES
 from ..unit_warnings import warn_of
 from . import estimate, kernels
@@ -53,10 +53,8 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
     EnvironmentFault.
     """
     begun = time.perf_counter()
+    spec, out, threads, progress, overwrite = _read(spec, out, threads, executor, progress, overwrite)
     sweep = spec if isinstance(spec, Sweep) else read_file(spec)
-    out = Path(out)
-    if threads is not None and not (isinstance(threads, numbers.Integral) and threads >= 1):
-        raise ValueError(f"threads: found {threads}; give 1 or more, or None for one on each core")
     warn_of(doubts_of(sweep), stacklevel=2)
     identity, shards = identify(sweep), Shards(out)
     if atlas := _complete(out, identity, sweep.text, overwrite, progress):
@@ -95,6 +93,23 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
         now = time.perf_counter()
         print(summary(atlas, tables, solved - begun, now - begun))
     return atlas
+
+
+def _read(spec, out, threads, executor, progress, overwrite):
+    """What was asked for, checked; raises :class:`SweepError` with every fault."""
+    faults = []
+    if not isinstance(spec, Sweep):
+        spec = read_path("spec", spec, "a TOML specification, or a Sweep", faults)
+    out = read_path("out", out, "the atlas to make", faults)
+    if threads is not None:
+        threads = read_count("threads", threads, faults)
+    if executor is not None and not callable(getattr(type(executor), "submit", None)):
+        faults.append(f"executor: found {described(executor)}; give a concurrent.futures.Executor, or None for threads")
+    progress = read_switch("progress", progress, faults)
+    overwrite = read_switch("overwrite", overwrite, faults)
+    if faults:
+        raise SweepError("\n  - ".join(["faults in what was given:", *faults]))
+    return spec, out, threads, progress, overwrite
 
 
 def _complete(out, identity, text, overwrite, progress):
@@ -221,4 +236,6 @@ def summary(atlas, tables, solving, total) -> str:
         lines += [f"  {kind.replace('_', ' ')}"] if kind != "free" else []
         counts = atlas.status_counts(name).items()
         lines += [f"  {count:>12,}  {meaning}: {sentences[meaning]}" for meaning, count in counts]
+    if note := atlas.data.attrs.get("thin_wall_note"):
+        lines.append(f"  note: {note}")
     return "\n".join([*lines, f"  {atlas.path}"])

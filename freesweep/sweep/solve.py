@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..profiles import SENSITIVITY, widened
 from ..status import INVALID
 from .records import FREE_STATE, HELD_STATE, LIMIT, state, unsolved, upward
 
@@ -16,7 +17,7 @@ def solve_shard(job, accuracy, lanes=True):
     """
     solve = _solve_free if job.kind == "free" else _solve_held
     if not job.courses:
-        return solve(job.kind, job.problems, job.targets, job.first, job.pressures, UNIFORM, accuracy, lanes)
+        return solve(job.kind, job.problems, job.targets, job.first, job.pressures, (UNIFORM, 0.0), accuracy, lanes)
     states = np.zeros(len(job.pressures), state(job.kind))
     limits = np.full(len(job.problems) if job.kind == "free" else 0, np.nan, LIMIT)
     for k, tube in enumerate(job.courses):
@@ -33,25 +34,27 @@ def solve_shard(job, accuracy, lanes=True):
     return states, limits
 
 
-def _solve_free(_, problems, __, first, pressures, tube, accuracy, lanes=True):
+def _solve_free(_, problems, __, first, pressures, followed, accuracy, lanes=True):
     from ..solver.batch import walk_all
 
-    walks = walk_all(problems, first, pressures, tube, accuracy, lanes=lanes)
+    tube, error = followed
+    walks = walk_all(problems, first, pressures, tube, accuracy - SENSITIVITY * error, lanes=lanes)
     states = np.empty(len(pressures), FREE_STATE)
-    states["values"], states["bounds"] = walks.values, upward(walks.bounds)
+    states["values"], states["bounds"] = walks.values, upward(widened(walks.values, walks.bounds, error))
     states["status"], states["slack"] = walks.status, walks.slack
     found = np.empty(len(problems), LIMIT)
-    found["limit"], found["bound"] = walks.limits[:, 0], walks.limits[:, 1]
+    found["limit"], found["bound"] = walks.limits[:, 0], widened(*walks.limits.T, error)
     return states, found
 
 
-def _solve_held(kind, problems, targets, first, pressures, tube, accuracy, lanes=True):
+def _solve_held(kind, problems, targets, first, pressures, followed, accuracy, lanes=True):
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold_batch import hold_all
 
+    tube, error = followed
     held = HELD_LENGTH if kind == "blocked_force" else HELD_ROTATION
-    found = hold_all(problems, targets, held, first, pressures, tube, accuracy, lanes)
+    found = hold_all(problems, targets, held, first, pressures, tube, accuracy - SENSITIVITY * error, lanes)
     states = np.empty(len(pressures), HELD_STATE)
-    states["value"], states["bound"] = found.values, upward(found.bounds)
+    states["value"], states["bound"] = found.values, upward(widened(found.values, found.bounds, error))
     states["status"], states["stable"] = found.status, found.stable
     return states, np.empty(0, LIMIT)
