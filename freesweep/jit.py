@@ -6,6 +6,7 @@
   two Python threads enter it).
 * A literal, or a name that stands for one, is a type of its own to Numba, which compiles what it is handed to once more:
   kernels take it for any other whole number or truth.
+* The compiler is Numba's without what kernels never need (:mod:`compiler`).
 
 Entry points are cached on disk, by a cache of our own (:mod:`kernel_cache`). Numba's knows only the file of the cached
 function, so editing the physics in another file would run stale code: the folder is named after a hash of all sources in
@@ -21,18 +22,20 @@ from pathlib import Path
 import numba
 from numba.core import config, types
 
+from .compiler import KernelCompiler
 from .kernel_cache import KernelCache
 
-_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # which a quarter of the compiler's time would go to
-_POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
+_POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True, "pipeline_class": KernelCompiler}
+_POLICY["no_cfunc_wrapper"] = True  # no kernel is called from C
+_INNER = {"no_cpython_wrapper": True}  # nor these from Python: a quarter of the compiler's time would go to that
 
 
 @functools.cache
 def source_hash(room: str) -> str:
-    """Hash of this file, of every source in one room ("solver", "atlas"), of Numba's version and of Python's."""
+    """Hash of how kernels are compiled, of every source in one room ("solver", "query"), of Numba's version and Python's."""
     here = Path(__file__).parent
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    for path in [Path(__file__), *sorted((here / room).rglob("*.py"))]:
+    for path in [Path(__file__), here / "compiler.py", *sorted((here / room).rglob("*.py"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 

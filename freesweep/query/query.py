@@ -172,7 +172,7 @@ def query(reader, axes, variables=None, method=CUBIC, refine=False, x=None):
 
         refine_answers(reader, question, names, found)
     dataset = {
-        name: xr.Variable(question.dims, array.reshape(question.shape), reader.attributes(name))
+        name: xr.Variable(question.dims, array.reshape(question.shape), reader.attributes(name), fastpath=True)
         for name, array in found.items()
     }
     attrs = {"title": reader.frame.title, "method": method}
@@ -228,7 +228,7 @@ def _coordinates(reader, question, axes):
     for name, (dims, array) in question.coordinates.items():
         if name == "design":
             array = reader.frame.values["design"][array.astype(int)]
-        coordinates[name] = xr.Variable(dims, array, reader.frame.attributes[name])
+        coordinates[name] = xr.Variable(dims, array, reader.frame.attributes[name], fastpath=True)
     for value in axes.values():  # a DataArray brings the coordinates of its dimensions
         if isinstance(value, xr.DataArray):
             for dim in value.dims:
