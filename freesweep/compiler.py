@@ -5,23 +5,23 @@ And which signature an operator takes for arguments of given types, which Numba 
 found out once in a process rather than at each of thousands of places.
 """
 
-from numba.core import typed_passes, types, untyped_passes
+from numba.core import typed_passes, types
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
 
-LEFT_OUT = (
-    untyped_passes.WithLifting,
-    untyped_passes.InlineClosureLikes,
-    untyped_passes.RewriteDynamicRaises,
-    untyped_passes.MakeFunctionToJitFunction,
-    untyped_passes.FindLiterallyCalls,
-    untyped_passes.LiteralUnroll,
-    untyped_passes.LiteralPropagationSubPipelinePass,
-    typed_passes.InlineOverloads,
-    typed_passes.NopythonRewrites,
-    typed_passes.NoPythonSupportedFeatureValidation,
-    typed_passes.AnnotateTypes,
-)
+LEFT_OUT = {  # by name: other versions of Numba know other passes
+    "WithLifting",
+    "InlineClosureLikes",
+    "RewriteDynamicRaises",
+    "MakeFunctionToJitFunction",
+    "FindLiterallyCalls",
+    "LiteralUnroll",
+    "LiteralPropagationSubPipelinePass",
+    "InlineOverloads",
+    "NopythonRewrites",
+    "NoPythonSupportedFeatureValidation",
+    "AnnotateTypes",
+}
 _signatures = {}  # (function, types of arguments) -> signature
 
 
@@ -62,7 +62,7 @@ class KernelCompiler(CompilerBase):
         whole = DefaultPassBuilder.define_nopython_pipeline(self.state)
         manager = type(whole)("kernel")
         for kind, words in whole.passes:
-            if kind not in LEFT_OUT:
+            if kind.__name__ not in LEFT_OUT:
                 manager.add_pass(_TypeInference if kind is typed_passes.NopythonTypeInference else kind, words)
         manager.finalize()
         return [manager]

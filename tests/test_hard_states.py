@@ -33,7 +33,7 @@ def held(design, pressure, base=24):
     problems = Drawn(np.array([design]), None).problems()
     tube = solve.UNIFORM[0], np.array([0, base]), solve.UNIFORM[2]
     first = np.array([0, 1])
-    return solve._solve_held("blocked_torque", problems, np.zeros(1), first, np.array([pressure]), tube, 1e-6)[0][0]
+    return solve._solve_held("blocked_torque", problems, np.zeros(1), first, np.array([pressure]), (tube, 0.0), 1e-6)[0][0]
 
 
 def test_fiber_extension_that_leaves_the_clamped_ends_hardly_any_meridian():

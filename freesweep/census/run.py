@@ -88,10 +88,10 @@ def _finer(job, count):
 
     first = job.first[: count + 1]
     edges = np.array([0, FINER * solve.BASE_CELLS])
-    tube = (solve.UNIFORM[0], edges, solve.UNIFORM[2])
+    exact = (solve.UNIFORM[0], edges, solve.UNIFORM[2]), 0.0  # no profile, no error of one
     of_kind = solve._solve_free if job.kind == FREE else solve._solve_held
     problems, targets, pressures = job.problems[:count], job.targets[:count], job.pressures[: first[-1]]
-    return of_kind(job.kind, problems, targets, first, pressures, tube, AUDIT_ACCURACY)[0]
+    return of_kind(job.kind, problems, targets, first, pressures, exact, AUDIT_ACCURACY)[0]
 
 
 def _bar(total, progress):

@@ -7,7 +7,7 @@ A fold is told by traces of more and more nodes: the last two differ by less tha
 import numpy as np
 
 from ..jit import kernel
-from . import beside, lagrangian, meridian, nested, newton, quadrature, trail
+from . import beside, lagrangian, meridian, nested, newton, quadrature, trail, uniform
 from .guide import cell_along
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK
 
@@ -58,5 +58,10 @@ def retrace(space, tube, origin, before, load, accuracy):
                 return status, doublings, np.nan, np.nan
     if doubt < CLOSE and doubt < min(turned, 1.0 - turned):
         return BEYOND_LIMIT, 0, turned, doubt
-    status, doublings = quadrature.solve(tube, origin, load, len(x) - 1, accuracy, space)  # it may hardly move at all
+    u, part, near = beside.stationary(cell, before, origin), 0.0, origin
+    if u == u:  # a long tube's middle goes where the uniform tube does
+        drawn = lagrangian.drawn_in(cell, load)
+        u, part = uniform.follow(lagrangian.density, u, cell, before, load, half, drawn)
+        near = u if part == 1.0 else origin
+    status, doublings = quadrature.solve(tube, near, load, len(x) - 1, accuracy, space)  # or it hardly moves at all
     return status, doublings, np.nan, np.nan

@@ -12,7 +12,7 @@ from .. import guide, lagrangian, nested, quadrature
 from ..continuation import FOLLOWED, Path
 from ..held import loaded
 from ..problem import FORCE, GAMMA, LENGTH, SHEAR, TORQUE, rubber_of
-from ..retrace import is_upright, retrace
+from ..retrace import retrace
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from .branch import begin, follow, guess
 from .fold import FINEST
@@ -120,12 +120,6 @@ def lock(problem, tube, track, roomy, space, rows, limit, accuracy):
 
 
 @kernel
-def needs_first_integral(space, track, tube, load):
-    """Whether no finer mesh will follow the branch of a tube that is the same all along, lost with the ``track``'s state."""
-    return tube[3] and (space.is_last or is_upright(track, tube, load))
-
-
-@kernel
 def go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy):
     """Rows that still wait, from pressure ``low`` to ``high``, of a tube that is the same all along, whose branch the mesh
     has lost at the load ``mu``, with this stretch in the ``middle``.
@@ -156,7 +150,7 @@ def along_pressure(
     else:
         status = NOT_CONVERGED
     low, high = (start, np.inf) if sense > 0.0 else (0.0, start)
-    if status == NOT_CONVERGED and needs_first_integral(space, track, tube, loaded(path.origin, path.direction, mu)):
+    if status == NOT_CONVERGED and tube[3]:
         go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy)
     leave(rows, status if status != OK else NOT_CONVERGED, low, high)
 
@@ -194,7 +188,7 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
     path, n = Path((gamma, rubber, shear, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
-    if status == NOT_CONVERGED and needs_first_integral(space, track, tube, before):
+    if status == NOT_CONVERGED and tube[3]:
         status, _, _, _ = retrace(space, tube, middle, before, load, accuracy)
         if status == OK or status == INACCURATE:
             go_on(space, tube, path, settled, space.out[0, nested.MIDDLE], 0.0, most, rows, limit, accuracy)
@@ -252,7 +246,7 @@ def follow_many(
                 own_course[0, 0, i, 0] = problems[k, i]
         for factor in FINER:
             base = factor * edges[len(edges) - 1]
-            space = make_space(base, 1 if same else guide.PLACES, factor == FINER[len(FINER) - 1])
+            space = make_space(base, 1 if same else guide.PLACES)
             track, roomy = make_track(base, same), make_track(FINEST * base, same)
             cells = np.zeros((1 if same else len(space.fine[0]), 3))
             tube = (own_course, factor * edges, cells, same, factor * middle, own_places)

@@ -21,7 +21,6 @@ class Space(NamedTuple):
     y: np.ndarray
     u: np.ndarray
     ahead: np.ndarray
-    is_last: bool  # no finer base mesh will be tried
 
 
 class Rows(NamedTuple):
@@ -37,13 +36,13 @@ class Rows(NamedTuple):
 
 
 @kernel
-def make_space(base, places, is_last):
+def make_space(base, places):
     """Scratch for a base mesh of ``base`` cells, and uniform stretches at so many ``places``."""
     size = (base << nested.MAX_DOUBLINGS) + 2
     return Space(
         np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
         np.zeros((5, size)), np.zeros((4, nested.OUTPUTS)), np.zeros(base + 1), np.zeros(base + 1),
-        np.zeros(places), np.zeros(places), is_last,
+        np.zeros(places), np.zeros(places),
     )  # fmt: skip
 
 
