@@ -57,8 +57,8 @@ def test_long_tube_whose_ends_have_a_stretch_that_pays_more_turns_back_before_th
     """
     (problem,) = Drawn(np.array([design]), None).problems()
     H, D, area, gamma, ratio, shear = problem[:6]
-    rest = (1.0, (ratio,), shear, 0.0, 0.0, 0.0, 1.0)
-    load = (gamma, (ratio,), shear, pressure, 0.0, 0.0, 1.0)
+    rest = (1.0, (ratio,), (shear,), 0.0, 0.0, 0.0, 1.0)
+    load = (gamma, (ratio,), (shear,), pressure, 0.0, 0.0, 1.0)
     cell = (H, D, area)
     drawn = lagrangian.drawn_in(cell, load)
     u, carried = uniform.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * problem[8], drawn)

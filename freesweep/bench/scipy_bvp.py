@@ -76,7 +76,7 @@ def solve_all(chosen, stretches, tolerance):
     for problem in chosen.problems:
         cell, half, solution = tuple(problem[:3]), 0.5 * problem[8], None
         for p in chosen.pressures:
-            load = (problem[3], (problem[4], problem[9], problem[10]), problem[5], p, problem[6], problem[7], 1.0)
+            load = (problem[3], (problem[4], problem[9], problem[10]), (problem[5],), p, problem[6], problem[7], 1.0)
             begun = time.thread_time()
             found = _solve(cell, load, half, stretches[row], solution, tolerance)
             if found.status == 0:

@@ -53,7 +53,7 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
     varying = course.shape[0] > 1 or course.shape[1] > 1
     gamma = problem[GAMMA]
     force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
-    load = (gamma, rubber_of(problem), problem[SHEAR], p, force, torque, 1.0)
+    load = (gamma, rubber_of(problem), (problem[SHEAR],), p, force, torque, 1.0)
     unit = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     cell = guide.cell_along(tube, 0.5)
     # a straight fiber cannot stretch: whatever the force, the length stays (the pole of Eq. 2.16)

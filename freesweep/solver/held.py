@@ -27,11 +27,11 @@ from .newton import (
 
 @kernel
 def loaded(load, direction, mu):
-    """The load changed by ``mu`` along ``direction``, component by component; the rubber stays."""
+    """The load changed by ``mu`` along ``direction``, component by component; rubber and wall stay."""
     return (
         load[0] + mu * direction[0],
         load[1],
-        load[2] + mu * direction[2],
+        load[2],
         load[3] + mu * direction[3],
         load[4] + mu * direction[4],
         load[5] + mu * direction[5],

@@ -38,7 +38,7 @@ def layers(problem, p, other, kind, tube):
     course, places = tube[0], tube[5]
     force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
     unit = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-    load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], p, force, torque, 1.0)
+    load = (problem[GAMMA], rubber_of(problem), (problem[SHEAR],), p, force, torque, 1.0)
     largest = 0.0
     for k in range(1 if course.shape[0] == 1 and course.shape[1] == 1 else guide.PLACES):
         cell = guide.cell_along(tube, k / (guide.PLACES - 1))

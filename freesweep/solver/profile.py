@@ -10,7 +10,7 @@ import numpy as np
 
 from ..jit import kernel
 from . import lagrangian
-from .axial import axial_of_flux, axial_stretch, flux_at, is_alike
+from .axial import axial_stretch, flux_at, is_alike
 from .course import at_point, fill
 from .finest import LEFT, MESHES, load_of, mesh_of
 from .lagrangian import LAST_STEP, ROUNDING
@@ -85,10 +85,12 @@ def weights(x, first, stride, at, out):
 @kernel
 def local(y, flux, constant, alike, cell, load):
     """Angles after deformation [rad], and multipliers of both families with their extension, at one place."""
-    psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
+    if alike:
+        psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
+        alpha, beta = lagrangian.fiber_multipliers(y, axial_stretch(y, constant, cell, load), cell, load)
+    else:
+        psi, G_1, alpha, beta = lagrangian.at_flux(y, flux, cell, load)
     meridional = sqrt(1.0 + G_1)
-    s = axial_stretch(y, constant, cell, load) if alike else axial_of_flux(y, flux, cell, load)
-    alpha, beta = lagrangian.fiber_multipliers(y, s, cell, load)
     return (
         atan(y * (cell[0] + cell[1] + psi) / meridional), atan(y * (cell[0] - cell[1] + psi) / meridional),
         load[0] * alpha, load[0] * beta,

@@ -100,7 +100,7 @@ def lock(problem, tube, track, roomy, space, rows, limit, accuracy):
     """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way
     from rest along which the wall fades.
     """
-    load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
+    load = (problem[GAMMA], rubber_of(problem), (problem[SHEAR],), 1.0, 0.0, 0.0, 0.0)
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
             guide.locked(tube, problem[GAMMA], space.ahead)
@@ -169,8 +169,8 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
             least, most = min(least, rows.pressures[i]), max(most, rows.pressures[i])
     if most < 0.0:
         return
-    gamma, f, m, rubber, shear = problem[GAMMA], problem[FORCE], problem[TORQUE], rubber_of(problem), problem[SHEAR]
-    rest, pressure = (1.0, rubber, shear, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    gamma, f, m, rubber, wall = problem[GAMMA], problem[FORCE], problem[TORQUE], rubber_of(problem), (problem[SHEAR],)
+    rest, pressure = (1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     if f == 0.0 and m == 0.0 and gamma == 1.0:
         path = Path(rest, pressure, 0.0)
         status, mu, tangent_mu = begin(track, space, tube, path)
@@ -185,7 +185,7 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
     first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0)
-    path, n = Path((gamma, rubber, shear, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
+    path, n = Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
     if status == NOT_CONVERGED and is_upright(track, tube, before):
