@@ -3,9 +3,10 @@
 Nothing is eliminated: on n midpoint cells the stretches of the nodes, and in each cell the squared meridional stretch G, the
 twist rate psi and both fibers' multipliers are unknowns of one system, the stationarity of
 
-    sum h [(p y^2 + f) sqrt(G - v^2) - integral w d(rho^2) + m psi - sum mu_i g_i],   g_i = G + y^2 (t_i + psi)^2 - g^2 (1 + t_i^2)
+    sum h [(p y^2 + f) sqrt(G - v^2) - integral w d(rho^2) + m psi - sum mu_i g_i]
+    g_i = G + y^2 (t_i + psi)^2 - g^2 (1 + t_i^2)
 
-with "mu_i >= 0, g_i <= 0, one of them 0" as Fischer's and Burmeister's equation ``sqrt(mu^2 + g^2) = mu - g``, solved by Newton's
+with "mu_i >= 0, g_i <= 0, one of them 0" as Fischer's and Burmeister's ``sqrt(mu^2 + g^2) = mu - g``, solved by Newton's
 method on sparse matrices while the load rises. A held length or rotation has one more unknown. Results of n, 2n and 4n cells
 are extrapolated. Derivatives come from SymPy. Lengths in radii of the fiber surface.
 """
@@ -24,7 +25,7 @@ OUTPUTS = ("length", "volume", "twist", "energy", "middle")
 
 @cache
 def _symbolic():
-    """Functions of a cell's six unknowns and parameters: gradient and Hessian of the density, of one layer, of constraints."""
+    """Functions of a cell's unknowns and parameters: gradient and Hessian of the density, of one layer, of constraints."""
     left, right, G, psi, a, b, h = unknowns = sp.symbols("left right G psi a b h")
     p, f, m, ta, tb, g, square, c, c2, c3 = sp.symbols("p f m ta tb g square c c2 c3")
     y, v = (left + right) / 2, (right - left) / h
@@ -106,11 +107,11 @@ class Tube:
                 h, L, w, gaps, length, volume = self._cells(x, y, G, psi, a, b, now, force, torque, gamma)
                 index = [np.arange(n) - 1, np.arange(n)] + [c for c in where[2:]]
                 total = size + (held is not None)
-                R, rows, columns, entries = np.zeros(total), [], [], []
+                R, entries = np.zeros(total), []
 
-                def add(row, column, value):
+                def add(row, column, value, entries=entries):
                     kept = (row >= 0) & (column >= 0)
-                    rows.append(row[kept]), columns.append(column[kept]), entries.append(value[kept])
+                    entries.append((value[kept], row[kept], column[kept]))
 
                 index[1] = np.where(index[1] == n - 1, -1, index[1])  # both ends are clamped
                 for j in range(4):
@@ -145,9 +146,8 @@ class Tube:
                         other[where[3]] = h
                     add(np.full(total, last), np.arange(total), other)
                     add(np.arange(total), np.full(total, last), other)
-                matrix = coo_matrix(
-                    (np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (total, total)
-                )
+                numbers, rows, columns = map(np.concatenate, zip(*entries))
+                matrix = coo_matrix((numbers, (rows, columns)), (total, total))
                 step = -splu(matrix.tocsc()).solve(R)
                 part = 1.0
                 while part > 1e-9:

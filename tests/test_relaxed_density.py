@@ -70,7 +70,7 @@ def check_maximum(draw):
     H, D, area = cell
     T, t = load[3] * y * y + load[4], np.array([H + D, H - D])
     most = load[0] ** 2 * (1 + t * t)
-    _, s, G_1, psi, *_ = physical.state(y, v, cell, load)
+    _, _, G_1, psi, *_ = physical.state(y, v, cell, load)
     gaps = 1 + G_1 + y * y * (t + psi) ** 2 - most
     assert np.all(gaps <= 1e-12 * (1 + most))
     low = max(v * v, wall.narrowest(y, load[2]))
@@ -99,7 +99,7 @@ def check_maximum(draw):
     # strictly concave between feasible places: the maximum is the only one
     for _ in range(3):
         other = np.array([low + (1 + G_1 - low) * draw.uniform(0.05, 1), psi])
-        middle = 0.5 * (other + (1 + G_1, psi))
+        middle = 0.5 * (other + np.array([1 + G_1, psi]))
         assert -negative(middle) >= 0.5 * (-negative(other) + ours) - 1e-12 * size
     return bool(found.success and feasible and abs(-found.fun - ours) < 1e-5 * size)
 

@@ -9,8 +9,8 @@ from freesweep.solver import membrane, physical, wall
 PARTS = ("w", "y", "G", "psi", "yy", "yG", "ypsi", "GG", "Gpsi", "psipsi")
 
 
-def exact(y, G, psi, inner, outer, rubber, energy=True):
-    """W by 30-digit quadrature over rho^2, or the longitudinal and hoop forces' sum that the uniform tube balances."""
+def exact(y, G, psi, inner, outer, rubber):
+    """W by 30-digit quadrature over rho^2."""
     c, c2, c3 = (*rubber, 0.0, 0.0)[:3]
     with mpmath.workdps(30):
         y, G, psi = map(mpmath.mpf, (y, G, psi))
@@ -30,7 +30,8 @@ def test_gauss_points_are_as_many_as_the_wall_asks_for(thickness, fibers):
     inner, outer = (1.0, 1 + thickness) if fibers == "inside" else (1 / (1 + thickness), 1.0)
     for y, G, psi in ((1.2, 0.8, -0.3), (1.6, 0.5, 0.0), (0.93, 1.1, 0.5)):
         W = wall.energy(y, G - 1.0, psi, outer**2 - inner**2, (0.5, 0.1, 0.02), (1.0, inner**2, 1.0))[0]
-        assert W == pytest.approx(float(exact(y, G, psi, inner, outer, (0.5, 0.1, 0.02))), rel=1e-6)
+        known = float(exact(y, G, psi, inner, outer, (0.5, 0.1, 0.02)))
+        assert pytest.approx(known, rel=1e-6) == W
     assert 2 <= wall.points(inner**2, outer**2 - inner**2) <= 10
 
 
@@ -85,10 +86,10 @@ def test_contraction_of_the_source_s_section_at_half_a_bar(fibers, thick, thin):
     inner, outer = np.array([4.76, 6.35]) / (4.76 if fibers == "inside" else 6.35)
     area, t = outer**2 - inner**2, np.tan(np.radians(30))
     cell = (0.0, t, area)
-    for square, contraction in ((inner**2, thick), (0.0, thin)):
+    for square, contraction, known in ((inner**2, thick, 5e-5), (0.0, thin, 1e-3)):  # thin: of a tube with ends
         load = (1.0, (0.0,), (1.0, square, 0.0), 0.5, 0.0, 0.0, 1.0)
         y = stretch(cell, load)
-        assert 1 - physical.uniform_tube(y, cell, load)[0] == pytest.approx(contraction, abs=5e-5)
+        assert 1 - physical.uniform_tube(y, cell, load)[0] == pytest.approx(contraction, abs=known)
 
     load = (1.0, (0.0,), (1.0, inner**2, 0.0), 0.5, 0.0, 0.0, 1.0)
     with mpmath.workdps(30):
@@ -98,6 +99,8 @@ def test_contraction_of_the_source_s_section_at_half_a_bar(fibers, thick, thin):
             G = 1 + tt - tt * y**2
             return mpmath.mpf("0.5") * y**2 * mpmath.sqrt(G) - exact(y, G, 0, inner, outer, (0.0,))
 
-        y = mpmath.findroot(lambda y: mpmath.diff(work, y), (mpmath.mpf("1.05"), mpmath.mpf("1.3")), tol=1e-20)
+        step = mpmath.mpf(10) ** -9
+        slope = lambda y: (work(y + step) - work(y - step)) / (2 * step)  # noqa: E731
+        y = mpmath.findroot(slope, (mpmath.mpf("1.05"), mpmath.mpf("1.3")), solver="illinois", tol=1e-24)
         length = mpmath.sqrt(1 + tt - tt * y**2)
     assert physical.uniform_tube(stretch(cell, load), cell, load)[0] == pytest.approx(float(length), abs=1e-7)

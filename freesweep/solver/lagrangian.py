@@ -3,8 +3,8 @@
     L(y, v) = (p y^2 + f) s - e a w + m psi
 
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
-wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries: ``wall`` is
-(k,), or (k, inner, loose). The length of a tuple is known when code is made: none is for the other one.
+wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
+``wall`` is (k,), or (k, inner, loose). The length of a tuple is known when code is made: none is for the other one.
 """
 
 from ..jit import kernel

@@ -21,10 +21,10 @@ Functional (Eqs. 2.2, 2.5 - 2.8, 2.11; tension positive, unlike Eq. 2.11 where F
 ``k`` (``shear``) is 1 for the invariants of the whole in-plane tensor, whose twist shears the wall, and 0 for
 Eq. 2.5 as printed, which takes lambda_1 and lambda_2 for principal stretches.
 
-``cell`` holds what may vary along the tube, (H, D, a); ``load`` what does not, (gamma, rubber, wall, p, f, m, e) with
-``rubber`` = (c, c2, c3), or (c,): then no code is made for Yeoh's part, and ``wall`` = (k,). The weight ``e`` of the strain energy is 1; 0
-gives the locked shape (section 2.2). All functions are plain arithmetic: they run on a float or on any number-like lane
-type.
+``cell`` holds what may vary along the tube, (H, D, a); ``load`` what does not, (gamma, rubber, wall, p, f, m, e),
+with ``rubber`` = (c, c2, c3), or (c,): then no code is made for Yeoh's part, and ``wall`` = (k,). The weight ``e`` of the
+strain energy is 1; 0 gives the locked shape (section 2.2). All functions are plain arithmetic: they run on a float or on
+any number-like lane type.
 """
 
 from math import sqrt
