@@ -7,7 +7,7 @@ import numpy as np
 
 from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
 from .faults import ActuatorError
-from .given import described, read_number
+from .given import read_number
 from .profiles import ProfileError, as_profile, is_profile, together
 from .tube_model import DEFAULT, FIBER_PLACES, MODELS, fiber_place, word_faults
 from .unit_warnings import doubts, warn_of

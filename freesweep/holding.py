@@ -186,7 +186,7 @@ def corrected_torque(tube: Actuator, pressure):
         raise ActuatorError(["tube: the source's correction is for alpha = 0 and a constant beta"])
     muscle = Actuator(
         alpha=tube.beta, beta=-tube.beta, length=tube.length, radius=tube.radius, wall=tube.wall,
-        material=tube.material, fiber_radius=tube.fiber_radius, energy=tube.energy,
+        material=tube.material, fiber_radius=tube.fiber_surface, energy=tube.energy, model="source",
     )  # fmt: skip
     stations = (
         0.5 * tube.length * (1.0 - np.cos(np.linspace(0.0, np.pi, CORRECTION_STATIONS)))

@@ -29,7 +29,9 @@ def test_fibers_of_a_wall_that_varies_lie_where_it_is_thinnest():
 
 
 def test_models_survive_copies_and_tell_tubes_apart():
-    tubes = [Actuator(**PAM, model=model, fibers=fibers) for model in ("source", "physical") for fibers in (None, "loose")]
+    tubes = [
+        Actuator(**PAM, model=model, fibers=fibers) for model in ("source", "physical") for fibers in (None, "loose")
+    ]
     assert len(set(tubes)) == len({repr(tube) for tube in tubes}) == 4
     for tube in tubes:
         assert pickle.loads(pickle.dumps(tube)) == copy.deepcopy(tube) == tube
