@@ -15,7 +15,7 @@ from .loads import read_load, read_stations, warn_of_loads
 from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
-from .statics import inflate, read_course, undeformed
+from .statics import inflate, is_solved_whole, read_course, undeformed
 from .thick_wall import thin_wall_attributes
 
 HALF_CELLS = 48  # of half a tube that is the same all along
@@ -87,6 +87,12 @@ def blocked_torque(
     return _hold(tube, "rotation", rotation, "force", force, "torque", pressure, x, accuracy, buckled)
 
 
+NOT_YET = (
+    "model: held states of tubes with loose fibers or a thick wall are not solved yet; give model='source' with a"
+    " fiber_radius, or inflate the tube"
+)
+
+
 def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False):
     from .interpret import at_once
     from .solver.find import HELD_LENGTH, HELD_ROTATION
@@ -118,6 +124,8 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         course = np.zeros((segments, 1, 3, 4))
         course[:, 0, :, 0] = row[:3]
         edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
+    if is_solved_whole(tube) and not tube.varies:
+        raise ActuatorError([NOT_YET])
     unique, index = near_stations(tube, stations, whole)
     values, bounds = np.empty((count, 6)), np.empty((count, 6))
     codes = np.full(count, PENDING)
@@ -141,7 +149,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     profiles = fields.reshape(*shape, FIELDS, -1)[..., index]
     if tube.varies:  # whose angles at rest the kernels do not know
         at_rest = (codes == OK) & (pressures == 0.0) & (others == 0.0) & (values[:, 5] == 0.0)
-        profiles[at_rest.reshape(shape)] = undeformed(tube, stations)
+        profiles[at_rest.reshape(shape)] = undeformed(tube, stations, whole)
     scale = np.pi * r ** (2 if held_is_length else 3) * c10
     found = {
         "status": codes.reshape(shape),

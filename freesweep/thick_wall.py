@@ -30,7 +30,7 @@ def thin_wall_attributes(tube) -> dict:
     alpha, beta = tube.angles(share)
     wall = tube.profile("wall").at(share)
     thickness = float(wall.max() / tube.radius)
-    if thickness <= THIN:
+    if thickness <= THIN or tube.is_thick:
         return {}
     ratios = softer(alpha, beta, tube.radius, wall, tube.fiber_surface, tube.energy)
     worst = float(ratios[np.argmax(np.abs(np.log(ratios)))])

@@ -148,7 +148,7 @@ def test_a_bonded_membrane_is_the_source_s():
         for ours, theirs in (
             (physical.density(y, v, cell, thin), membrane.density(y, v, cell, source)),
             (physical.uniform_tube(y, cell, thin), membrane.uniform_tube(y, cell, source)),
-            (physical.integrands(y, v, cell, thin), membrane.integrands(y, v, cell, source)),
+            (physical.integrands(y, v, cell, thin)[:4], membrane.integrands(y, v, cell, source)[:4]),
             (physical.conjugate(y, v, cell, thin, direction), membrane.conjugate(y, v, cell, source, direction)),
             (physical.at_slope(y, v, cell, thin)[1:], membrane.at_slope(y, v, cell, source)[1:]),
             (physical.at_flux(y, 0.3, cell, thin), membrane.at_flux(y, 0.3, cell, source)),

@@ -56,7 +56,7 @@ def integrals(y, q, weights, cell, load, out):
         G = 1.0 + lagrangian.kinematics(y[i], cell, load)[3]
         T = load[3] * y[i] * y[i] + load[4]
         v = -q[i] * sqrt(G) / sqrt(T * T + q[i] * q[i])
-        s, volume, psi, _ = lagrangian.integrands(y[i], v, cell, load)
+        s, volume, psi, _, _ = lagrangian.integrands(y[i], v, cell, load)
         out[0] += weights[i] * s
         out[1] += weights[i] * volume
         out[2] += weights[i] * psi

@@ -54,7 +54,7 @@ def _uniform_tube(y, cell, load, wall):
 
 @kernel
 def integrands(y, v, cell, load):
-    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w."""
+    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w; and the kind of state."""
     return _integrands(y, v, cell, load, load[2])
 
 

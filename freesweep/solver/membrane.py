@@ -152,11 +152,13 @@ def uniform_tube(y, cell, load):
 
 @kernel
 def integrands(y, v, cell, load):
-    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w (Eqs. 2.2, 2.5 - 2.7)."""
+    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w (Eqs. 2.2, 2.5 - 2.7); and the
+    kind of state, within which the density is smooth: there is one here.
+    """
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
     w, _, _ = strain_energy(y, cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    return s, y * y * s, psi, cell[2] * w
+    return s, y * y * s, psi, cell[2] * w, 0.0
 
 
 @kernel

@@ -99,10 +99,11 @@ def uniform_tube(y, cell, load):
 
 @kernel
 def integrands(y, v, cell, load):
-    """Axial length s, volume y^2 s, twist psi, strain energy W."""
-    _, G_1, psi, _, _ = place(y, v, load[3] * y * y + load[4], cell, load)
+    """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut: 1 alpha, 2 beta, 3 both."""
+    _, G_1, psi, taut_alpha, taut_beta = place(y, v, load[3] * y * y + load[4], cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    return s, y * y * s, psi, energy(y, G_1, psi, cell[2], load[1], load[2])[0]
+    kind = (1.0 if taut_alpha else 0.0) + (2.0 if taut_beta else 0.0)
+    return s, y * y * s, psi, energy(y, G_1, psi, cell[2], load[1], load[2])[0], kind
 
 
 @kernel

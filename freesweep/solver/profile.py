@@ -35,10 +35,11 @@ def add(nodes, at, mesh, share, numbers):
 @kernel
 def extrapolate_nodes(base, n, tube, load, fine, nodes):
     """x, y, axial position, twist and flux at the nodes of the mesh of n cells, to fourth order, in rows of ``nodes``; from
-    column n + 1 on, at every second node, by how much those from coarser meshes differ, or spread from beside.
+    column n + 1 on, at every second node, by how much those from coarser meshes differ, or spread from beside. Whether the
+    kind of cell changes along the tube.
     """
     course, edges, cells, _, _, _ = tube
-    alike, behind = is_alike(course), n + 1
+    alike, behind, broken, before = is_alike(course), n + 1, False, -1.0
     for which in range(MESHES):
         x, y = mesh_of(which, n, fine)
         now, count = load_of(which, load, fine), len(x) - 1
@@ -55,7 +56,9 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
             if j < count:
                 cell = cell_at(own, j)
                 h, middle = x[j + 1] - x[j], 0.5 * (y[j] + y[j + 1])
-                s, _, turn, _ = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
+                s, _, turn, _, kind = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
+                broken = broken or (kind != before and j > 0)
+                before = kind
                 z += h * (axial_stretch(middle, constant, cell, now) if alike else s)
                 twist += h * turn
     for k in range(n // 2 + 1):
@@ -69,6 +72,7 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
     for k in range(n // 2 - 1, -1, -1):
         for i in range(1, 5):
             nodes[i, behind + k] = max(nodes[i, behind + k], SPREAD * nodes[i, behind + k + 1])
+    return broken
 
 
 @kernel
@@ -127,9 +131,9 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
     """
     course, edges, _, _, _, _ = tube
     n = base << (doublings - 1)
-    extrapolate_nodes(base, n, tube, load, fine, nodes)
+    order = 1.0 if extrapolate_nodes(base, n, tube, load, fine, nodes) else 15.0  # as in :func:`nested.extrapolate`
     x, behind, alike = nodes[0], n + 1, is_alike(course)
-    fourth = SAFETY / 15.0
+    fourth = SAFETY / order
     value, coarse, number, bound, share = np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5), np.empty(5)
     load, other = extrapolated_loads(load, fine)
     rounding = ROUNDING + LAST_STEP * max(fine[3, LEFT], 0.0)
@@ -166,7 +170,7 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
             for k in range(STENCIL):
                 number[r] += value[k] * nodes[r, first + k]
                 bound[r] += coarse[k] * nodes[r, 2 * half + k * 2]
-            bound[r] = abs(bound[r] - number[r]) / 15.0
+            bound[r] = abs(bound[r] - number[r]) / order
             if linear:
                 number[r] = nodes[r, j] + at * (nodes[r, j + 1] - nodes[r, j])
                 bound[r] = abs(nodes[r, j + 1] - nodes[r, j]) if r == 1 or r == 4 else 0.0

@@ -5,15 +5,17 @@ from . import lagrangian
 from .axial import axial_stretch, flux_at, is_alike
 from .course import at_point, fill
 from .mesh import cell_at
+from .wall import is_loose
 
+NOTHING = 1e-300  # the multiplier of a slack family is 0
 TENSIONLESS = 1e-9  # of the load: a fiber family without tension does not push
 TENSIONLESS_END = 1e-4  # at the clamped end of a tube that varies, whose flux is of second order here
 
 
 @kernel
 def pushing(alpha, beta, share, load):
-    """Bit 1: the alpha family, whose multiplier is ``alpha``, would have to push at a place; bit 2: the beta family."""
-    least = -share * (load[3] + abs(load[4]))
+    """Bit 1: the alpha family, whose multiplier is ``alpha``, would have to push at a place, or is slack; bit 2: the beta family."""
+    least = NOTHING if is_loose(load[2]) else -share * (load[3] + abs(load[4]))
     return (1 if alpha < least else 0) | (2 if beta < least else 0)
 
 

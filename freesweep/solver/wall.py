@@ -30,6 +30,14 @@ WEIGHTS = np.concatenate([0.5 * rule[1] for rule in _RULES])
 
 
 @kernel
+def is_loose(wall):
+    """Whether fibers cannot push: then the density is no linear function of the loads."""
+    if len(wall) == 1:
+        return False
+    return wall[2] > 0.0
+
+
+@kernel
 def points(inner, area):
     """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs."""
     z = (2.0 * inner + area) / area

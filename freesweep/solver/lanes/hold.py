@@ -68,7 +68,7 @@ def held_integral(u, cell, load, half, length_held, work, more):
     for j in range(layer.DEPTHS + 1):
         y = u - (u - 1.0) * get(left, j)
         slope = get(sine, j) * sqrt(max(1.0 + lagrangian.kinematics(y, cell, load)[3], 0.0))
-        length, _, turned, _ = lagrangian.integrands(y, slope, cell, load)
+        length, _, turned, _, _ = lagrangian.integrands(y, slope, cell, load)
         x, here = get(places, j), length if length_held else turned
         if j > 0:
             total = total + 0.5 * (x - x_before) * (before + here)
