@@ -82,15 +82,13 @@ def blocked_torque(
             raise ActuatorError(
                 ["rotation: a tube with alpha = -beta does not rotate, so no torque holds it; use blocked_force"]
             )
+        if buckled and (tube.is_loose or tube.is_thick):
+            raise ActuatorError(
+                ["buckled: solved for membranes with bonded fibers only; others leave the cylinder by themselves"]
+            )
         if buckled and tube.varies:
             raise ActuatorError(["buckled: only a tube that is the same all along has a straight state to buckle from"])
     return _hold(tube, "rotation", rotation, "force", force, "torque", pressure, x, accuracy, buckled)
-
-
-NOT_YET = (
-    "model: held states of tubes with loose fibers or a thick wall are not solved yet; give model='source' with a"
-    " fiber_radius, or inflate the tube"
-)
 
 
 def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False):
@@ -98,6 +96,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     from .solver.find import HELD_LENGTH, HELD_ROTATION
     from .solver.hold import hold_many
     from .solver.hold_batch import refuse
+    from .solver.problem import wall_columns
     from .solver.profile import FIELDS
     from .solver.status import OK, PENDING
 
@@ -115,17 +114,17 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     targets, others, pressures = (array.ravel() for array in grid)
     r, c10 = tube.fiber_surface, tube.material.c10
     design = {name: np.full(1, value) for name, value in tube.design().items()}
-    row = problem_rows(design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy)[0]
-    whole, error = tube.varies or buckled, 0.0
+    row = problem_rows(
+        design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy, tube.is_thick, tube.is_loose
+    )[0]
+    whole, error = is_solved_whole(tube) or buckled, 0.0
     if tube.varies:
         (course, edges, places), error = read_course(tube, accuracy)
     else:
-        segments = 2 if buckled else 1
+        segments = 2 if whole else 1
         course = np.zeros((segments, 1, 3, 4))
         course[:, 0, :, 0] = row[:3]
         edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
-    if is_solved_whole(tube) and not tube.varies:
-        raise ActuatorError([NOT_YET])
     unique, index = near_stations(tube, stations, whole)
     values, bounds = np.empty((count, 6)), np.empty((count, 6))
     codes = np.full(count, PENDING)
@@ -140,7 +139,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     if count >= MANY and not whole:
         refuse(row, *states, codes)
     arguments = (
-        row, *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error, values, bounds, codes, stable,
+        row, wall_columns(row), *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error, values, bounds, codes, stable,
         slack, paths, least, unique, fields,
     )  # fmt: skip
     if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):

@@ -83,7 +83,7 @@ def test_partial_derivatives_against_sympy(symbolic, seed):
     room, *partials = lagrangian.density(y, v, cell, load)
     agree(partials, symbolic["density"](*args), size, 1e-13)
     agree(room, min(symbolic["room"](*args)), 1 + H * H / y**4 + D * D + p * y * y + abs(f))
-    agree(lagrangian.conjugate(y, v, cell, load, (0, 0, 0, 0.3, -0.7, 1.9, 0)), symbolic["conjugate"](*args), size)
+    agree(lagrangian.conjugate(y, v, cell, load, (0, 0, 0, 0.3, -0.7, 1.9, 0))[:3], symbolic["conjugate"](*args), size)
     agree(lagrangian.integrands(y, v, cell, load)[:4], symbolic["integrands"](*args), raised)
 
 

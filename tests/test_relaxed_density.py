@@ -163,9 +163,11 @@ def test_what_is_conjugate_to_a_load_is_the_change_of_the_density_with_it():
         y, v, cell, load = random_point(draw, room=0.05)
         direction = (0.0, 0.0, 0.0, 0.3, 0.7, 1.9, 0.0)
         low, high = ((*load[:3], *(load[k] + e * direction[k] for k in (3, 4, 5)), 1.0) for e in (-d, d))
-        c, c_y, c_v = physical.conjugate(y, v, cell, load, direction)
+        c, c_y, c_v, c_mu = physical.conjugate(y, v, cell, load, direction)
         first, last = physical.density(y, v, cell, low), physical.density(y, v, cell, high)
         assert (value(y, v, cell, high) - value(y, v, cell, low)) / (2 * d) == pytest.approx(c, rel=1e-5, abs=1e-6)
         if taut(y, v, cell, low) == taut(y, v, cell, high):
             change = (np.array(last[1:3]) - first[1:3]) / (2 * d)
             assert change == pytest.approx([c_y, c_v], rel=1e-3, abs=1e-3 * (1 + abs(c_y) + abs(c_v)))
+            before, after = (physical.conjugate(y, v, cell, at, direction)[0] for at in (low, high))
+            assert (after - before) / (2 * d) == pytest.approx(c_mu, rel=1e-3, abs=1e-4)

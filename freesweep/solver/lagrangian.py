@@ -67,7 +67,7 @@ def _integrands(y, v, cell, load, wall):
 
 @kernel
 def conjugate(y, v, cell, load, direction):
-    """``(c, c_y, c_v)`` with c = dL/dmu along a change of load: what is held when that load is unknown."""
+    """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load: what is held when that load is unknown."""
     return _conjugate(y, v, cell, load, direction, load[2])
 
 

@@ -190,14 +190,16 @@ def drawn_in(cell, load):
 
 @kernel
 def conjugate(y, v, cell, load, direction):
-    """``(c, c_y, c_v)`` with c = dL/dmu along a change of load: what is held when that load is unknown."""
+    """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load: what is held when that load is unknown. L is linear in
+    the loads here: c_mu = 0.
+    """
     psi, psi_y, _, G_1, G_y, _ = kinematics(y, cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     s_y = 0.5 * G_y / s
     s_v = -v / s
     T = direction[3] * y * y + direction[4]
     T_y = 2.0 * direction[3] * y
-    return T * s + direction[5] * psi, T_y * s + T * s_y + direction[5] * psi_y, T * s_v
+    return T * s + direction[5] * psi, T_y * s + T * s_y + direction[5] * psi_y, T * s_v, 0.0
 
 
 @kernel

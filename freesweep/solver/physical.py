@@ -18,6 +18,13 @@ from .wall import energy, least_square
 
 NO_ROOM = 1e-30  # as in :mod:`membrane`
 LEAST = 1e-6  # of G: where a state is refused, its numbers stay finite
+NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
+
+
+@kernel
+def kind_of(taut_alpha, taut_beta):
+    """Which families are taut, as one number."""
+    return (ALPHA_TAUT if taut_alpha else NONE_TAUT) + (BETA_TAUT if taut_beta else NONE_TAUT)
 
 
 @kernel
@@ -37,7 +44,7 @@ def place(y, v, T, cell, load):
 @kernel
 def state(y, v, cell, load):
     """What lies behind L at one point: ``(room, s, G - 1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y,
-    psi_y, G_v, psi_v)``.
+    psi_y, G_v, psi_v, which families are taut)``.
     """
     H, D, gg = cell[0], cell[1], load[0] * load[0]
     p, m = load[3], load[5]
@@ -48,6 +55,7 @@ def state(y, v, cell, load):
     i = 1.0 / s
     i3 = i * i * i
     a, b = multipliers(y, s, psi, taut_alpha, taut_beta, H, D, T, m, W_G, W_p)
+    kind = kind_of(taut_alpha, taut_beta)
     ta, tb = H + D + psi, H - D + psi
     turned, squared = a * ta + b * tb, a * ta * ta + b * tb * tb
     L_y, L_v = T_y * s - W_y - 2.0 * y * squared, -T * v * i
@@ -73,13 +81,13 @@ def state(y, v, cell, load):
         det = K_GG * K_pp - K_Gp * K_Gp
         G_y, psi_y = (K_Gp * K_yp - K_pp * K_yG) / det, (K_Gp * K_yG - K_GG * K_yp) / det
         G_v, psi_v = -K_pp * K_vG / det, K_Gp * K_vG / det
-    return room, s, G_1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v
+    return room, s, G_1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind
 
 
 @kernel
 def density(y, v, cell, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv)``."""
-    room, s, G_1, _, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, _ = state(y, v, cell, load)
+    room, s, G_1, _, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, _, _ = state(y, v, cell, load)
     T = load[3] * y * y + load[4]
     L_yy = K_yy + 2.0 * (K_yG * G_y + K_yp * psi_y) + (K_GG * G_y + 2.0 * K_Gp * psi_y) * G_y + K_pp * psi_y * psi_y
     L_yv = -2.0 * load[3] * y * v / s + K_vG * G_y
@@ -99,20 +107,28 @@ def uniform_tube(y, cell, load):
 
 @kernel
 def integrands(y, v, cell, load):
-    """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut: 1 alpha, 2 beta, 3 both."""
+    """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut."""
     _, G_1, psi, taut_alpha, taut_beta = place(y, v, load[3] * y * y + load[4], cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    kind = (1.0 if taut_alpha else 0.0) + (2.0 if taut_beta else 0.0)
-    return s, y * y * s, psi, energy(y, G_1, psi, cell[2], load[1], load[2])[0], kind
+    return s, y * y * s, psi, energy(y, G_1, psi, cell[2], load[1], load[2])[0], kind_of(taut_alpha, taut_beta)
 
 
 @kernel
 def conjugate(y, v, cell, load, direction):
-    """``(c, c_y, c_v)`` with c = dL/dmu along a change of load."""
-    _, s, _, psi, _, _, _, _, _, _, _, _, _, G_y, psi_y, G_v, psi_v = state(y, v, cell, load)
+    """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load; loose fibers let G and psi change with it."""
+    _, s, _, psi, _, _, _, _, _, _, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind = state(y, v, cell, load)
     T, T_y, m = direction[3] * y * y + direction[4], 2.0 * direction[3] * y, direction[5]
     half = 0.5 / s
-    return T * s + m * psi, T_y * s + T * half * G_y + m * psi_y, T * half * (G_v - 2.0 * v) + m * psi_v
+    pull, c_mu = T * half, 0.0
+    if kind == NONE_TAUT:
+        det = K_GG * K_pp - K_Gp * K_Gp
+        c_mu = (2.0 * K_Gp * pull * m - K_pp * pull * pull - K_GG * m * m) / det
+    elif kind != BOTH_TAUT:
+        t = cell[0] + (cell[1] if kind == ALPHA_TAUT else -cell[1]) + psi
+        b = 2.0 * y * y * t
+        rise = m - b * pull
+        c_mu = -rise * rise / (b * b * K_GG - 2.0 * b * K_Gp + K_pp)
+    return T * s + m * psi, T_y * s + pull * G_y + m * psi_y, pull * (G_v - 2.0 * v) + m * psi_v, c_mu
 
 
 @kernel

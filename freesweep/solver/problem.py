@@ -15,6 +15,11 @@ def rubber_of(problem):
     return problem[RATIO], problem[SECOND], problem[THIRD]
 
 
+def wall_columns(problems):
+    """Columns of the walls of rows of problems."""
+    return SOURCE if problems.shape[-1] == PROBLEM_SIZE else PHYSICAL
+
+
 @kernel
 def wall_of(problem, columns):
     """What :mod:`lagrangian` takes as a wall: (k,), or (k, inner, loose)."""

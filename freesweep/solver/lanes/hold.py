@@ -199,7 +199,7 @@ def seek_lanes(
                 valid |= 1 << lane
         cell, _, load = loads(columns, constants)
         half, target, one = get(columns, LENGTH), get(found, 0), spread(1.0)
-        c, c_y, _ = lagrangian.conjugate(one, 0.0, cell, load, unit)
+        c, c_y, _, _ = lagrangian.conjugate(one, 0.0, cell, load, unit)
         first = c * half
         todo = mask_of(valid) & (abs(c_y) > POLE * (cell[0] * cell[0] + cell[1] * cell[1]))
         too_long = mask_of(0)
