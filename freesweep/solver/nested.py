@@ -11,7 +11,7 @@ middle, and the multiplier of a held integral.
 """
 
 from ..jit import kernel
-from . import finest, held, mesh, middle, newton
+from . import finest, held, kinks, mesh, middle, newton
 from .course import fill
 from .held import loaded
 
@@ -73,6 +73,34 @@ def extrapolate(table, level, scales, floors, missed, broken, values, bounds):
         largest = max(largest, bounds[k] / scales[k])
         bounds[k] += floors[k]
     return largest
+
+
+@kernel
+def mend(density, integrands, x, y, n, tube, cells, load, direction, mu, target, sigma, row, work):
+    """Add to a row of outputs what a change of kind inside cells makes them lack (:mod:`kinks`), as the solution moves by it;
+    with ``sigma`` not 0 the conjugate integral is held at the ``target``, and the multiplier ``mu`` moves, too.
+    """
+    edges, free, center = tube[1], tube[3], tube[4]
+    e, inverse, change, moved, force, response = work[2], work[3], work[4], work[5], work[8], work[9]
+    now = loaded(load, direction, mu)
+    lacks = kinks.missed(density, integrands, x, y, n, edges, cells, now, force)
+    newton.substitute(inverse, e, 1, n if free else n - 1, force, change)
+    change[0] = 0.0
+    change[n] = change[n] if free else 0.0
+    for i in range(n + 1):
+        moved[i] = y[i] + change[i]
+    for again in range(2 if sigma != 0.0 else 1):
+        if again > 0:
+            held_now = direction[3] * row[1] + direction[4] * row[0] + direction[5] * row[2]
+            step = (target - held_now) / sigma
+            mu += step
+            now = loaded(load, direction, mu)
+            for i in range(n + 1):
+                moved[i] += step * response[i]
+        integrate(integrands, x, moved, n, cells, now, row)
+        for k in range(4):
+            row[k] += lacks[k]
+    row[MIDDLE], row[MULTIPLIER] = moved[center * n // edges[len(edges) - 1]], mu
 
 
 @kernel
@@ -192,7 +220,7 @@ def solve(
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     error, coarser, where, far = tolerance, tolerance, middle.NOT_LONG, 1.0
     passes, level, count, on_base = 0, 1, n, mu
-    unstable, rate, shrunk = 0, newton.UNKNOWN, False
+    unstable, rate, shrunk, sigma = 0, newton.UNKNOWN, False, 0.0
     xs, ys = x, y
     while True:
         own = fill(course, edges, xs, count, n, cells)
@@ -200,7 +228,7 @@ def solve(
         if goal == PLAIN:
             status, unstable, rate, error = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
         else:
-            status, unstable, mu, _ = held.solve_held(
+            status, unstable, mu, sigma = held.solve_held(
                 density, conjugate, xs, ys, count, free, own, load, direction, mu, target, tolerance, newton.MAX_ITERATIONS,
                 work,
             )  # fmt: skip
@@ -225,6 +253,11 @@ def solve(
         row = table[level]
         broken = integrate(integrands, xs, ys, count, own, now, row)
         row[MIDDLE], row[MULTIPLIER], missed = ys[center * count // n], mu, 0.0
+        if broken:
+            mend(
+                density, integrands, xs, ys, count, tube, own, load, direction, mu, target, sigma if goal == HELD else 0.0, row,
+                work,
+            )  # fmt: skip
         if free:
             if level == 1:
                 where, far = middle.node(density, xs, ys, n, mesh.cell_at(own, 0), now, accuracy)
