@@ -84,7 +84,7 @@ def blocked_torque(
             )
         if buckled and (tube.is_loose or tube.is_thick):
             raise ActuatorError(
-                ["buckled: solved for membranes with bonded fibers only; others leave the cylinder by themselves"]
+                ["buckled: solved for membranes with bonded fibers only; others leave the cylinder without"]
             )
         if buckled and tube.varies:
             raise ActuatorError(["buckled: only a tube that is the same all along has a straight state to buckle from"])
@@ -139,8 +139,8 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     if count >= MANY and not whole:
         refuse(row, *states, codes)
     arguments = (
-        row, wall_columns(row), *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error, values, bounds, codes, stable,
-        slack, paths, least, unique, fields,
+        row, wall_columns(row), *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error,
+        values, bounds, codes, stable, slack, paths, least, unique, fields,
     )  # fmt: skip
     if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
         hold_many(*arguments)

@@ -12,7 +12,9 @@ OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius
 
 
 def problem_rows(design, energy, thick=False, loose=False) -> np.ndarray:
-    """Dimensionless problems (n, 11), or (n, 13) where the wall is ``thick`` or the fibers are ``loose``, of a ``design``: name -> array (n,), in SI units and degrees, loads among them."""
+    """Dimensionless problems (n, 11), or (n, 13) where the wall is ``thick`` or the fibers are ``loose``, of a ``design``:
+    name -> array (n,), in SI units and degrees, loads among them.
+    """
     ta, tb = np.tan(np.radians(design["alpha"])), np.tan(np.radians(design["beta"]))
     r, c10 = design["fiber_radius"], design["c10"]
     inner = design["radius"]

@@ -46,7 +46,8 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     found = _nothing(len(problems), len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
     arguments = (
-        problems, wall_columns(problems), settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
+        problems, wall_columns(problems), settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5],
+        stations, found.profiles,
     )  # fmt: skip
     done = False
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:

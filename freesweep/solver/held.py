@@ -5,8 +5,8 @@ With ``C = sum h c(y_mid, slope)`` held at a target t, the load ``mu`` conjugate
     [ H    b ] [ dy  ]     [ g     ]
     [ b^T -k ] [ dmu ] = - [ t - C ],    b = -dC/dy,  k = dC/dmu where y stays (0 where J is linear in mu)
 
-solved with two tridiagonal solutions. ``sigma = k + b^T H^-1 b = dC/dmu`` along the branch: positive as long as the branch is
-stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
+solved with two tridiagonal solutions. ``sigma = k + b^T H^-1 b = dC/dmu`` along the branch: positive as long as the branch
+is stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
 """
 
 from ..jit import kernel

@@ -102,8 +102,8 @@ def at_rest(stations, fields, problem):
 
 @entry_point
 def hold_many(
-    problem, walls, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds, status, stable,
-    slack, paths, least, stations, profiles,
+    problem, walls, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds, status,
+    stable, slack, paths, least, stations, profiles,
 ):  # fmt: skip
     """Held states of one design, for arrays of pressure, of the load that is not unknown, and of the held quantity.
 

@@ -1,10 +1,10 @@
 """Where the density changes its kind inside a cell: what the midpoint misses there, and how it moves the solution.
 
 Across a place xi where L is C1 but not C2, L_y, L_v and the integrands bend: their slopes along the tube jump by D. Between
-the middles of two cells lies one node, at the distance delta from xi; up to there a midpoint takes the wrong side for granted,
-and the integral of what bends lacks ``D delta^2/2``. That has no order: on nested meshes it is now more, now less, and for a
-node close to xi the same on all of them, so that no extrapolation sees it. It is added here, to the integrals and, as a force
-on the node, to the equations, whose solution moves by H^-1 times that. What is left falls with the cube of the cell.
+the middles of two cells lies one node, at the distance delta from xi; up to there a midpoint takes the wrong side for
+granted, and the integral of what bends lacks ``D delta^2/2``. That has no order: on nested meshes it is now more, now less,
+and for a node close to xi the same on all of them, so that no extrapolation sees it. It is added here, to the integrals and,
+as a force on the node, to the equations, whose solution moves by H^-1 times that. The rest falls with the cube of the cell.
 """
 
 from ..jit import kernel
@@ -25,7 +25,7 @@ def is_edge(j, n, edges):
 
 @kernel
 def between(x, y, j, share, cells):
-    """Stretch, slope and cell a ``share`` of the way from the middle of the cell before node ``j`` to that of the one behind."""
+    """Stretch, slope and cell, a ``share`` of the way from the middle of the cell before node ``j`` to that behind."""
     before, after = (y[j] - y[j - 1]) / (x[j] - x[j - 1]), (y[j + 1] - y[j]) / (x[j + 1] - x[j])
     low, high = 0.5 * (y[j - 1] + y[j]), 0.5 * (y[j] + y[j + 1])
     one, other = mesh.cell_at(cells, j - 1), mesh.cell_at(cells, j)

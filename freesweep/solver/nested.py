@@ -77,7 +77,7 @@ def extrapolate(table, level, scales, floors, missed, broken, values, bounds):
 
 @kernel
 def mend(density, integrands, x, y, n, tube, cells, load, direction, mu, target, sigma, row, work):
-    """Add to a row of outputs what a change of kind inside cells makes them lack (:mod:`kinks`), as the solution moves by it;
+    """Add to a row of outputs what a change of kind inside cells makes them lack (:mod:`kinks`), and as the solution moves;
     with ``sigma`` not 0 the conjugate integral is held at the ``target``, and the multiplier ``mu`` moves, too.
     """
     edges, free, center = tube[1], tube[3], tube[4]
@@ -255,8 +255,8 @@ def solve(
         row[MIDDLE], row[MULTIPLIER], missed = ys[center * count // n], mu, 0.0
         if broken:
             mend(
-                density, integrands, xs, ys, count, tube, own, load, direction, mu, target, sigma if goal == HELD else 0.0, row,
-                work,
+                density, integrands, xs, ys, count, tube, own, load, direction, mu, target,
+                sigma if goal == HELD else 0.0, row, work,
             )  # fmt: skip
         if free:
             if level == 1:

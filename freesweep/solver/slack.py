@@ -14,7 +14,7 @@ TENSIONLESS_END = 1e-4  # at the clamped end of a tube that varies, whose flux i
 
 @kernel
 def pushing(alpha, beta, share, load):
-    """Bit 1: the alpha family, whose multiplier is ``alpha``, would have to push at a place, or is slack; bit 2: the beta family."""
+    """Bit 1: the alpha family, of this multiplier, would have to push at a place, or is slack; bit 2: the beta family."""
     least = NOTHING if is_loose(load[2]) else -share * (load[3] + abs(load[4]))
     return (1 if alpha < least else 0) | (2 if beta < least else 0)
 

@@ -211,8 +211,8 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
 
 @entry_point
 def follow_many(
-    problems, walls, settled, first, pressures, course, edges, places, accuracy, values, bounds, status, slack, limits, stations,
-    profiles,
+    problems, walls, settled, first, pressures, course, edges, places, accuracy, values, bounds, status, slack, limits,
+    stations, profiles,
 ):  # fmt: skip
     """Equilibria of many designs, each on its own branch: see :func:`walk`.
 
