@@ -121,7 +121,8 @@ def test_public_functions_find_prototype_b():
     )
     pressures = list(KNOWN)
     free, held = inflate(tube, pressures, x=0.0), blocked_torque(tube, pressures, x=0.0)
-    assert np.all(free.status == 0) and np.all(held.status == 0)
+    assert np.all(free.status == 0)
+    assert np.all(held.status == 0)
     for k, (rotation, length, torque, held_length) in enumerate(KNOWN.values()):
         by_eq_220 = 2 * np.pi * RADIUS**3 * pressures[k] / np.tan(np.radians(30))
         assert float(free.rotation[k]) == pytest.approx(rotation, abs=1e-3)
