@@ -66,7 +66,8 @@ def test_prototype_b_turns_less_than_taut_fibers_would_make_it(pressure):
     for held in (False, True):
         _, start = brute.solve(100, pressure / C10, held="rotation" if held else None)
         found = nested_meshes(
-            0, 30, LENGTH / RADIUS, 0.0, area, (C01 / C10, 0.0, 0.0), 1.0, pressure / C10, held=held, guess=(start.x, start.y)
+            0, 30, LENGTH / RADIUS, 0.0, area, (C01 / C10, 0.0, 0.0), 1.0, pressure / C10, held=held,
+            guess=(start.x, start.y),
         )  # fmt: skip
         assert (found.status, found.unstable) == (0, 0)
         if held:

@@ -192,7 +192,7 @@ def fold_of_bratu(cells, begin):
     assert on_one_mesh(x, y, BRATU, load)[0] == newton.CONVERGED
     track = make_track(cells, True)
     track.x[:], track.y[:] = x, y
-    path, own, work = Path(REST, ALONG_MU, 0.0), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
+    path, own, work = Path(REST, ALONG_MU, 0.0, False), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
     status, _, mu, slope = correct(density, track, track.y, begin, cells, own, path, 1.0, track.tangent, work)
     assert status == FOLLOWED
     slope, step = make_unit(track, cells, mu, slope, path), 0.01

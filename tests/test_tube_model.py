@@ -64,7 +64,8 @@ def test_the_shell_takes_the_same_words(capsys):
 
 
 def test_sweeps_say_that_they_know_the_source_s_tube_only():
-    text = "[actuator]\nalpha = 30\nbeta = -30\nlength = 0.1\nradius = 4e-3\nwall = 1e-3\nc10 = 1e5\n{}\n[axes]\npressure = [0, 1e4]\n"
+    text = "[actuator]\nalpha = 30\nbeta = -30\nlength = 0.1\nradius = 4e-3\nwall = 1e-3\nc10 = 1e5\n{}\n"
+    text += "[axes]\npressure = [0, 1e4]\n"
     assert parse(text.format('model = "source"\nfibers = "bonded"')).points == 2
     with pytest.raises(SpecificationError) as error:
         parse(text.format('model = "physical"\nwall_model = "thick"\nfibers = "loose"'))

@@ -67,6 +67,23 @@ def slopes(density, integrands, x, y, j, cells, load):
 
 
 @kernel
+def lacking(density, integrands, x, y, n, edges, j, kind, cells, load):
+    """What L_y, L_v and the four integrals lack at node ``j``, where cells of this ``kind`` end, as a tuple, xi last;
+    nothing where no slopes can be seen, or segments meet.
+    """
+    if not 2 <= j < n - 1 or is_edge(j, n, edges):
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, x[j]
+    xi = place(integrands, x, y, j, kind, cells, load)
+    left = slopes(density, integrands, x, y, j - 2, cells, load)
+    right = slopes(density, integrands, x, y, j, cells, load)
+    half = 0.5 * (xi - x[j]) * (xi - x[j])
+    return (
+        half * (right[0] - left[0]), half * (right[1] - left[1]), half * (right[2] - left[2]), half * (right[3] - left[3]),
+        half * (right[4] - left[4]), half * (right[5] - left[5]), xi,
+    )  # fmt: skip
+
+
+@kernel
 def missed(density, integrands, x, y, n, edges, cells, load, force):
     """What the four integrals lack, as a tuple, and the gradient of J, into ``force``."""
     length, volume, twist, energy, before = 0.0, 0.0, 0.0, 0.0, -1.0
@@ -75,22 +92,16 @@ def missed(density, integrands, x, y, n, edges, cells, load, force):
     for j in range(n):
         here, v, cell = 0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / (x[j + 1] - x[j]), mesh.cell_at(cells, j)
         kind = integrands(here, v, cell, load)[4]
-        if kind != before and 2 <= j < n - 1 and not is_edge(j, n, edges):
-            xi = place(integrands, x, y, j, before, cells, load)
-            left, right = (
-                slopes(density, integrands, x, y, j - 2, cells, load),
-                slopes(density, integrands, x, y, j, cells, load),
-            )
-            half = 0.5 * (xi - x[j]) * (xi - x[j])
-            length += half * (right[2] - left[2])
-            volume += half * (right[3] - left[3])
-            twist += half * (right[4] - left[4])
-            energy += half * (right[5] - left[5])
-            force[j] += half * (right[0] - left[0])
-            turn = half * (right[1] - left[1])
+        if kind != before and j > 0:
+            by_y, by_v, s, volume_of, turn, w, xi = lacking(density, integrands, x, y, n, edges, j, before, cells, load)
+            length += s
+            volume += volume_of
+            twist += turn
+            energy += w
+            force[j] += by_y
             i = j - 1 if xi < x[j] else j
-            turn /= x[i + 1] - x[i]
-            force[i] -= turn
-            force[i + 1] += turn
+            by_v /= x[i + 1] - x[i]
+            force[i] -= by_v
+            force[i + 1] += by_v
         before = kind
     return length, volume, twist, energy

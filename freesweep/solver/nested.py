@@ -77,7 +77,7 @@ def extrapolate(table, level, scales, floors, missed, broken, values, bounds):
 
 @kernel
 def mend(density, integrands, x, y, n, tube, cells, load, direction, mu, target, sigma, row, work):
-    """Add to a row of outputs what a change of kind inside cells makes them lack (:mod:`kinks`), and as the solution moves;
+    """Add to a row of outputs what a change of kind inside cells makes them lack (:mod:`kinks`), move the solution by it;
     with ``sigma`` not 0 the conjugate integral is held at the ``target``, and the multiplier ``mu`` moves, too.
     """
     edges, free, center = tube[1], tube[3], tube[4]
@@ -100,6 +100,8 @@ def mend(density, integrands, x, y, n, tube, cells, load, direction, mu, target,
         integrate(integrands, x, moved, n, cells, now, row)
         for k in range(4):
             row[k] += lacks[k]
+    for i in range(n + 1):
+        y[i] = moved[i]
     row[MIDDLE], row[MULTIPLIER] = moved[center * n // edges[len(edges) - 1]], mu
 
 

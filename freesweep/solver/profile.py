@@ -9,7 +9,7 @@ from math import atan, sqrt
 import numpy as np
 
 from ..jit import kernel
-from . import lagrangian
+from . import kinks, lagrangian
 from .axial import axial_stretch, flux_at, is_alike
 from .course import at_point, fill
 from .finest import LEFT, MESHES, load_of, mesh_of
@@ -39,13 +39,13 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
     kind of cell changes along the tube.
     """
     course, edges, cells, _, _, _ = tube
-    alike, behind, broken, before = is_alike(course), n + 1, False, -1.0
+    alike, behind, broken = is_alike(course), n + 1, False
     for which in range(MESHES):
         x, y = mesh_of(which, n, fine)
         now, count = load_of(which, load, fine), len(x) - 1
         own = fill(course, edges, x, count, base, cells)
         constant = lagrangian.uniform_tube(y[count], cell_at(own, 0), now)[2] if alike else 0.0
-        z, twist = 0.0, 0.0
+        z, twist, before = 0.0, 0.0, -1.0
         for j in range(count + 1):
             numbers = (x[j], y[j], z, twist, 0.0 if alike else flux_at(x, y, j, count, own, now))
             half = j >> 1
@@ -57,7 +57,13 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
                 cell = cell_at(own, j)
                 h, middle = x[j + 1] - x[j], 0.5 * (y[j] + y[j + 1])
                 s, _, turn, _, kind = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
-                broken = broken or (kind != before and j > 0)
+                if kind != before and j > 0:
+                    broken = True
+                    lacks = kinks.lacking(
+                        lagrangian.density, lagrangian.integrands, x, y, count, edges, j, before, own, now
+                    )
+                    z += lacks[2]
+                    twist += lacks[4]
                 before = kind
                 z += h * (axial_stretch(middle, constant, cell, now) if alike else s)
                 twist += h * turn

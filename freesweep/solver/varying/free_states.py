@@ -14,6 +14,7 @@ from ..held import loaded
 from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
 from ..retrace import is_upright, retrace
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
+from ..wall import is_loose
 from .branch import begin, follow, guess
 from .fold import FINEST
 from .meshes import stand
@@ -108,7 +109,7 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
             status, doublings = cold(space, tube, load, accuracy)
             if status == NOT_CONVERGED:
                 rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0)
+                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0, is_loose(load[2]))
                 found, _, middle = settle_loads(way, track, roomy, space, tube, rows, limit, accuracy)
                 if found == OK:
                     for k in range(len(space.x)):
@@ -173,7 +174,7 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
     rubber, wall = rubber_of(problem), wall_of(problem, walls)
     rest, pressure = (1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     if f == 0.0 and m == 0.0 and gamma == 1.0:
-        path = Path(rest, pressure, 0.0)
+        path = Path(rest, pressure, 0.0, is_loose(wall))
         status, mu, tangent_mu = begin(track, space, tube, path)
         if status == FOLLOWED:
             first_states(path, mu, tube, space, rows, accuracy)
@@ -185,8 +186,8 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
             )
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
-    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0)
-    path, n = Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
+    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0, is_loose(wall))
+    path, n = Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0), is_loose(wall)), len(track.x) - 1
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
     if status == NOT_CONVERGED and is_upright(track, tube, before):
