@@ -21,6 +21,7 @@ MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or mor
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.3
+RESOLVED, ACROSS = 8, 3.0  # cells of a kind, of which two meshes coarser still see two; sum of kinds that never touch
 FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
 TINY = 1e-300
 
@@ -30,9 +31,11 @@ UNREACHED = 3  # the accuracy was not met on the finest mesh
 
 @kernel
 def integrate(integrands, x, y, n, cells, load, row):
-    """Integrals over the tube on one mesh; whether the kind of cell changes along it, in which the density is smooth."""
+    """Integrals over the tube on one mesh; whether the kind of cell, in which the density is smooth, changes along it, and
+    whether each kind lasts RESOLVED cells at least. Of four kinds 0 and 3, or 1 and 2, have another one between them.
+    """
     length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
-    broken, before = False, -1.0
+    broken, before, run, shortest = False, -1.0, 0, RESOLVED
     varying = len(cells) > 1
     cell = mesh.cell_at(cells, 0)
     for j in range(n):
@@ -40,14 +43,17 @@ def integrate(integrands, x, y, n, cells, load, row):
             cell = mesh.cell_at(cells, j)
         h = x[j + 1] - x[j]
         s, v, t, w, kind = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell, load)
-        broken = broken or (kind != before and j > 0)
-        before = kind
+        if kind != before and j > 0:
+            broken = True
+            shortest = 0 if kind + before == ACROSS else min(shortest, run)
+            run = 0
+        before, run = kind, run + 1
         length += h * s
         volume += h * v
         twist += h * t
         energy += h * w
     row[0], row[1], row[2], row[3] = length, volume, twist, energy
-    return broken
+    return broken, not broken or min(shortest, run) >= RESOLVED
 
 
 @kernel
@@ -253,7 +259,7 @@ def solve(
             continue
 
         row = table[level]
-        broken = integrate(integrands, xs, ys, count, own, now, row)
+        broken, resolved = integrate(integrands, xs, ys, count, own, now, row)
         row[MIDDLE], row[MULTIPLIER], missed = ys[center * count // n], mu, 0.0
         if broken:
             mend(
@@ -271,7 +277,7 @@ def solve(
                 out[2, MULTIPLIER] /= max(unit, 1.0)
                 out[3, MULTIPLIER] /= unit
             met = extrapolate(table, level, out[2], out[3], missed, broken, out[0], out[1]) <= accuracy
-            if met or level == MAX_DOUBLINGS + 1:
+            if (met and resolved) or level == MAX_DOUBLINGS + 1:
                 finest.leave_loads(
                     table[:, MULTIPLIER], level, out[0, MULTIPLIER], direction, max(error, coarser), fine
                 )
