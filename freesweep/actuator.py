@@ -10,6 +10,7 @@ from .faults import ActuatorError
 from .given import numbers, read_number
 from .options import read_choice
 from .profiles import ProfileError, as_profile, is_profile, together
+from .tube_model import DEFAULT, FIBER_PLACES, MODELS, fiber_place, word_faults
 from .unit_warnings import doubts, warn_of
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
@@ -48,12 +49,16 @@ class Actuator:
     material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or a rubber of the library,
         :func:`freesweep.material`
     fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
-    fiber_radius : radius at which the fibers lie [m], from the inner to the outer one; None: the inner one, as in Eq. 2.20
-    energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed
+    model : "source": the membrane with bonded fibers at the inner radius that the source computes; "physical": a thick wall
+        with loose fibers at the outer radius. Each part can be given by itself:
+    fiber_radius : "inner", "middle", "outer" (of a wall that varies, where it is thinnest), or the radius at which the
+        fibers lie [m], from the inner to the outer one; None: as the model has it
+    wall_model : "thick": each layer of the wall is strained by itself; "membrane": all of it as at the fibers; or None
+    fibers : "loose": threads, which cannot push; "bonded": fibers that push where they have to; or None
+    energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed, for bonded fibers only
 
     Raises :class:`ActuatorError`, which lists every fault. Warns of what looks like a slip of units, and where the wall is
-    thicker than the radius: the model is a thin wall's. Equal actuators have equal hashes; callables are equal if they are
-    the same.
+    thicker than the radius. Equal actuators have equal hashes; callables are equal if they are the same.
     """
 
     alpha: object
@@ -63,8 +68,11 @@ class Actuator:
     wall: object
     material: MooneyRivlin | Yeoh
     fiber_extension: float = 1.0
-    fiber_radius: float | None = None
+    fiber_radius: float | str | None = None
     energy: str = "full"
+    model: str = DEFAULT
+    wall_model: str | None = None
+    fibers: str | None = None
 
     def __post_init__(self):
         faults = []
@@ -75,14 +83,18 @@ class Actuator:
         read["fiber_extension"] = read_number(
             "fiber_extension", self.fiber_extension, "1", faults, least=1.0, most=LARGEST_EXTENSION
         )
-        if self.fiber_radius is not None:
-            read["fiber_radius"] = read_number("fiber_radius", self.fiber_radius, "m", faults, positive=True)
+        if self.fiber_radius is not None and not (
+            isinstance(self.fiber_radius, str) and self.fiber_radius in FIBER_PLACES
+        ):
+            unread = []
+            read["fiber_radius"] = read_number("fiber_radius", self.fiber_radius, "m", unread, positive=True)
+            faults += [f"{fault}, or one of {', '.join(map(repr, FIBER_PLACES))}" for fault in unread]
         if not isinstance(self.material, ELASTOMERS):
             faults.append(
                 f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01), NeoHookean(c10) or"
                 " Yeoh(c1, c2, c3), in [Pa], or material(name)"
             )
-        read_choice("energy", self.energy, ENERGIES, faults)
+        faults += word_faults(self.model, self.wall_model, self.fibers, self.energy, ENERGIES)
         for name, value in read.items():
             object.__setattr__(self, name, value)
         if not faults:
@@ -96,7 +108,10 @@ class Actuator:
         warn_of(doubts(**{name: numbers[name] for name in (*VARYING, "length", "radius", "c10")}), stacklevel=3)
 
     def __hash__(self):
-        fields = (self.length, self.radius, self.material, self.fiber_extension, self.fiber_radius, self.energy)
+        fields = (
+            self.length, self.radius, self.material, self.fiber_extension, self.fiber_radius, self.energy, self.model,
+            self.wall_model, self.fibers,
+        )  # fmt: skip
         varying = tuple(tuple(self.profile(name).at(HASHED).tolist()) for name in VARYING)
         return hash((*fields, varying))
 
@@ -121,7 +136,7 @@ class Actuator:
                 " keep alpha above beta all along, or below"
             )
         outer = self.radius + float(np.min(self.profile("wall").samples()))
-        if self.fiber_radius is not None and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):
+        if isinstance(self.fiber_radius, float) and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):
             faults.append(
                 f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
                 f" {self.radius:g} to {outer:g} m"
@@ -168,7 +183,20 @@ class Actuator:
     @property
     def fiber_surface(self) -> float:
         """Radius at which the fibers lie [m]; every formula is scaled by it."""
-        return self.radius if self.fiber_radius is None else self.fiber_radius
+        place = MODELS[self.model].fiber_radius if self.fiber_radius is None else self.fiber_radius
+        if isinstance(place, str):
+            return fiber_place(place, self.radius, float(np.min(self.profile("wall").samples())))
+        return place
+
+    @property
+    def is_thick(self) -> bool:
+        """Whether each layer of the wall is strained by itself."""
+        return (self.wall_model or MODELS[self.model].wall_model) == "thick"
+
+    @property
+    def is_loose(self) -> bool:
+        """Whether the fibers are threads, which cannot push."""
+        return (self.fibers or MODELS[self.model].fibers) == "loose"
 
     def design(self) -> dict:
         """The numbers that a sweep would vary: name -> value in SI units and degrees; of a profile, the middle's."""

@@ -16,7 +16,7 @@ from .options import read_switch
 from .profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
-from .statics import inflate, read_course, undeformed
+from .statics import inflate, is_solved_whole, read_course, undeformed
 from .thick_wall import thin_wall_attributes
 
 HALF_CELLS = 48  # of half a tube that is the same all along
@@ -85,6 +85,10 @@ def blocked_torque(
             raise ActuatorError(
                 ["rotation: a tube with alpha = -beta does not rotate, so no torque holds it; use blocked_force"]
             )
+        if buckled and (tube.is_loose or tube.is_thick):
+            raise ActuatorError(
+                ["buckled: solved for membranes with bonded fibers only; others leave the cylinder without"]
+            )
         if buckled and tube.varies:
             raise ActuatorError(["buckled: only a tube that is the same all along has a straight state to buckle from"])
     return _hold(tube, "rotation", rotation, "force", force, "torque", pressure, x, accuracy, buckled)
@@ -95,6 +99,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     from .solver.find import HELD_LENGTH, HELD_ROTATION
     from .solver.hold import hold_many
     from .solver.hold_batch import refuse
+    from .solver.problem import wall_columns
     from .solver.profile import FIELDS
     from .solver.status import OK, PENDING
 
@@ -112,12 +117,14 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     targets, others, pressures = (array.ravel() for array in grid)
     r, c10 = tube.fiber_surface, tube.material.c10
     design = {name: np.full(1, value) for name, value in tube.design().items()}
-    row = problem_rows(design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy)[0]
-    whole, error = tube.varies or buckled, 0.0
+    row = problem_rows(
+        design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy, tube.is_thick, tube.is_loose
+    )[0]
+    whole, error = is_solved_whole(tube) or buckled, 0.0
     if tube.varies:
         (course, edges, places), error = read_course(tube, accuracy)
     else:
-        segments = 2 if buckled else 1
+        segments = 2 if whole else 1
         course = np.zeros((segments, 1, 3, 4))
         course[:, 0, :, 0] = row[:3]
         edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
@@ -135,8 +142,8 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     if count >= MANY and not whole:
         refuse(row, *states, codes)
     arguments = (
-        row, *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error, values, bounds, codes, stable,
-        slack, paths, least, unique, fields,
+        row, wall_columns(row), *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error,
+        values, bounds, codes, stable, slack, paths, least, unique, fields,
     )  # fmt: skip
     if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
         hold_many(*arguments)
@@ -144,7 +151,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
     profiles = fields.reshape(*shape, FIELDS, -1)[..., index]
     if tube.varies:  # whose angles at rest the kernels do not know
         at_rest = (codes == OK) & (pressures == 0.0) & (others == 0.0) & (values[:, 5] == 0.0)
-        profiles[at_rest.reshape(shape)] = undeformed(tube, stations)
+        profiles[at_rest.reshape(shape)] = undeformed(tube, stations, whole)
     scale = np.pi * r ** (2 if held_is_length else 3) * c10
     found = {
         "status": codes.reshape(shape),
@@ -189,7 +196,7 @@ def corrected_torque(tube: Actuator, pressure):
         raise ActuatorError(["tube: the source's correction is for alpha = 0 and a constant beta"])
     muscle = Actuator(
         alpha=tube.beta, beta=-tube.beta, length=tube.length, radius=tube.radius, wall=tube.wall,
-        material=tube.material, fiber_radius=tube.fiber_radius, energy=tube.energy,
+        material=tube.material, fiber_radius=tube.fiber_surface, energy=tube.energy, model="source",
     )  # fmt: skip
     stations = (
         0.5 * tube.length * (1.0 - np.cos(np.linspace(0.0, np.pi, CORRECTION_STATIONS)))

@@ -1,7 +1,8 @@
 """From designs in SI units to dimensionless problems and back: the one place where scales are known.
 
 Lengths by the fiber surface's radius r0, pressure by C10, force by pi r0^2 C10, torque by pi r0^3 C10. A problem is a row of
-``solver.problem.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda, C20/C10, C30/C10.
+``solver.problem.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda, C20/C10, C30/C10; of a
+physical tube also the inner radius squared, 0 for a membrane, and whether fibers are loose.
 """
 
 import numpy as np
@@ -10,8 +11,10 @@ ACCURACIES = (1e-10, 1e-2)  # error bounds that may be asked for, scaled: below 
 OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius")  # order of the kernels' columns
 
 
-def problem_rows(design, energy) -> np.ndarray:
-    """Dimensionless problems (n, 11) of a ``design``: name -> array (n,), in SI units and degrees, loads among them."""
+def problem_rows(design, energy, thick=False, loose=False) -> np.ndarray:
+    """Dimensionless problems (n, 11), or (n, 13) where the wall is ``thick`` or the fibers are ``loose``, of a ``design``:
+    name -> array (n,), in SI units and degrees, loads among them.
+    """
     ta, tb = np.tan(np.radians(design["alpha"])), np.tan(np.radians(design["beta"]))
     r, c10 = design["fiber_radius"], design["c10"]
     inner = design["radius"]
@@ -29,6 +32,8 @@ def problem_rows(design, energy) -> np.ndarray:
         design.get("c20", 0.0) / c10,
         design.get("c30", 0.0) / c10,
     )
+    if thick or loose:
+        columns += ((inner / r) ** 2 * float(thick), np.full_like(area, float(loose)))
     return np.column_stack(columns)
 
 

@@ -76,9 +76,13 @@ def _solve(tube, loads, stations, accuracy):
     order = np.argsort(pressure)
     count, steps = len(force), len(pressure)
     design = {name: np.full(count, value) for name, value in tube.design().items()}
-    rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy)
-    course, error = read_course(tube, accuracy) if tube.varies else (uniform(BASE_CELLS), 0.0)
-    unique, index = near_stations(tube, stations, tube.varies)
+    rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy, tube.is_thick, tube.is_loose)
+    whole, error = is_solved_whole(tube), 0.0
+    if tube.varies:
+        course, error = read_course(tube, accuracy)
+    else:
+        course = in_two_halves(tube, rows[0], BASE_CELLS // 2) if whole else uniform(BASE_CELLS)
+    unique, index = near_stations(tube, stations, whole)
     first = np.arange(count + 1, dtype=np.int64) * steps
     pressures = np.tile(pressure[order] / tube.material.c10, count)
     walks = walk_all(rows, first, pressures, course, accuracy - SENSITIVITY * error, unique, soon=True)
@@ -92,7 +96,7 @@ def _solve(tube, loads, stations, accuracy):
     fields = grid(walks.profiles)[..., index]
     force, torque, pressure = np.meshgrid(*(loads[name] for name in LOADS), indexing="ij")
     at_rest = (force == 0.0) & (torque == 0.0) & (pressure == 0.0)
-    fields[at_rest] = undeformed(tube, stations)
+    fields[at_rest] = undeformed(tube, stations, whole)
     limits = np.stack([walks.limits[:, 0], widened(walks.limits[:, 0], walks.limits[:, 1], error)], axis=-1)
     limits = limits.reshape(*shape[:2], 2) * tube.material.c10
     found = {
@@ -101,7 +105,7 @@ def _solve(tube, loads, stations, accuracy):
         "slack_fiber": grid(walks.slack),
         "values": grid(walks.values),
         "bounds": grid(widened(walks.values, walks.bounds, error)),
-        "fields": (fields, tube.varies),
+        "fields": (fields, whole),
         "extra": {
             "limit_pressure": (LOADS[:2], limits[..., 0]),
             "limit_pressure_error": (LOADS[:2], limits[..., 1]),
@@ -115,11 +119,23 @@ def _solve(tube, loads, stations, accuracy):
     return result
 
 
-def undeformed(tube, stations):
+def is_solved_whole(tube):
+    """Whether all of a tube is solved, and not its half up to a plane of symmetry: first integrals are the source's."""
+    return tube.varies or tube.is_thick or tube.is_loose
+
+
+def in_two_halves(tube, row, cells):
+    """``(course, edges, places)`` of a tube that is the same all along, of so many cells in each half."""
+    course = np.zeros((2, 1, 3, 4))
+    course[:, 0, :, 0] = row[:3]
+    return course, np.arange(3) * cells, np.arange(3) * 0.5 * tube.length / tube.fiber_surface
+
+
+def undeformed(tube, stations, whole):
     """Fields of the undeformed tube: stretch 1, the stations themselves, no twist, no tension, no error."""
     alpha, beta = tube.angles(stations / tube.length)
     # half of a tube was solved: the far half's position is mirrored back later
-    far = (stations > 0.5 * tube.length) & (not tube.varies)
+    far = (stations > 0.5 * tube.length) & (not whole)
     near = np.where(far, tube.length - stations, stations) / tube.fiber_surface
     zero = np.zeros_like(stations)
     values = [zero + 1.0, near, zero, np.radians(alpha), np.radians(beta), zero, zero]

@@ -32,6 +32,8 @@ def softer(alpha, beta, radius, wall, fiber_radius, energy):
 
 def thin_wall_attributes(tube) -> dict:
     """Attributes of an answer whose tube has a wall thicker than a tenth of its radius somewhere; none for others."""
+    if tube.is_thick:
+        return {}
     alpha, beta = tube.angles(SHARE)
     return attributes_of(alpha, beta, tube.radius, tube.profile("wall").at(SHARE), tube.fiber_surface, tube.energy)
 

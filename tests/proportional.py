@@ -13,7 +13,16 @@ def in_proportion(problems, first, pressures):
     first, nothing = np.asarray(first), batch.NOTHING
     found = batch._nothing(len(problems), len(pressures), nothing)
     batch.follow_many(
-        problems, pressures[first[:-1]], first, pressures, *batch.uniform(24), 1e-6, *found[:5], nothing, found.profiles
+        problems,
+        batch.wall_columns(problems),
+        pressures[first[:-1]],
+        first,
+        pressures,
+        *batch.uniform(24),
+        1e-6,
+        *found[:5],
+        nothing,
+        found.profiles,
     )
     return found
 

@@ -11,7 +11,7 @@ from commands import run
 from freesweep.bench import peak, scipy_bvp, solver
 from freesweep.bench.flops import density_flops
 from freesweep.bench.sample import Reference, reference, sample, typical
-from freesweep.solver import lagrangian
+from freesweep.solver import membrane
 from freesweep.solver.lanes.vector import WIDTH
 
 
@@ -60,12 +60,12 @@ def density(y, v, cell, load):
 def test_flops_are_counted_once_and_only_where_needed():
     toy = SimpleNamespace(density=density, helper=helper)
     assert density_flops(toy) == 5  # two products, a sum, a difference, a quotient
-    assert 100 < density_flops(lagrangian) < 300
+    assert 100 < density_flops(membrane) < 300
 
 
 def test_the_machine_is_faster_than_the_solver():
     most = peak.peak(seconds=0.005, repeats=2)
-    assert density_flops(lagrangian) / peak.cell_time(repeats=2) < most
+    assert density_flops(membrane) / peak.cell_time(repeats=2) < most
     assert peak.vector_width() in (2, 4, 8)
 
 

@@ -33,7 +33,9 @@ def held(design, pressure, base=24):
     problems = Drawn(np.array([design]), None).problems()
     tube = solve.UNIFORM[0], np.array([0, base]), solve.UNIFORM[2]
     first = np.array([0, 1])
-    return solve._solve_held("blocked_torque", problems, np.zeros(1), first, np.array([pressure]), (tube, 0.0), 1e-6)[0][0]
+    return solve._solve_held("blocked_torque", problems, np.zeros(1), first, np.array([pressure]), (tube, 0.0), 1e-6)[
+        0
+    ][0]
 
 
 def test_fiber_extension_that_leaves_the_clamped_ends_hardly_any_meridian():
@@ -57,8 +59,8 @@ def test_long_tube_whose_ends_have_a_stretch_that_pays_more_turns_back_before_th
     """
     (problem,) = Drawn(np.array([design]), None).problems()
     H, D, area, gamma, ratio, shear = problem[:6]
-    rest = (1.0, (ratio,), shear, 0.0, 0.0, 0.0, 1.0)
-    load = (gamma, (ratio,), shear, pressure, 0.0, 0.0, 1.0)
+    rest = (1.0, (ratio,), (shear,), 0.0, 0.0, 0.0, 1.0)
+    load = (gamma, (ratio,), (shear,), pressure, 0.0, 0.0, 1.0)
     cell = (H, D, area)
     drawn = lagrangian.drawn_in(cell, load)
     u, carried = uniform.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * problem[8], drawn)

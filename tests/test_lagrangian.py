@@ -31,7 +31,7 @@ def random_point(draw, energy=None):
         if G < 0.05:
             continue
         v = draw.uniform(-0.95, 0.95) * np.sqrt(G)
-        cell, load = np.array([H, D, a]), (gamma, (c, c2, c3), k, p, f, m, e)
+        cell, load = np.array([H, D, a]), (gamma, (c, c2, c3), (k,), p, f, m, e)
         return y, v, cell, load, (H, D, a, gamma, c, k, p, f, m, e, c2, c3)
 
 
@@ -83,15 +83,15 @@ def test_partial_derivatives_against_sympy(symbolic, seed):
     room, *partials = lagrangian.density(y, v, cell, load)
     agree(partials, symbolic["density"](*args), size, 1e-13)
     agree(room, min(symbolic["room"](*args)), 1 + H * H / y**4 + D * D + p * y * y + abs(f))
-    agree(lagrangian.conjugate(y, v, cell, load, (0, 0, 0, 0.3, -0.7, 1.9, 0)), symbolic["conjugate"](*args), size)
-    agree(lagrangian.integrands(y, v, cell, load), symbolic["integrands"](*args), raised)
+    agree(lagrangian.conjugate(y, v, cell, load, (0, 0, 0, 0.3, -0.7, 1.9, 0))[:3], symbolic["conjugate"](*args), size)
+    agree(lagrangian.integrands(y, v, cell, load)[:4], symbolic["integrands"](*args), raised)
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_partial_derivatives_against_complex_step(seed):
     """The Python source itself, differentiated without SymPy: L_y, L_v of the density that the outputs integrate."""
     y, v, cell, load, _ = random_point(rng(1000 + seed))
-    gamma, (c, c2, c3), k, p, f, m, e = load
+    gamma, (c, c2, c3), (k,), p, f, m, e = load
     H, D, a = cell
     h = 1e-30j
 
@@ -123,7 +123,7 @@ def test_strain_energy_keeps_its_digits_near_the_undeformed_state(strain, shear)
         first = G + t * q + 1 / (G * t) - 3
         exact = first + ratio * (G * t + 1 / t + q / G - 3) + first**2 / 2 + first**3 / 4
         exact_slope = float(exact) * 2 / strain  # of a quadratic, to first order
-        load = (1.0, (c, 0.5, 0.25), shear, 0.0, 0.0, 0.0, 1.0)
+        load = (1.0, (c, 0.5, 0.25), (shear,), 0.0, 0.0, 0.0, 1.0)
         w, w_y, w_yy = lagrangian.strain_energy(y, np.array([H, D, 1.0]), load)
         rounding = 1e-11 + shear * 1e-15 / abs(strain)  # psi carries the rounding of 1/y^2, as any computed y does
         assert w == pytest.approx(float(exact), rel=rounding, abs=0)
@@ -138,7 +138,7 @@ def test_energy_curvature_of_the_undeformed_wall():
         H, D = half_sum_and_difference(alpha, beta)
         q = tan(radians(alpha)) * tan(radians(beta))
         for shear in (0.0, 1.0):
-            load = (1.0, (0.3, 0.7, -0.2), shear, 0, 0, 0, 1.0)
+            load = (1.0, (0.3, 0.7, -0.2), (shear,), 0, 0, 0, 1.0)
             _, w_y, w_yy = lagrangian.strain_energy(1.0, np.array([H, D, 1.0]), load)
             assert w_y == pytest.approx(0, abs=1e-13 * w_yy)
             assert w_yy == pytest.approx(8 * 1.3 * (1 + q + q * q + shear * H * H), rel=1e-12)
@@ -149,14 +149,14 @@ def test_both_energies_agree_for_mckibben_muscles(seed):
     draw = rng(50 + seed)
     alpha, y = draw.uniform(20, 80), draw.uniform(0.9, 1.02)
     cell = np.array([0.0, tan(radians(alpha)), 0.7])
-    principal, full = ((1.01, (0.4, 0.3, 0.1), shear, 1.5, 0.2, 0.0, 1.0) for shear in (0.0, 1.0))
+    principal, full = ((1.01, (0.4, 0.3, 0.1), (shear,), 1.5, 0.2, 0.0, 1.0) for shear in (0.0, 1.0))
     assert lagrangian.strain_energy(y, cell, principal) == lagrangian.strain_energy(y, cell, full)
     assert lagrangian.density(y, 0.1, cell, principal) == lagrangian.density(y, 0.1, cell, full)
 
 
 def test_energies_differ_where_the_tube_twists():
     H, D = half_sum_and_difference(0, 30)
-    loads = [(1.0, (0.0, 0.0, 0.0), k, 0, 0, 0, 1.0) for k in (0.0, 1.0)]
+    loads = [(1.0, (0.0, 0.0, 0.0), (k,), 0, 0, 0, 1.0) for k in (0.0, 1.0)]
     both = [lagrangian.strain_energy(1.2, np.array([H, D, 1.0]), load)[0] for load in loads]
     psi = H * (1 / 1.44 - 1)
     assert both[1] - both[0] == pytest.approx(1.44 * psi**2, rel=1e-12)  # C01 = 0: y^2 psi^2 in I1
@@ -173,7 +173,7 @@ def test_fiber_tension_of_a_blocked_mckibben_muscle(alpha):
     p = 2.5
     q = -(tan(radians(alpha)) ** 2)
     f = -p * (1 + 2 / q)  # Eq. 2.16
-    cell, load = np.array([0.0, tan(radians(alpha)), 0.8]), (1.0, (0.3, 0.5, 0.1), 1.0, p, f, 0.0, 1.0)
+    cell, load = np.array([0.0, tan(radians(alpha)), 0.8]), (1.0, (0.3, 0.5, 0.1), (1.0,), p, f, 0.0, 1.0)
     for tension in fiber_tensions(alpha, -alpha, lagrangian.fiber_multipliers(1.0, 1.0, cell, load)):
         assert tension == pytest.approx(p * cos(radians(alpha)) / sin(radians(alpha)) ** 2, rel=1e-12)
 
@@ -187,7 +187,7 @@ def test_fiber_tensions_balance_the_blocked_tube(alpha, beta):
     p = 1.7
     f = closed_form.blocked_force(alpha, beta, 1.0, p) / pi
     H, D = half_sum_and_difference(alpha, beta)
-    load = (1.0, (0.2, 0.5, 0.1), 1.0, p, float(f), 0.0, 1.0)
+    load = (1.0, (0.2, 0.5, 0.1), (1.0,), p, float(f), 0.0, 1.0)
     tension = fiber_tensions(alpha, beta, lagrangian.fiber_multipliers(1.0, 1.0, np.array([H, D, 0.5]), load))
     sines, cosines = np.sin(np.radians([alpha, beta])), np.cos(np.radians([alpha, beta]))
     assert np.dot(tension, cosines) == pytest.approx(p + f, rel=1e-11)
@@ -210,7 +210,7 @@ def test_blocked_torque_can_need_fibers_that_push(alpha, beta, expected):
     p = 0.8
     m = float(closed_form.blocked_torque(alpha, beta, 1.0, p)) / pi
     H, D = half_sum_and_difference(alpha, beta)
-    load = (1.0, (0.3, 0.5, 0.1), 1.0, p, 0.0, m, 1.0)
+    load = (1.0, (0.3, 0.5, 0.1), (1.0,), p, 0.0, m, 1.0)
     tau = lagrangian.fiber_multipliers(1.0, 1.0, np.array([H, D, 0.6]), load)
     assert np.array(tau) / p == pytest.approx(expected, abs=0.0051)
 
@@ -219,7 +219,7 @@ def test_blocked_torque_can_need_fibers_that_push(alpha, beta, expected):
 def test_fiber_multipliers_solve_the_constrained_problem(seed):
     """With the constraints of Eqs. 2.3 and 2.4 priced by the multipliers, nothing is gained by changing G or psi."""
     y, v, cell, load, _ = random_point(rng(2000 + seed))
-    _, (c, c2, c3), k, p, f, m, e = load
+    _, (c, c2, c3), (k,), p, f, m, e = load
     H, D, a = cell
     psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
     tau_a, tau_b = lagrangian.fiber_multipliers(y, np.sqrt(1 + G_1 - v * v), cell, load)

@@ -102,7 +102,7 @@ def _yeoh(points):
 @numba.njit(error_model="numpy", fastmath={"contract"})
 def _densities(points, rubber, out):
     cell, load = (get(points, 2), get(points, 3), get(points, 4)), (
-        get(points, 5), rubber(points), get(points, 6), get(points, 7), get(points, 8), get(points, 9), get(points, 10),
+        get(points, 5), rubber(points), (get(points, 6),), get(points, 7), get(points, 8), get(points, 9), get(points, 10),
     )  # fmt: skip
     found = lagrangian.density(get(points, 0), get(points, 1), cell, load)
     for k in range(6):
@@ -112,7 +112,7 @@ def _densities(points, rubber, out):
 @numba.njit(error_model="numpy", fastmath={"contract"})
 def _density(q, out):
     found = lagrangian.density(
-        q[0], q[1], (q[2], q[3], q[4]), (q[5], (q[11], q[12], q[13]), q[6], q[7], q[8], q[9], q[10])
+        q[0], q[1], (q[2], q[3], q[4]), (q[5], (q[11], q[12], q[13]), (q[6],), q[7], q[8], q[9], q[10])
     )
     for k in range(6):
         out[k] = found[k]

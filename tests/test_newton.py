@@ -40,16 +40,16 @@ def density(y, v, cell, load):
 def conjugate(y, v, cell, load, direction):
     if cell[0] == BRATU:
         growth = direction[3] * exp(y - 1.0)
-        return growth, growth, 0.0
+        return growth, growth, 0.0, 0.0
     root = sqrt(1.0 + v * v)
-    return direction[3] * root, 0.0, direction[3] * v / root
+    return direction[3] * root, 0.0, direction[3] * v / root, 0.0
 
 
 @numba.njit
 def integrands(y, v, cell, load):
     """Length of the axis, volume/pi, length of the meridian, area/(2 pi)."""
     root = sqrt(1.0 + v * v)
-    return 1.0, y * y, root, y * root
+    return 1.0, y * y, root, y * root, 0.0
 
 
 @numba.njit
@@ -192,7 +192,7 @@ def fold_of_bratu(cells, begin):
     assert on_one_mesh(x, y, BRATU, load)[0] == newton.CONVERGED
     track = make_track(cells, True)
     track.x[:], track.y[:] = x, y
-    path, own, work = Path(REST, ALONG_MU, 0.0), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
+    path, own, work = Path(REST, ALONG_MU, 0.0, False), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
     status, _, mu, slope = correct(density, track, track.y, begin, cells, own, path, 1.0, track.tangent, work)
     assert status == FOLLOWED
     slope, step = make_unit(track, cells, mu, slope, path), 0.01
@@ -257,7 +257,7 @@ def test_holding_the_conjugate_integral_stabilises_the_upper_branch(strength, pa
     cells, load = np.array([[BRATU, 0.0, 0.0]]), (0.0, 0.0, 0.0, strength, 0.0, 0.0, 0.0)
     assert curvature(x, y, BRATU, load, True) == (0 if sign > 0 else 1)
     work = np.zeros((13, len(x)))
-    target = held.hold(conjugate, x, y, len(x) - 1, cells, load, ALONG_MU, work[8])
+    target, _ = held.hold(conjugate, x, y, len(x) - 1, cells, load, ALONG_MU, work[8])
     status, unstable, mu, sigma = held.solve_held(
         density, conjugate, x, y, len(x) - 1, True, cells, REST, ALONG_MU, 0.9 * strength, target, 1e-12, 60, work
     )

@@ -18,7 +18,7 @@ def lane_passes(count, x, y, columns, work):
     n = len(x) - 1
     cell = (get(columns, 0), get(columns, 1), get(columns, 2))
     load = (
-        get(columns, 3), (get(columns, 4),), get(columns, 5), get(columns, 6), get(columns, 7), get(columns, 8),
+        get(columns, 3), (get(columns, 4),), (get(columns, 5),), get(columns, 6), get(columns, 7), get(columns, 8),
         get(columns, 9),
     )  # fmt: skip
     rest, none = spread(0.0), mask_of(0)
@@ -35,5 +35,5 @@ def lane_cell_time(repeats=5) -> float:
     work[:] = 0.0
     x = np.linspace(0.0, 10.0, CELLS + 1)
     shapes[0], shapes[1] = x[:, None], 1.0 + 0.2 * (1.0 - np.exp(-x))[:, None]
-    columns[:] = np.array([*TUBE, LOAD[0], RUBBER[0], *LOAD[2:]])[:, None]
+    columns[:] = np.array([*TUBE, LOAD[0], RUBBER[0], *LOAD[2], *LOAD[3:]])[:, None]
     return median_time(lane_passes, repeats, shapes[0], shapes[1], columns, work) / (PASSES * CELLS * WIDTH)

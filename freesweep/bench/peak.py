@@ -19,7 +19,7 @@ CHAINS = (
 )
 CELLS, PASSES = 96, 500  # of a mesh, timed at once
 TUBE, RUBBER = (0.1, 0.6, 0.7), (0.5, 0.0, 0.0)  # any: a pass takes the same time
-LOAD = (1.0, RUBBER, 1.0, 1.0, 0.0, 0.0, 1.0)
+LOAD = (1.0, RUBBER, (1.0,), 1.0, 0.0, 0.0, 1.0)
 EXTRA = 36  # flops of a cell beside its density: newton.assemble, factor, substitute
 
 

@@ -56,7 +56,7 @@ def integrals(y, q, weights, cell, load, out):
         G = 1.0 + lagrangian.kinematics(y[i], cell, load)[3]
         T = load[3] * y[i] * y[i] + load[4]
         v = -q[i] * sqrt(G) / sqrt(T * T + q[i] * q[i])
-        s, volume, psi, _ = lagrangian.integrands(y[i], v, cell, load)
+        s, volume, psi, _, _ = lagrangian.integrands(y[i], v, cell, load)
         out[0] += weights[i] * s
         out[1] += weights[i] * volume
         out[2] += weights[i] * psi
@@ -76,7 +76,7 @@ def solve_all(chosen, stretches, tolerance):
     for problem in chosen.problems:
         cell, half, solution = tuple(problem[:3]), 0.5 * problem[8], None
         for p in chosen.pressures:
-            load = (problem[3], (problem[4], problem[9], problem[10]), problem[5], p, problem[6], problem[7], 1.0)
+            load = (problem[3], (problem[4], problem[9], problem[10]), (problem[5],), p, problem[6], problem[7], 1.0)
             begun = time.thread_time()
             found = _solve(cell, load, half, stretches[row], solution, tolerance)
             if found.status == 0:

@@ -146,14 +146,14 @@ def _grid(designs, pressures, repeats):
 
 def _newton_passes(repeats):
     """Cost of a cell in a Newton pass, one design at a time and vectors of them, beside the machine's peak."""
-    from ..solver import lagrangian
+    from ..solver import membrane
     from ..solver.lanes.vector import WIDTH
     from .flops import density_flops
     from .lane_pass import EXTRA as OF_VECTORS
     from .lane_pass import lane_cell_time
     from .peak import EXTRA, cell_time, peak
 
-    density, most = density_flops(lagrangian), peak(repeats=repeats)
+    density, most = density_flops(membrane), peak(repeats=repeats)
     found = []
     for designs, flops, seconds in (
         (1, density + EXTRA, cell_time(repeats)),

@@ -2,6 +2,8 @@
 
 import sys
 
+from ..tube_model import DEFAULT, FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
+
 CONSTANTS = ("c10", "c01", "c20", "c30")
 
 
@@ -40,7 +42,15 @@ def add_actuator(commands, name, text, run, rubber=True):
         command.add_argument(f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'")
     add_rubber(command, "" if rubber else "; the locked shape needs none")
     command.add_argument("--fiber-extension", default=1.0, metavar="G", help="stretch of the fibers, 1 or more")
-    command.add_argument("--fiber-radius", metavar="L", help="where the fibers lie; default: the inner radius")
+    command.add_argument(
+        "--model", choices=tuple(MODELS), default=DEFAULT,
+        help=f"physical: thick wall, loose fibers at the outer radius; source: what the source computes (default {DEFAULT})",
+    )  # fmt: skip
+    command.add_argument(
+        "--fiber-radius", metavar="L", help=f"where the fibers lie: a radius, or one of {', '.join(FIBER_PLACES)}"
+    )
+    command.add_argument("--wall-model", choices=WALL_MODELS, help="if not as the model has it")
+    command.add_argument("--fibers", choices=FIBERS, help="if not as the model has it")
     command.add_argument(
         "--energy", choices=("full", "principal"), default="full", help="principal: Eq. 2.5 as printed"
     )
@@ -67,12 +77,16 @@ def tube_of(options):
 
     faults = []
     names = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")
-    values = read_options(options, names, faults)
+    is_word = options.fiber_radius in FIBER_PLACES
+    values = read_options(options, names[:-1] if is_word else names, faults)
+    words = {name: getattr(options, name) for name in ("model", "wall_model", "fibers", "energy")}
+    if is_word:
+        words["fiber_radius"] = options.fiber_radius
     any_rubber = () if options.rubber else ("100 kPa",)
     material = read_rubber(options, faults, *any_rubber)
     if faults:
         raise ValueError("\n".join(["cannot read this actuator:", *(f"  - {fault}" for fault in faults)]))
-    return Actuator(**values, material=material, energy=options.energy)
+    return Actuator(**values, **words, material=material)
 
 
 def read_options(options, names, faults) -> dict:

@@ -10,8 +10,6 @@ A tube that is the same all along needs none: its first integral ``L - v L_v`` g
     s = T G/(T sqrt(G) + U(y_m) - U(y)),    U(y) = L(y, 0).
 """
 
-from math import sqrt
-
 from ..jit import kernel
 from . import lagrangian
 from .mesh import cell_at
@@ -28,14 +26,6 @@ def axial_stretch(y, constant, cell, load):
     """s of a tube that is the same all along, from the ``constant`` U(y_m) of its first integral."""
     meridional, pull, at_rest = lagrangian.uniform_tube(y, cell, load)
     return meridional * pull / (pull + constant - at_rest)
-
-
-@kernel
-def axial_of_flux(y, flux, cell, load):
-    """s of any tube from its flux q."""
-    meridional, pull, _ = lagrangian.uniform_tube(y, cell, load)
-    T = pull / meridional
-    return pull / sqrt(T * T + flux * flux)
 
 
 @kernel

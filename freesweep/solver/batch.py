@@ -7,7 +7,7 @@ from numba import config
 
 from ..interpret import at_once
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
-from .problem import MOONEY_RIVLIN, SECOND, THIRD, YEOH
+from .problem import MOONEY_RIVLIN, SECOND, THIRD, YEOH, wall_columns
 from .profile import FIELDS
 from .status import PENDING
 from .varying.free_states import follow_many
@@ -46,7 +46,8 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     found = _nothing(len(problems), len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
     arguments = (
-        problems, settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
+        problems, wall_columns(problems), settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5],
+        stations, found.profiles,
     )  # fmt: skip
     done = False
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:

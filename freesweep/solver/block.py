@@ -12,7 +12,7 @@ from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
 
 @entry_point
 def block_many(
-    problems, targets, kind, first, pressures, course, edges, places, accuracy, values, bounds, status, stable
+    problems, walls, targets, kind, first, pressures, course, edges, places, accuracy, values, bounds, status, stable
 ):  # fmt: skip
     """The force that holds a length (``kind`` HELD_LENGTH), or the torque that holds a rotation, of rows of problems.
 
@@ -55,8 +55,8 @@ def block_many(
                 status[row], values[row], bounds[row], stable[row] = OK, 0.0, 0.0, 1
             elif turns:
                 found, unstable, _, _, _, _, _ = find_on_some_mesh(
-                    problems[k], p, other, targets[k] if varying else 0.5 * targets[k], kind, own_course, tube, accuracy,
-                    space, out,
+                    problems[k], walls, p, other, targets[k] if varying else 0.5 * targets[k], kind, own_course, tube,
+                    accuracy, space, out,
                 )  # fmt: skip
                 status[row] = found
                 if found == OK or found == INACCURATE:

@@ -122,7 +122,7 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
     n = edges[len(edges) - 1]
     x, y, cell = shapes[0, : n + 1], shapes[1, : n + 1], at_point(course, 0, 0.0)
     length = places[len(places) - 1]
-    load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], p, force, 0.0, 1.0)
+    load = (problem[GAMMA], rubber_of(problem), (problem[SHEAR],), p, force, 0.0, 1.0)
     least[0], least[1] = np.nan, np.nan
     p_c = critical(cell, load, length)
     if not p_c > 0.0 or not p_c + force > 0.0:

@@ -28,6 +28,7 @@ CHANGE = 0.05  # largest change of y in one step, relative, and of the load, wei
 FIRST_STEP = 0.2  # of that: nothing is known of the bend yet
 LEAST_STEP = 1e-7  # below it the branch is lost
 DEFECT = 0.03  # of the larger of two slopes: by which a chord may differ from their mean
+BEND, SHORT = 0.6, 2e-3  # and in a bend, where no step makes it less: half their difference, in a step so short
 GROWTH = 1.6  # of the step where the defect is small
 ROUNDING = 1e-9  # relative: a defect that is none
 CORRECTIONS = 12  # of Newton's method; three suffice where a step is taken
@@ -41,11 +42,14 @@ LOST, FOLLOWED = 0, 1
 
 
 class Path(NamedTuple):
-    """Loads ``origin + mu direction``; ``floor`` is added to |mu| where its size counts."""
+    """Loads ``origin + mu direction``; ``floor`` is added to |mu| where its size counts. Where the density is only piecewise
+    smooth, the branch ``bends`` at once where all cells change their kind together.
+    """
 
     origin: tuple
     direction: tuple
     floor: float
+    bends: bool
 
 
 class Track(NamedTuple):
@@ -233,7 +237,7 @@ def advance(density, track, n, cells, path, mu, tangent_mu, step, work):
         )
         if status == FOLLOWED:
             wrong = defect(track, path, mu, tangent_mu, next_mu, next_tangent_mu, step)
-            if wrong < DEFECT:
+            if wrong < DEFECT or (path.bends and step < SHORT and wrong < BEND):
                 return (
                     FOLLOWED,
                     negative,

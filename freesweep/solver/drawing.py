@@ -44,7 +44,7 @@ def refine(base, doublings, tube, load, accuracy, fine, work):
     holds = by_force or by_torque
     density, conjugate = lagrangian.density, lagrangian.conjugate
     own = fill(course, edges, fine[0], count, base, cells)
-    target = held.hold(conjugate, fine[0], fine[1], count, own, now, direction, work[8]) if holds else 0.0
+    target = held.hold(conjugate, fine[0], fine[1], count, own, now, direction, work[8])[0] if holds else 0.0
     for i in range(count // 2 + 1):
         fine[3, i] = fine[4, i]
     nested.go_finer(x, base, edges, doublings, fine, work)

@@ -21,7 +21,7 @@ from ..jit import kernel
 from . import guide, held, lagrangian, march, neck_march, neck_shape, nested, newton, pinned, turn
 from .march import EVERY, NO_TURN, begin, cylinder_multiplier, from_free, from_rest
 from .pinned import BY_SHARE
-from .problem import GAMMA, SHEAR, rubber_of
+from .problem import GAMMA, rubber_of, wall_of
 from .stability import pushed, unstable_directions
 from .status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
@@ -41,7 +41,7 @@ def at_pressure(load, p):
 
 
 @kernel
-def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
+def find(problem, walls, p, other, target, kind, course, tube, accuracy, space, out):
     """One held state on one base mesh; returns ``(status, unstable directions, doublings, load, share of it reached, whether
     that is certain, path)``: a way's end that is certain no finer mesh has to confirm.
     """
@@ -53,7 +53,7 @@ def find(problem, p, other, target, kind, course, tube, accuracy, space, out):
     varying = course.shape[0] > 1 or course.shape[1] > 1
     gamma = problem[GAMMA]
     force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
-    load = (gamma, rubber_of(problem), problem[SHEAR], p, force, torque, 1.0)
+    load = (gamma, rubber_of(problem), wall_of(problem, walls), p, force, torque, 1.0)
     unit = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     cell = guide.cell_along(tube, 0.5)
     # a straight fiber cannot stretch: whatever the force, the length stays (the pole of Eq. 2.16)

@@ -3,10 +3,10 @@
 With ``C = sum h c(y_mid, slope)`` held at a target t, the load ``mu`` conjugate to it (c = dL/dmu) is unknown::
 
     [ H    b ] [ dy  ]     [ g     ]
-    [ b^T  0 ] [ dmu ] = - [ C - t ],    b = -dC/dy
+    [ b^T -k ] [ dmu ] = - [ t - C ],    b = -dC/dy,  k = dC/dmu where y stays (0 where J is linear in mu)
 
-solved with two tridiagonal solutions. ``sigma = b^T H^-1 b = dC/dmu`` along the branch: positive as long as the branch is
-stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
+solved with two tridiagonal solutions. ``sigma = k + b^T H^-1 b = dC/dmu`` along the branch: positive as long as the branch
+is stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
 """
 
 from ..jit import kernel
@@ -27,11 +27,11 @@ from .newton import (
 
 @kernel
 def loaded(load, direction, mu):
-    """The load changed by ``mu`` along ``direction``, component by component; the rubber stays."""
+    """The load changed by ``mu`` along ``direction``, component by component; rubber and wall stay."""
     return (
         load[0] + mu * direction[0],
         load[1],
-        load[2] + mu * direction[2],
+        load[2],
         load[3] + mu * direction[3],
         load[4] + mu * direction[4],
         load[5] + mu * direction[5],
@@ -41,16 +41,19 @@ def loaded(load, direction, mu):
 
 @kernel
 def hold(conjugate, x, y, n, cells, load, direction, b):
-    """The held integral C, and its gradient as ``b = -dC/dy``."""
-    total = 0.0
+    """The held integral C, its gradient as ``b = -dC/dy``, and k: ``(C, k)``."""
+    total, k = 0.0, 0.0
     b[0] = 0.0
     for j in range(n):
         h = x[j + 1] - x[j]
-        c, c_y, c_v = conjugate(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell_at(cells, j), load, direction)
+        c, c_y, c_v, c_mu = conjugate(
+            0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell_at(cells, j), load, direction
+        )
         total += h * c
+        k += h * c_mu
         b[j] -= 0.5 * h * c_y - c_v
         b[j + 1] = -(0.5 * h * c_y + c_v)
-    return total
+    return total, k
 
 
 @kernel
@@ -84,12 +87,12 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
         for i in range(n + 1):
             y[i], least[i] = trial[i], room[i]
         negative = factor(d, e, first, last, inverse)
-        value = hold(conjugate, x, y, n, cells, now, direction, b)
+        value, sigma = hold(conjugate, x, y, n, cells, now, direction, b)
         substitute(inverse, e, first, last, g, step)
         substitute(inverse, e, first, last, b, response)
         response[0] = 0.0
         response[n] = response[n] if free else 0.0
-        sigma, lag = 0.0, 0.0
+        lag = 0.0
         for i in range(first, last + 1):
             response[i] = -response[i]
             sigma -= b[i] * response[i]

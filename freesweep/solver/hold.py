@@ -11,7 +11,7 @@ from .course import copy
 from .drawing import draw
 from .find import FROM_REST, HELD_LENGTH, MESH_CHANGE, find, valued
 from .march import cylinder_multiplier
-from .problem import GAMMA, LENGTH, SHEAR, D, H, rubber_of
+from .problem import GAMMA, LENGTH, D, H, rubber_of, wall_of
 from .profile import FIELDS
 from .slack import slack_fibers
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK, PENDING
@@ -33,12 +33,12 @@ def workspace(base, varying):
 
 
 @kernel
-def layers(problem, p, other, kind, tube):
+def layers(problem, walls, p, other, kind, tube):
     """How many times the thinnest end layer of a cylinder under the load fits into the length that is solved."""
     course, places = tube[0], tube[5]
     force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
     unit = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-    load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], p, force, torque, 1.0)
+    load = (problem[GAMMA], rubber_of(problem), wall_of(problem, walls), p, force, torque, 1.0)
     largest = 0.0
     for k in range(1 if course.shape[0] == 1 and course.shape[1] == 1 else guide.PLACES):
         cell = guide.cell_along(tube, k / (guide.PLACES - 1))
@@ -51,7 +51,7 @@ def layers(problem, p, other, kind, tube):
 
 
 @kernel
-def find_on_some_mesh(problem, p, other, target, kind, course, tube, accuracy, space, out):
+def find_on_some_mesh(problem, walls, p, other, target, kind, course, tube, accuracy, space, out):
     """As :func:`find`, on finer base meshes where one does not do: where the solver fails, misses the accuracy, or meets an
     end of the way that is not certain. Returns also the tube and the scratch that were used.
 
@@ -60,14 +60,14 @@ def find_on_some_mesh(problem, p, other, target, kind, course, tube, accuracy, s
     """
     _, edges, cells, free, middle, places = tube
     base, factor = edges[len(edges) - 1], 1
-    while factor * base <= FINEST and layers(problem, p, other, kind, tube) > THINNEST_LAYER * factor * base:
+    while factor * base <= FINEST and layers(problem, walls, p, other, kind, tube) > THINNEST_LAYER * factor * base:
         factor *= FINER
     if factor > 1:
         space, cells = workspace(factor * base, len(cells) > 1)
         tube = (tube[0], factor * edges, cells, free, factor * middle, places)
     copy(course, tube[0])  # a march leaves it changed
     status, unstable, doublings, now, reached, sure, path = find(
-        problem, p, other, target, kind, course, tube, accuracy, space, out
+        problem, walls, p, other, target, kind, course, tube, accuracy, space, out
     )
     doubtful, differed = valued(status) and unstable > 0 and out[0, nested.MIDDLE] != 1.0, False
     while (doubtful or not (status == OK or status == COMPRESSED or sure)) and FINER * factor * base <= FINEST:
@@ -76,7 +76,7 @@ def find_on_some_mesh(problem, p, other, target, kind, course, tube, accuracy, s
         finer_tube, finer_out = (tube[0].copy(), factor * edges, cells, free, factor * middle, places), out.copy()
         copy(course, finer_tube[0])
         again, others, levels, then, came, certain, way = find(
-            problem, p, other, target, kind, course, finer_tube, accuracy, finer_space, finer_out
+            problem, walls, p, other, target, kind, course, finer_tube, accuracy, finer_space, finer_out
         )
         same = valued(status) and valued(again) and alike(out, finer_out)
         if status == INACCURATE and again != OK and (same or not doubtful):
@@ -122,8 +122,8 @@ def at_rest(stations, fields, problem):
 
 @entry_point
 def hold_many(
-    problem, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds, status, stable,
-    slack, paths, least, stations, profiles,
+    problem, walls, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds, status,
+    stable, slack, paths, least, stations, profiles,
 ):  # fmt: skip
     """Held states of one design, for arrays of pressure, of the load that is not unknown, and of the held quantity.
 
@@ -173,7 +173,7 @@ def hold_many(
             )
         else:
             status[i], unstable, doublings, now, tube, space, paths[i] = find_on_some_mesh(
-                problem, pressures[i], others[i], target, kind, course, first_tube, accuracy, first_space, out
+                problem, walls, pressures[i], others[i], target, kind, course, first_tube, accuracy, first_space, out
             )
         if status[i] == OK or status[i] == INACCURATE:
             for k in range(6):

@@ -15,7 +15,7 @@ from ..interpret import at_once
 from .block import block_many
 from .find import HELD_LENGTH
 from .lagrangian import ROUNDING
-from .problem import FORCE, MOONEY_RIVLIN, SECOND, THIRD, TORQUE, YEOH
+from .problem import FORCE, MOONEY_RIVLIN, SECOND, THIRD, TORQUE, YEOH, wall_columns
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 5  # solutions of one state, at most; two do nearly always
@@ -49,7 +49,7 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
     the compiler (:mod:`freesweep.interpret`).
     """
     count, found = len(pressures), _pending(len(pressures))
-    scalar = (problems, targets, kind, first, pressures, *tube, accuracy, *found)
+    scalar = (problems, wall_columns(problems), targets, kind, first, pressures, *tube, accuracy, *found)
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
         from .lanes.hold import seek_lanes
 

@@ -244,7 +244,7 @@ def from_free(x, y, tube, course, cell, load, direction, target, allowed, work):
         return NOT_CONVERGED, 0.0, 0.0, NO_TURN, nothing
     status, mu, t, turn = march(x, y, tube, nothing, part, 1.0, 0.0, 0, work)
     own, now = pinned.at_share(nothing, tube, x, n, n, 1.0)
-    first = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, work[8])
+    first, _ = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, work[8])
     way = (load, load, first, target, direction, True, course, cell, False)
     if status != OK:
         return status, 0.0, 0.0, NO_TURN, way

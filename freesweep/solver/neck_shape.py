@@ -86,7 +86,7 @@ def part(cell, load, top, folds, nodes, curve, row):
         quadrature.integrate(cell, load, top, 0.0, total, total, nodes, curve, row)
         if beyond > 0.0:
             rest = beyond / sqrt(L_yy / L_vv)
-            length, volume, twist, energy = lagrangian.integrands(top, 0.0, cell, load)
+            length, volume, twist, energy, _ = lagrangian.integrands(top, 0.0, cell, load)
             row[0], row[1], row[2], row[3] = (
                 row[0] + rest * length, row[1] + rest * volume, row[2] + rest * twist, row[3] + rest * energy
             )  # fmt: skip

@@ -62,11 +62,11 @@ def slopes_by_share(x, y, n, base, tube, way, t, mu, work):
     own, load = at_share(way, tube, x, n, base, t + SHARE_STEP)
     now = held.loaded(load, direction, mu)
     assemble(lagrangian.density, x, y, n, own, now, False, work[6], work[6], work[10], work[11], work[12])
-    after = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, work[11])
+    after, _ = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, work[11])
     own, load = at_share(way, tube, x, n, base, t - SHARE_STEP)
     now = held.loaded(load, direction, mu)
     assemble(lagrangian.density, x, y, n, own, now, False, work[6], work[6], work[4], work[11], work[12])
-    before = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, work[11])
+    before, _ = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, work[11])
     for i in range(n + 1):
         work[10, i] = (work[10, i] - work[4, i]) / (2.0 * SHARE_STEP)
     return (after - before) / (2.0 * SHARE_STEP)
@@ -107,7 +107,7 @@ def solve(x, y, n, base, tube, way, k, value, t, mu, tolerance, work):
         for i in range(n + 1):
             y[i], least[i] = trial[i], room[i]
         negative = factor(d, e, 1, last, inverse)
-        total = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, b)
+        total, sigma = held.hold(lagrangian.conjugate, x, y, n, own, now, direction, b)
         total_t = slopes_by_share(x, y, n, base, tube, way, t, mu, work)
         substitute(inverse, e, 1, last, g, step)
         substitute(inverse, e, 1, last, b, of_mu)
@@ -115,7 +115,7 @@ def solve(x, y, n, base, tube, way, k, value, t, mu, tolerance, work):
         for row in (step, of_mu, of_t):
             row[0] = 0.0
             row[n] = row[n] if free else 0.0
-        sigma, by_t, miss = 0.0, 0.0, 0.0
+        by_t, miss = 0.0, 0.0
         for i in range(1, last + 1):
             sigma += b[i] * of_mu[i]
             by_t += b[i] * of_t[i]

@@ -4,6 +4,8 @@ from ..jit import kernel
 
 PROBLEM_SIZE = 11
 H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH, SECOND, THIRD = range(PROBLEM_SIZE)
+INNER, LOOSE = PROBLEM_SIZE, PROBLEM_SIZE + 1  # of physical tubes only
+SOURCE, PHYSICAL = (SHEAR,), (SHEAR, INNER, LOOSE)  # columns of a wall
 MOONEY_RIVLIN, YEOH = (RATIO,), (RATIO, SECOND, THIRD)  # columns of a rubber's constants, over C10
 
 
@@ -11,3 +13,16 @@ MOONEY_RIVLIN, YEOH = (RATIO,), (RATIO, SECOND, THIRD)  # columns of a rubber's 
 def rubber_of(problem):
     """What :mod:`lagrangian` takes as a rubber: C01/C10, C2/C1, C3/C1."""
     return problem[RATIO], problem[SECOND], problem[THIRD]
+
+
+def wall_columns(problems):
+    """Columns of the walls of rows of problems."""
+    return SOURCE if problems.shape[-1] == PROBLEM_SIZE else PHYSICAL
+
+
+@kernel
+def wall_of(problem, columns):
+    """What :mod:`lagrangian` takes as a wall: (k,), or (k, inner, loose)."""
+    if len(columns) == 1:
+        return (problem[columns[0]],)
+    return problem[columns[0]], problem[columns[1]], problem[columns[2]]

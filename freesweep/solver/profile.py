@@ -9,8 +9,8 @@ from math import atan, sqrt
 import numpy as np
 
 from ..jit import kernel
-from . import lagrangian
-from .axial import axial_of_flux, axial_stretch, flux_at, is_alike
+from . import kinks, lagrangian
+from .axial import axial_stretch, flux_at, is_alike
 from .course import at_point, fill
 from .finest import LEFT, MESHES, load_of, mesh_of
 from .lagrangian import LAST_STEP, ROUNDING
@@ -35,16 +35,17 @@ def add(nodes, at, mesh, share, numbers):
 @kernel
 def extrapolate_nodes(base, n, tube, load, fine, nodes):
     """x, y, axial position, twist and flux at the nodes of the mesh of n cells, to fourth order, in rows of ``nodes``; from
-    column n + 1 on, at every second node, by how much those from coarser meshes differ, or spread from beside.
+    column n + 1 on, at every second node, by how much those from coarser meshes differ, or spread from beside. Whether the
+    kind of cell changes along the tube.
     """
     course, edges, cells, _, _, _ = tube
-    alike, behind = is_alike(course), n + 1
+    alike, behind, broken = is_alike(course), n + 1, False
     for which in range(MESHES):
         x, y = mesh_of(which, n, fine)
         now, count = load_of(which, load, fine), len(x) - 1
         own = fill(course, edges, x, count, base, cells)
         constant = lagrangian.uniform_tube(y[count], cell_at(own, 0), now)[2] if alike else 0.0
-        z, twist = 0.0, 0.0
+        z, twist, before = 0.0, 0.0, -1.0
         for j in range(count + 1):
             numbers = (x[j], y[j], z, twist, 0.0 if alike else flux_at(x, y, j, count, own, now))
             half = j >> 1
@@ -55,7 +56,15 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
             if j < count:
                 cell = cell_at(own, j)
                 h, middle = x[j + 1] - x[j], 0.5 * (y[j] + y[j + 1])
-                s, _, turn, _ = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
+                s, _, turn, _, kind = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
+                if kind != before and j > 0:
+                    broken = True
+                    lacks = kinks.lacking(
+                        lagrangian.density, lagrangian.integrands, x, y, count, edges, j, before, own, now
+                    )
+                    z += lacks[2]
+                    twist += lacks[4]
+                before = kind
                 z += h * (axial_stretch(middle, constant, cell, now) if alike else s)
                 twist += h * turn
     for k in range(n // 2 + 1):
@@ -69,6 +78,7 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
     for k in range(n // 2 - 1, -1, -1):
         for i in range(1, 5):
             nodes[i, behind + k] = max(nodes[i, behind + k], SPREAD * nodes[i, behind + k + 1])
+    return broken
 
 
 @kernel
@@ -85,10 +95,12 @@ def weights(x, first, stride, at, out):
 @kernel
 def local(y, flux, constant, alike, cell, load):
     """Angles after deformation [rad], and multipliers of both families with their extension, at one place."""
-    psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
+    if alike:
+        psi, _, _, G_1, _, _ = lagrangian.kinematics(y, cell, load)
+        alpha, beta = lagrangian.fiber_multipliers(y, axial_stretch(y, constant, cell, load), cell, load)
+    else:
+        psi, G_1, alpha, beta = lagrangian.at_flux(y, flux, cell, load)
     meridional = sqrt(1.0 + G_1)
-    s = axial_stretch(y, constant, cell, load) if alike else axial_of_flux(y, flux, cell, load)
-    alpha, beta = lagrangian.fiber_multipliers(y, s, cell, load)
     return (
         atan(y * (cell[0] + cell[1] + psi) / meridional), atan(y * (cell[0] - cell[1] + psi) / meridional),
         load[0] * alpha, load[0] * beta,
@@ -125,9 +137,9 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
     """
     course, edges, _, _, _, _ = tube
     n = base << (doublings - 1)
-    extrapolate_nodes(base, n, tube, load, fine, nodes)
+    order = 1.0 if extrapolate_nodes(base, n, tube, load, fine, nodes) else 15.0  # as in :func:`nested.extrapolate`
     x, behind, alike = nodes[0], n + 1, is_alike(course)
-    fourth = SAFETY / 15.0
+    fourth = SAFETY / order
     value, coarse, number, bound, share = np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5), np.empty(5)
     load, other = extrapolated_loads(load, fine)
     rounding = ROUNDING + LAST_STEP * max(fine[3, LEFT], 0.0)
@@ -164,7 +176,7 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
             for k in range(STENCIL):
                 number[r] += value[k] * nodes[r, first + k]
                 bound[r] += coarse[k] * nodes[r, 2 * half + k * 2]
-            bound[r] = abs(bound[r] - number[r]) / 15.0
+            bound[r] = abs(bound[r] - number[r]) / order
             if linear:
                 number[r] = nodes[r, j] + at * (nodes[r, j + 1] - nodes[r, j])
                 bound[r] = abs(nodes[r, j + 1] - nodes[r, j]) if r == 1 or r == 4 else 0.0

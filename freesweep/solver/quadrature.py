@@ -30,12 +30,12 @@ def integrate(cell, load, u, rate, half, total, nodes, curve, row):
     length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
     for k in range(nodes):
         h = curve[0, k + 1] - curve[0, k]
-        s, v, t, w = lagrangian.integrands(curve[4, k], 0.0, cell, load)
+        s, v, t, w, _ = lagrangian.integrands(curve[4, k], 0.0, cell, load)
         length += h * s * curve[3, k]
         volume += h * v * curve[3, k]
         twist += h * t
         energy += h * w
-    s, v, t, w = lagrangian.integrands(u, 0.0, cell, load)
+    s, v, t, w, _ = lagrangian.integrands(u, 0.0, cell, load)
     rest = half - total
     row[0], row[1], row[2], row[3] = length + rest * s, volume + rest * v, twist + rest * t, energy + rest * w
     row[nested.MIDDLE], row[nested.MULTIPLIER] = u + (curve[1, nodes] - u) * exp(-rate * rest), 0.0
@@ -44,7 +44,7 @@ def integrate(cell, load, u, rate, half, total, nodes, curve, row):
 @kernel
 def finish(table, out):
     """Values and bounds from the quadratures; the largest scaled bound."""
-    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], 0.0, out[0], out[1])
+    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], 0.0, False, out[0], out[1])
     for k in range(nested.OUTPUTS):
         out[1, k] = CAUTION * out[1, k] + ROUNDING * out[2, k]
     return largest

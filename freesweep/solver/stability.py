@@ -38,10 +38,10 @@ def unstable_directions(x, y, n, base, tube, load, direction, held_size, work):
     last = n if free else n - 1
     if free:
         negative += newton.factor(d, e, 1, n, inverse)
-    held.hold(lagrangian.conjugate, x, y, n, own, load, direction, b)
+    _, k = held.hold(lagrangian.conjugate, x, y, n, own, load, direction, b)
     newton.substitute(inverse, e, 1, last, b, response)
     whole = 2.0 if free else 1.0
-    sigma, size = 0.0, held_size
+    sigma, size = whole * k, held_size
     for i in range(1, last + 1):
         sigma += whole * b[i] * response[i]
         size += whole * abs(b[i])

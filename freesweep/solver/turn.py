@@ -67,7 +67,7 @@ def on_nested_meshes(x, y, tube, way, k, value, t, mu, bend, accuracy, fine, wor
             unit = max(abs(way[4][4]), abs(way[4][5]))
             out[2, nested.MULTIPLIER] /= max(unit, 1.0)
             out[3, nested.MULTIPLIER] /= unit
-            largest = nested.extrapolate(table, level, out[2], out[3], 0.0, out[0], out[1])
+            largest = nested.extrapolate(table, level, out[2], out[3], 0.0, False, out[0], out[1])
             good = bound < CLEAR * abs(third - 1.0) if turning else largest <= accuracy
             if good or level == nested.MAX_DOUBLINGS + 1:
                 return True, third, bound, level - 1, largest, unstable

@@ -5,6 +5,7 @@ the tube with clamped ends, and its stretch lies between 1 and the uniform one. 
 """
 
 from ..jit import kernel
+from .wall import is_loose
 
 FIRST_STEP = 0.25  # of the way from one load to the other
 SMALLEST_STEP = 1e-7  # below it the path is taken to end in a turning point
@@ -51,7 +52,7 @@ def slope_at(density, u, ahead, cell, start, end):
     before = density(u, 0.0, cell, start)[1]
     drive = density(u, 0.0, cell, end)[1] - before
     t = -before / drive
-    if start[0] != end[0]:  # the fibers' extension is no linear load
+    if start[0] != end[0] or is_loose(end[2]):  # the fibers' extension is no linear load, and loose ones bear none so
         for _ in range(BENDS):
             here = density(u, 0.0, cell, between(start, end, t))[1]
             drive = (density(u, 0.0, cell, between(start, end, t + PROBE))[1] - here) / PROBE

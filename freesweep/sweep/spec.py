@@ -6,6 +6,7 @@
                                 # pairs of x/l and value; a repeated x/l is a jump
     c10 = "0.17 MPa"            # and c01, or c20 and c30 of a Yeoh rubber; or material = "dragon-skin-30"
     energy = "full"             # or "principal"
+    model = "source"            # of its parts wall_model and fibers, too, sweeps know the source's only so far
     [load]                      # fixed force, torque, pressure, held_length or held_length_ratio, held_rotation
     [axes]                      # what varies: all combinations are solved
     alpha = {start = "0 deg", stop = "85 deg", step = "2.5 deg"}
@@ -34,6 +35,7 @@ import numpy as np
 from ..actuator import ENERGIES, SMALLEST_DIFFERENCE
 from ..atlas.schema import HELD, PARAMETERS, YEOH
 from ..profiles import as_profile, together
+from ..tube_model import DEFAULT, MODELS
 from ..units import shown
 from . import axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
@@ -44,6 +46,7 @@ from .solver_table import BUDGET, MAX_POINTS, read_accuracy, read_blocked, read_
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
 VARYING = ("alpha", "beta", "wall")  # may be profiles along the tube
+WORDS = ("energy", "model", "wall_model", "fibers")  # of [actuator]
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
 
 
@@ -106,6 +109,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
     tables = {key: _table(faults, document, key) for key in ("actuator", "load", "axes", "solver")}
     title = faults.line("title", document.get("title", ""))
     energy = _energy(faults, tables["actuator"])
+    _check_model(faults, tables["actuator"])
     accuracy = read_accuracy(faults, tables["solver"])
     tolerance, budget = read_tolerance(faults, tables["solver"])
     given = {}  # parameter: where it is given, faulty or not
@@ -156,13 +160,25 @@ def _energy(faults, actuator):
     return energy
 
 
+def _check_model(faults, actuator):
+    """Refuses words for tubes that sweeps do not solve."""
+    source = MODELS["source"]
+    for name, known in (("model", "source"), ("wall_model", source.wall_model), ("fibers", source.fibers)):
+        found = actuator.get(name, DEFAULT if name == "model" else known)
+        if found != known:
+            faults.add(
+                f"actuator.{name}",
+                f"found {shown(found)}, allowed: {known}; physical tubes are solved one by one, by inflate, lock and block",
+            )
+
+
 def _fixed(faults, tables, given):
     fixed, profiles = {}, {}
     for section in ("actuator", "load"):
         table = tables[section]
         own = [name for name in PARAMETERS if HOME[name] == section]
         elsewhere = SYNONYMS | {name: f"it belongs in [{HOME[name]}]" for name in PARAMETERS}
-        faults.unknown_keys(table, [*own, "energy", "material"] if section == "actuator" else own, section, elsewhere)
+        faults.unknown_keys(table, [*own, *WORDS, "material"] if section == "actuator" else own, section, elsewhere)
         for name in own:
             if name in table:
                 given[name] = f"{section}.{name}"
@@ -179,7 +195,7 @@ def _axes(faults, table, given):
         table,
         tuple(PARAMETERS),
         "axes",
-        SYNONYMS | {name: "it belongs in [actuator] and cannot vary" for name in ("energy", "material")},
+        SYNONYMS | {name: "it belongs in [actuator] and cannot vary" for name in (*WORDS, "material")},
     )
     axes = {}
     for name in PARAMETERS:

@@ -1,10 +1,9 @@
 """Figures 2-2 and 2-3: locked shapes, undeformed in blue, locked in red."""
 
-from ..actuator import Actuator
 from ..plot.tubes import shape_plot, size_of
 from ..statics import lock
 from .drawing import Drawing, Numbers, panels
-from .prototypes import RADIUS, RUBBER, WALL, muscle
+from .prototypes import RADIUS, RUBBER, WALL, muscle, source_tube
 
 TEN_RADII = 10.0 * RADIUS  # [m]: the length at which a uniform tube turns 15 % too far, as the source reports
 
@@ -30,7 +29,7 @@ def figure_2_2() -> Drawing:
 
 def figure_2_3() -> Drawing:
     """Locked shape of a contracting and rotating actuator of 0 and 30 degrees."""
-    tube = Actuator(alpha=0.0, beta=30.0, length=TEN_RADII, radius=RADIUS, wall=WALL, material=RUBBER)
+    tube = source_tube(alpha=0.0, beta=30.0, length=TEN_RADII, radius=RADIUS, wall=WALL, material=RUBBER)
     return _locked(tube, "The length is not printed; here 10 radii, for which a uniform tube turns 15 % too far.")
 
 

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from ..actuator import Actuator
 from ..elastomer import NeoHookean
 from ..holding import blocked_force
 from ..plot import style
 from ..plot.curve import label_ends
 from ..statics import inflate
 from .drawing import Drawing, Numbers, key, line, panels
-from .prototypes import MUSCLES, RADIUS, TABLE_1, WALL, muscle
+from .prototypes import MUSCLES, RADIUS, TABLE_1, WALL, muscle, source_tube
 
 COLOURS = dict(zip(MUSCLES, style.SERIES))
 PRESSURES = np.linspace(0.0, 0.14e6, 57)  # [Pa]
@@ -22,8 +21,8 @@ LINES = [("inextensible fibers", {"linestyle": "solid"}), ("with fiber extension
 def matched_profiles(angle):
     """Two muscles of one angle at one stroke: (name, pressure [Pa], state), the rubber of Table 1 and one without C01."""
     sizes = {"alpha": angle, "beta": -angle, "length": 0.192, "radius": RADIUS, "wall": WALL}
-    first = Actuator(**sizes, material=TABLE_1)
-    other = Actuator(**sizes, material=NeoHookean(TABLE_1.c10 + TABLE_1.c01))
+    first = source_tube(**sizes, material=TABLE_1)
+    other = source_tube(**sizes, material=NeoHookean(TABLE_1.c10 + TABLE_1.c01))
     state = inflate(first, STROKE_PRESSURE)
     wanted = float(state["deformed_length"])
     low, high = 0.0, 2.0 * STROKE_PRESSURE

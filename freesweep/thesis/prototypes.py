@@ -27,13 +27,14 @@ SLEEVE_LENGTH, SLEEVE_EXTENSION = 0.640, 1.0075  # [m]
 SHELL_RADIUS, SHELL_HEIGHT = 42.8e-3, 99.2e-3  # [m]
 ENERGIES = ("principal", "full")
 PSI = 6894.757293168361  # [Pa]
+source_tube = functools.partial(Actuator, model="source")
 
 
 @functools.cache
 def muscle(angle, extended=False, energy="principal") -> Actuator:
     """One of the McKibben prototypes; ``extended`` with its fiber extension."""
     length, c10, c01, extension = MUSCLES[angle]
-    return Actuator(
+    return source_tube(
         alpha=angle, beta=-angle, length=length, radius=RADIUS, wall=WALL, material=MooneyRivlin(c10, c01),
         fiber_extension=extension if extended else 1.0, energy=energy,
     )  # fmt: skip
@@ -43,7 +44,7 @@ def muscle(angle, extended=False, energy="principal") -> Actuator:
 def rotating(name, energy="principal", extension=1.0) -> Actuator:
     """Prototype A, B or C (section 2.4)."""
     alpha, beta, length = ROTATING[name]
-    return Actuator(
+    return source_tube(
         alpha=alpha, beta=beta, length=length, radius=RADIUS, wall=WALL, material=RUBBER, fiber_extension=extension,
         energy=energy,
     )  # fmt: skip
@@ -61,20 +62,20 @@ def rotator(profile="switch", energy="principal") -> Actuator:
         angles = {"alpha": _switched(*alpha), "beta": _switched(*beta)}
     else:
         angles = {"alpha": list(zip((0.0, 1.0), alpha)), "beta": list(zip((0.0, 1.0), beta))}
-    return Actuator(**angles, length=0.2, radius=RADIUS, wall=WALL, material=ROTATOR_RUBBER, energy=energy)
+    return source_tube(**angles, length=0.2, radius=RADIUS, wall=WALL, material=ROTATOR_RUBBER, energy=energy)
 
 
 @functools.cache
 def two_walls(energy="principal") -> Actuator:
     """The muscle whose far half has twice the wall (section 2.5.2), with the length and rubber of the 30 degree muscle."""
     wall = [(0.0, WALL), (0.5, WALL), (0.5, 2.0 * WALL), (1.0, 2.0 * WALL)]
-    return Actuator(alpha=20, beta=-20, length=0.192, radius=RADIUS, wall=wall, material=TABLE_1, energy=energy)
+    return source_tube(alpha=20, beta=-20, length=0.192, radius=RADIUS, wall=wall, material=TABLE_1, energy=energy)
 
 
 @functools.cache
 def sleeve_muscle(extended=False, angle=30.0, length=SLEEVE_LENGTH, radius=RADIUS, energy="principal") -> Actuator:
     """The muscle of the sleeve (section 3.4); rubber of the 30 degree muscle."""
-    return Actuator(
+    return source_tube(
         alpha=angle, beta=-angle, length=length, radius=radius, wall=WALL, material=TABLE_1, energy=energy,
         fiber_extension=SLEEVE_EXTENSION if extended else 1.0,
     )  # fmt: skip

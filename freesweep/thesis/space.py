@@ -4,11 +4,10 @@ import numpy as np
 from matplotlib.ticker import MultipleLocator
 
 from .. import closed_form
-from ..actuator import Actuator
 from ..plot import glyph, regions, style
 from ..statics import lock
 from .drawing import Drawing, Numbers, key, panels
-from .prototypes import RADIUS, RUBBER, WALL
+from .prototypes import RADIUS, RUBBER, WALL, source_tube
 
 TINTS = {"I": "#f6efe0", "IIa": "#e6f0ef", "IIb": "#eee8f3"}
 # four designs of Figure 2-4, one from each part of the space: the source does not print its own
@@ -64,7 +63,9 @@ def figure_2_4() -> Drawing:
         alpha = np.linspace(0.0, 90.0, 361)
         ax.plot(alpha, closed_form.locked_manifold(alpha), color=style.LOCKED, linewidth=1.6, zorder=2, gid="LM")
         for design in FOUR:
-            tube = Actuator(alpha=design[0], beta=design[1], length=LENGTH, radius=RADIUS, wall=WALL, material=RUBBER)
+            tube = source_tube(
+                alpha=design[0], beta=design[1], length=LENGTH, radius=RADIUS, wall=WALL, material=RUBBER
+            )
             state = lock(tube, x=0.5 * LENGTH * (1.0 - np.cos(np.linspace(0.0, np.pi, 401))))  # dense where it bends
             after = state["alpha_deformed"].values, state["beta_deformed"].values
             middle = len(after[0]) // 2

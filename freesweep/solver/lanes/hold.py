@@ -68,7 +68,7 @@ def held_integral(u, cell, load, half, length_held, work, more):
     for j in range(layer.DEPTHS + 1):
         y = u - (u - 1.0) * get(left, j)
         slope = get(sine, j) * sqrt(max(1.0 + lagrangian.kinematics(y, cell, load)[3], 0.0))
-        length, _, turned, _ = lagrangian.integrands(y, slope, cell, load)
+        length, _, turned, _, _ = lagrangian.integrands(y, slope, cell, load)
         x, here = get(places, j), length if length_held else turned
         if j > 0:
             total = total + 0.5 * (x - x_before) * (before + here)
@@ -199,7 +199,7 @@ def seek_lanes(
                 valid |= 1 << lane
         cell, _, load = loads(columns, constants)
         half, target, one = get(columns, LENGTH), get(found, 0), spread(1.0)
-        c, c_y, _ = lagrangian.conjugate(one, 0.0, cell, load, unit)
+        c, c_y, _, _ = lagrangian.conjugate(one, 0.0, cell, load, unit)
         first = c * half
         todo = mask_of(valid) & (abs(c_y) > POLE * (cell[0] * cell[0] + cell[1] * cell[1]))
         too_long = mask_of(0)

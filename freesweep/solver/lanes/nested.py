@@ -29,7 +29,7 @@ def integrate(x, y, n, cell, load, row):
     for j in range(n):
         x_right, y_right = get(x, j + 1), get(y, j + 1)
         h = x_right - x_left
-        s, v, t, w = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
+        s, v, t, w, _ = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
         length = length + h * s
         volume = volume + h * v
         twist = twist + h * t

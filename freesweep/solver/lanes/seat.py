@@ -37,11 +37,11 @@ def rubber_in(columns, constants):
 def loads(columns, constants):
     """What the density takes: ``(cell, load before, load now)``."""
     cell = (get(columns, H), get(columns, D), get(columns, AREA))
-    gamma, k = get(columns, GAMMA), get(columns, SHEAR)
+    gamma, wall = get(columns, GAMMA), (get(columns, SHEAR),)
     rubber = rubber_in(columns, constants)
     f, m, e = get(columns, FORCE), get(columns, TORQUE), get(columns, WEIGHT)
-    now = (gamma, rubber, k, get(columns, PRESSURE), f, m, e)
-    return cell, (gamma, rubber, k, get(columns, BEFORE), f, m, e), now
+    now = (gamma, rubber, wall, get(columns, PRESSURE), f, m, e)
+    return cell, (gamma, rubber, wall, get(columns, BEFORE), f, m, e), now
 
 
 @kernel
@@ -67,7 +67,7 @@ def seat(lane, columns, tube):
         course[0, 0, k, 0] = columns[k, lane]
     places[1] = columns[LENGTH, lane]
     return (
-        columns[GAMMA, lane], rubber_of(columns[:, lane]), columns[SHEAR, lane], columns[PRESSURE, lane],
+        columns[GAMMA, lane], rubber_of(columns[:, lane]), (columns[SHEAR, lane],), columns[PRESSURE, lane],
         columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
     )  # fmt: skip
 

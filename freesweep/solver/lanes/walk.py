@@ -29,7 +29,7 @@ def locked(problem):
     """Uniform stretch of the locked tube, and its end's cosine."""
     cell, gamma = (problem[H], problem[D], problem[AREA]), problem[GAMMA]
     u = lagrangian.locked_stretch(cell, gamma)
-    return u, layer.end_cosine(u, cell, (gamma, rubber_of(problem), 0.0, 1.0, 0.0, 0.0, 0.0))
+    return u, layer.end_cosine(u, cell, (gamma, rubber_of(problem), (0.0,), 1.0, 0.0, 0.0, 0.0))
 
 
 @entry_point

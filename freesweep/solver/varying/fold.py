@@ -23,6 +23,7 @@ from ..continuation import (
 )
 from ..course import fill
 from ..held import loaded
+from ..wall import is_loose
 
 COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
 FALLING, SMALL = 0.5, 1e-7  # of the change from mesh to mesh, and of the load: else no order is seen
@@ -121,7 +122,8 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     least = SMALL * abs(third)  # where rounding counts, nothing need fall
     estimate = max(abs(third - second), abs(second - first))
     if changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least:
-        estimate = max(abs(third - second) / 15.0, abs(second - first) / 225.0)
+        order, before = (1.0, 8.0) if is_loose(path.origin[2]) else (15.0, 225.0)  # as in :func:`nested.extrapolate`
+        estimate = max(abs(third - second) / order, abs(second - first) / before)
     if not estimate < AGREED * abs(third):
         return np.nan, 0.0
     return third, nested.SAFETY * estimate + ROUNDING * abs(third) + doubt

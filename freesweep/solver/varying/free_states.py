@@ -11,9 +11,10 @@ from ...jit import entry_point, inlined, kernel
 from .. import guide, lagrangian, nested, quadrature
 from ..continuation import FOLLOWED, Path
 from ..held import loaded
-from ..problem import FORCE, GAMMA, LENGTH, SHEAR, TORQUE, rubber_of
+from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
 from ..retrace import retrace
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
+from ..wall import is_loose
 from .branch import begin, follow, guess
 from .fold import FINEST
 from .meshes import stand
@@ -96,11 +97,11 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
 
 
 @inlined
-def lock(problem, tube, track, roomy, space, rows, limit, accuracy):
+def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
     """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way
     from rest along which the wall fades.
     """
-    load = (problem[GAMMA], rubber_of(problem), problem[SHEAR], 1.0, 0.0, 0.0, 0.0)
+    load = (problem[GAMMA], rubber_of(problem), wall_of(problem, walls), 1.0, 0.0, 0.0, 0.0)
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
             guide.locked(tube, problem[GAMMA], space.ahead)
@@ -108,7 +109,7 @@ def lock(problem, tube, track, roomy, space, rows, limit, accuracy):
             status, doublings = cold(space, tube, load, accuracy)
             if status == NOT_CONVERGED:
                 rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0)
+                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0, is_loose(load[2]))
                 found, _, middle = settle_loads(way, track, roomy, space, tube, rows, limit, accuracy)
                 if found == OK:
                     for k in range(len(space.x)):
@@ -156,23 +157,24 @@ def along_pressure(
 
 
 @inlined
-def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
+def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accuracy):
     """All states of one design; rows whose status is not PENDING are passed over. ``settled`` is its settling pressure,
     ``limit`` (2,) the limit pressure and its bound, NaN if none was met. Rows: see :func:`follow_many`.
     """
     limit[0], limit[1] = np.nan, np.nan
     settle(problem, tube, rows)
-    lock(problem, tube, track, roomy, space, rows, limit, accuracy)
+    lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy)
     least, most = np.inf, -1.0
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING:
             least, most = min(least, rows.pressures[i]), max(most, rows.pressures[i])
     if most < 0.0:
         return
-    gamma, f, m, rubber, shear = problem[GAMMA], problem[FORCE], problem[TORQUE], rubber_of(problem), problem[SHEAR]
-    rest, pressure = (1.0, rubber, shear, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
+    rubber, wall = rubber_of(problem), wall_of(problem, walls)
+    rest, pressure = (1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     if f == 0.0 and m == 0.0 and gamma == 1.0:
-        path = Path(rest, pressure, 0.0)
+        path = Path(rest, pressure, 0.0, is_loose(wall))
         status, mu, tangent_mu = begin(track, space, tube, path)
         if status == FOLLOWED:
             first_states(path, mu, tube, space, rows, accuracy)
@@ -184,8 +186,8 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
             )
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
-    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0)
-    path, n = Path((gamma, rubber, shear, 0.0, f, m, 1.0), pressure, max(f, 0.0)), len(track.x) - 1
+    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0, is_loose(wall))
+    path, n = Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0), is_loose(wall)), len(track.x) - 1
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
     if status == NOT_CONVERGED and tube[3]:
@@ -210,14 +212,15 @@ def walk(problem, settled, tube, track, roomy, space, rows, limit, accuracy):
 
 @entry_point
 def follow_many(
-    problems, settled, first, pressures, course, edges, places, accuracy, values, bounds, status, slack, limits, stations,
-    profiles,
+    problems, walls, settled, first, pressures, course, edges, places, accuracy, values, bounds, status, slack, limits,
+    stations, profiles,
 ):  # fmt: skip
     """Equilibria of many designs, each on its own branch: see :func:`walk`.
 
     Arguments
     ---------
     problems : (k, PROBLEM_SIZE) the designs, dimensionless; problem i owns rows ``first[i]`` to ``first[i + 1]`` of the rest
+    walls : the columns of a wall, SOURCE or PHYSICAL of :mod:`problem`
     settled : (k,) pressure at which the loads of each are full
     pressures : (n,) p = P/C10; infinity is the locked shape, where the wall no longer counts
     course, edges, places : what varies along the tubes, and where segments begin and end on the base mesh and along x; an
@@ -251,7 +254,7 @@ def follow_many(
             cells = np.zeros((1 if same else len(space.fine[0]), 3))
             tube = (own_course, factor * edges, cells, same, factor * middle, own_places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
-            walk(problems[k], settled[k], tube, track, roomy, space, rows, limits[k], accuracy)
+            walk(problems[k], walls, settled[k], tube, track, roomy, space, rows, limits[k], accuracy)
             again = False
             for i in range(first[k], first[k + 1]):
                 if status[i] == NOT_CONVERGED or status[i] == INACCURATE:

@@ -79,8 +79,8 @@ def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
     course, edges, cells, _, _, _ = tube
     own = fill(course, edges, track.x, n, n, cells)
     direction = (0.0, 0.0, 0.0, pressure, 0.0, 0.0, 0.0)
-    low = held.hold(lagrangian.conjugate, track.x, track.y, n, own, path.origin, direction, space.work[8])
-    high = held.hold(lagrangian.conjugate, track.x, track.next_y, n, own, path.origin, direction, space.work[8])
+    low, _ = held.hold(lagrangian.conjugate, track.x, track.y, n, own, path.origin, direction, space.work[8])
+    high, _ = held.hold(lagrangian.conjugate, track.x, track.next_y, n, own, path.origin, direction, space.work[8])
     start, whole = low, high - low
     miss_low, miss_high, gap = first / pressure - 1.0, limit / pressure - 1.0, 1.0
     values, slope, last = space.curve[0], space.curve[1], 1.0

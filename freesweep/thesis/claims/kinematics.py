@@ -5,9 +5,8 @@ import functools
 import numpy as np
 
 from ... import closed_form
-from ...actuator import Actuator
 from ...statics import inflate, lock
-from ..prototypes import RADIUS, RUBBER, WALL, rotating
+from ..prototypes import RADIUS, RUBBER, WALL, rotating, source_tube
 from ..space import FOUR
 from .claim import NO, PARTLY, YES, Claim, Found, holds
 
@@ -20,7 +19,7 @@ RADII = (5.0, 10.0, 40.0)  # lengths over radius
 
 
 def _tube(alpha, beta, energy="principal", length=LENGTH):
-    return Actuator(alpha=alpha, beta=beta, length=length, radius=RADIUS, wall=WALL, material=RUBBER, energy=energy)
+    return source_tube(alpha=alpha, beta=beta, length=length, radius=RADIUS, wall=WALL, material=RUBBER, energy=energy)
 
 
 def _off_manifold(alpha, beta):

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ...actuator import Actuator, MooneyRivlin
+from ...actuator import MooneyRivlin
 from ...holding import blocked_force
 from ...statics import inflate
 from ...status import OK
 from ..muscles import matched_profiles
-from ..prototypes import MUSCLES, RADIUS, WALL, muscle
+from ..prototypes import MUSCLES, RADIUS, WALL, muscle, source_tube
 from .claim import PARTLY, UNKNOWN, Claim, Found, holds
 
 PRESSURES = np.array([0.03e6, 0.05e6, 0.10e6])  # [Pa]
@@ -48,7 +48,7 @@ def no_material(energy):
     force = []
     for factor in (1.0, 10.0):
         rubber = MooneyRivlin(0.11e6 * factor, 0.06e6 * factor)
-        tube = Actuator(alpha=30, beta=-30, length=0.192, radius=RADIUS, wall=WALL, material=rubber, energy=energy)
+        tube = source_tube(alpha=30, beta=-30, length=0.192, radius=RADIUS, wall=WALL, material=rubber, energy=energy)
         force.append(blocked_force(tube, PRESSURES, x=0.0)["force"].values)
     gap = np.max(np.abs(force[1] / force[0] - 1.0))
     return Found(f"ten times stiffer rubber changes the force by {gap:.0e} of it", holds(gap < 1e-6))

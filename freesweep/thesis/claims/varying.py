@@ -4,9 +4,9 @@ import functools
 
 import numpy as np
 
-from ...actuator import Actuator, ActuatorError
+from ...actuator import ActuatorError
 from ...statics import inflate, lock
-from ..prototypes import RADIUS, ROTATOR_RUBBER, TABLE_1, WALL, rotator, two_walls
+from ..prototypes import RADIUS, ROTATOR_RUBBER, TABLE_1, WALL, rotator, source_tube, two_walls
 from .claim import NO, YES, Claim, Found, holds
 
 PRESSURES = np.linspace(0.0, 0.14e6, 57)
@@ -53,7 +53,7 @@ def halves(energy):
 def caption(energy):
     """The caption of Figure 2-14 taken at its word: beta up to +67.5 degrees."""
     try:
-        Actuator(alpha=[(0, 0.0), (1, 67.5)], beta=[(0, -30.0), (1, 67.5)], length=LENGTH, radius=RADIUS, wall=WALL,
+        source_tube(alpha=[(0, 0.0), (1, 67.5)], beta=[(0, -30.0), (1, 67.5)], length=LENGTH, radius=RADIUS, wall=WALL,
                  material=ROTATOR_RUBBER, energy=energy)  # fmt: skip
     except ActuatorError:
         return Found("refused: alpha = beta = 67.5° at the far end is a single fiber family", NO)
@@ -72,7 +72,7 @@ def thin_half_first(energy):
 
 def wall_unseen(energy):
     """Locked radius with the varying wall against that with a constant one."""
-    same = Actuator(alpha=20, beta=-20, length=0.192, radius=RADIUS, wall=WALL, material=TABLE_1, energy=energy)
+    same = source_tube(alpha=20, beta=-20, length=0.192, radius=RADIUS, wall=WALL, material=TABLE_1, energy=energy)
     one, other = (lock(tube, x=ALONG)["deformed_radius"].values for tube in (two_walls(energy), same))
     gap = float(np.max(np.abs(one - other))) / RADIUS
     return Found(f"radii differ by {gap:.0e} of the undeformed one at most", holds(gap < 1e-6))

@@ -1,0 +1,156 @@
+"""The density of tubes with a thick wall, loose fibers, or both, and its partial derivatives at one point.
+
+    L(y, v) = max over (G, psi) of  T sqrt(G - v^2) - e W(y, G, psi) + m psi,   T = p y^2 + f
+
+with W of :mod:`wall`, and G and psi as the fibers allow (:mod:`relaxed`); bonded fibers leave no choice of them. G and psi
+have no derivatives along the tube, so they are eliminated point by point: first derivatives of L are those at fixed (G, psi)
+of ``T s - e W + m psi - sum mu_i g_i``, whose second ones (``K``) give those of L along ``(1, dG/dy, dpsi/dy)``, from the
+stationarity system of the families that are taut. L is C1 and piecewise C2.
+
+Functions and arguments as in :mod:`membrane`; ``wall`` = load[2] is (k, inner, loose).
+"""
+
+from math import sqrt
+
+from ..jit import kernel
+from .relaxed import both_reach, multipliers, settle, taut_twist
+from .wall import energy, least_square
+
+NO_ROOM = 1e-30  # as in :mod:`membrane`
+LEAST = 1e-6  # of G: where a state is refused, its numbers stay finite
+NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
+
+
+@kernel
+def kind_of(taut_alpha, taut_beta):
+    """Which families are taut, as one number."""
+    return (ALPHA_TAUT if taut_alpha else NONE_TAUT) + (BETA_TAUT if taut_beta else NONE_TAUT)
+
+
+@kernel
+def place(y, v, T, cell, load):
+    """``(room, G - 1, psi, taut alpha, taut beta)`` at one point under the resultant T; see :func:`relaxed.settle`."""
+    H, D, gg, wall = cell[0], cell[1], load[0] * load[0], load[2]
+    if wall[2] > 0.0:
+        room, G_1, psi, alpha, beta = settle(y, v, H, D, gg, max(T, NO_ROOM), load[5], load[6] * cell[2], load[1], wall)
+        return min(room, T), max(G_1, LEAST - 1.0), psi, alpha, beta
+    psi, G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, gg - 1.0)
+    room = min(1.0 + G_1 - v * v, T)
+    if 0.0 < wall[1] < 1.0:
+        room = min(room, least_square(y, max(1.0 + G_1, NO_ROOM), wall))
+    return room, max(G_1, LEAST - 1.0), psi, True, True
+
+
+@kernel
+def state(y, v, cell, load):
+    """What lies behind L at one point: ``(room, s, G - 1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y,
+    psi_y, G_v, psi_v, which families are taut)``.
+    """
+    H, D, gg = cell[0], cell[1], load[0] * load[0]
+    p, m = load[3], load[5]
+    T, T_y = p * y * y + load[4], 2.0 * p * y
+    room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
+    _, W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
+    i = 1.0 / s
+    i3 = i * i * i
+    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, H, D, T, m, W_G, W_p)
+    kind = kind_of(taut_alpha, taut_beta)
+    ta, tb = H + D + psi, H - D + psi
+    turned, squared = a * ta + b * tb, a * ta * ta + b * tb * tb
+    L_y, L_v = T_y * s - W_y - 2.0 * y * squared, -T * v * i
+    K_yy = 2.0 * p * s - W_yy - 2.0 * squared
+    K_yG = 0.5 * T_y * i - W_yG
+    K_yp = -W_yp - 4.0 * y * turned
+    K_vG = 0.5 * T * v * i3
+    K_GG = -0.25 * T * i3 - W_GG
+    K_Gp = -W_Gp
+    K_pp = -W_pp - 2.0 * y * y * (a + b)
+    if taut_alpha and taut_beta:
+        t = gg / (y * y)
+        psi_y, G_y = -2.0 * H * t / y, -2.0 * D * D * y + 2.0 * gg * H * H * t / y
+        psi_v = G_v = 0.0
+    elif taut_alpha or taut_beta:
+        t = ta if taut_alpha else tb
+        c, k = 2.0 * y * y * t, 2.0 * y * t * t  # dG = -c dpsi - k dy
+        bend = c * c * K_GG - 2.0 * c * K_Gp + K_pp
+        psi_y = -(K_yp - c * K_yG - k * K_Gp + k * c * K_GG) / bend
+        psi_v = c * K_vG / bend
+        G_y, G_v = -k - c * psi_y, -c * psi_v
+    else:
+        det = K_GG * K_pp - K_Gp * K_Gp
+        G_y, psi_y = (K_Gp * K_yp - K_pp * K_yG) / det, (K_Gp * K_yG - K_GG * K_yp) / det
+        G_v, psi_v = -K_pp * K_vG / det, K_Gp * K_vG / det
+    return room, s, G_1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind
+
+
+@kernel
+def density(y, v, cell, load):
+    """``(room, L_y, L_v, L_yy, L_yv, L_vv)``."""
+    room, s, G_1, _, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, _, _ = state(y, v, cell, load)
+    T = load[3] * y * y + load[4]
+    L_yy = K_yy + 2.0 * (K_yG * G_y + K_yp * psi_y) + (K_GG * G_y + 2.0 * K_Gp * psi_y) * G_y + K_pp * psi_y * psi_y
+    L_yv = -2.0 * load[3] * y * v / s + K_vG * G_y
+    L_vv = -T * (1.0 + G_1) / (s * s * s) + K_vG * G_v
+    return room, L_y, L_v, L_yy, L_yv, L_vv
+
+
+@kernel
+def uniform_tube(y, cell, load):
+    """``(sqrt(G), T sqrt(G), L)`` at slope 0."""
+    T = load[3] * y * y + load[4]
+    _, G_1, psi, _, _ = place(y, 0.0, T, cell, load)
+    s = sqrt(max(1.0 + G_1, NO_ROOM))
+    pull = T * s
+    return s, pull, pull - energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])[0] + load[5] * psi
+
+
+@kernel
+def integrands(y, v, cell, load):
+    """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut."""
+    _, G_1, psi, taut_alpha, taut_beta = place(y, v, load[3] * y * y + load[4], cell, load)
+    s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
+    return s, y * y * s, psi, energy(y, G_1, psi, cell[2], load[1], load[2])[0], kind_of(taut_alpha, taut_beta)
+
+
+@kernel
+def conjugate(y, v, cell, load, direction):
+    """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load; loose fibers let G and psi change with it."""
+    _, s, _, psi, _, _, _, _, _, _, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind = state(y, v, cell, load)
+    T, T_y, m = direction[3] * y * y + direction[4], 2.0 * direction[3] * y, direction[5]
+    half = 0.5 / s
+    pull, c_mu = T * half, 0.0
+    if kind == NONE_TAUT:
+        det = K_GG * K_pp - K_Gp * K_Gp
+        c_mu = (2.0 * K_Gp * pull * m - K_pp * pull * pull - K_GG * m * m) / det
+    elif kind != BOTH_TAUT:
+        t = cell[0] + (cell[1] if kind == ALPHA_TAUT else -cell[1]) + psi
+        b = 2.0 * y * y * t
+        rise = m - b * pull
+        c_mu = -rise * rise / (b * b * K_GG - 2.0 * b * K_Gp + K_pp)
+    return T * s + m * psi, T_y * s + pull * G_y + m * psi_y, pull * (G_v - 2.0 * v) + m * psi_v, c_mu
+
+
+@kernel
+def at_slope(y, v, cell, load):
+    """``(G - v^2, tau alpha, tau beta)``: the room of the slope, and the multipliers of both families."""
+    T = load[3] * y * y + load[4]
+    room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
+    _, _, W_G, W_p, _, _, _, _, _, _ = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
+    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], T, load[5], W_G, W_p)
+    return room, a, b
+
+
+@kernel
+def at_flux(y, flux, cell, load):
+    """``(psi, G - 1, tau alpha, tau beta)`` where the flux q = T v/s is known and not the slope, which an upright meridian
+    has no digits for: T/s is sqrt(T^2 + q^2)/sqrt(G), as at slope 0 under that resultant.
+    """
+    T = load[3] * y * y + load[4]
+    pull = sqrt(T * T + flux * flux)
+    _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, pull, cell, load)
+    _, _, W_G, W_p, _, _, _, _, _, _ = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    s = sqrt(max(1.0 + G_1, NO_ROOM))
+    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load[5], W_G, W_p)
+    return psi, G_1, a, b
