@@ -363,7 +363,7 @@ def test_junk_is_refused_or_answered_by_a_status(atlas):
         ({"wall": 1e-3}, "wall: found 0.001; the atlas holds only 0.00159"),
         ({"alpha": [1.0, 2.0], "beta": [1.0, 2.0, 3.0]}, "do not broadcast"),
         ({"variables": "rotatoin"}, "did you mean 'rotation'"),
-        ({"method": "quintic"}, "method: found 'quintic'; allowed: cubic, linear"),
+        ({"method": "quintic"}, "method: found str 'quintic'; choose one of 'cubic', 'linear'"),
         ({"x": [0.0]}, "refine=True"),
         ({"alpha": np.zeros((10**4, 1, 1)), "beta": np.zeros((10**4, 1)), "length": np.zeros(10**4)}, "ask in parts"),
     ],

@@ -69,7 +69,7 @@ def density_flops(module) -> int:
 
     density = _plain(module, sqrt=sqrt, min=either, max=either)["density"]
     y, v = Expression(known, "y"), Expression(known, "v")
-    todo, seen, flops = list(density(y, v, (0.1, 0.6, 0.7), (1.01, (0.5,), 1.0, 1.0, 0.1, 0.1, 1.0))), set(), 0
+    todo, seen, flops = list(density(y, v, (0.1, 0.6, 0.7), (1.01, (0.5,), (1.0,), 1.0, 0.1, 0.1, 1.0))), set(), 0
     while todo:
         value = todo.pop()
         if isinstance(value, Expression) and id(value) not in seen:

@@ -43,6 +43,10 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     designs share a vector; those of the scalar kernels alone (``lanes=False``) differ by less than the bounds.
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
+    problems, pressures = (
+        np.ascontiguousarray(problems),
+        np.ascontiguousarray(pressures),
+    )  # others would be compiled for anew
     found = _nothing(len(problems), len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
     arguments = (

@@ -48,6 +48,9 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
     of the scalar kernels alone (``lanes=False``) differ by less than the bounds. ``soon``: a few states need not wait for
     the compiler (:mod:`freesweep.interpret`).
     """
+    problems, targets, pressures = map(
+        np.ascontiguousarray, (problems, targets, pressures)
+    )  # others are compiled for anew
     count, found = len(pressures), _pending(len(pressures))
     scalar = (problems, wall_columns(problems), targets, kind, first, pressures, *tube, accuracy, *found)
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
