@@ -40,7 +40,7 @@ def thin_wall_attributes(tube) -> dict:
 
 def attributes_of(alpha, beta, radius, wall, fiber_radius, energy) -> dict:
     """Attributes of what holds such tubes, arrays that broadcast, if some have a thick wall: [degree, m]."""
-    with np.errstate(over="ignore"):  # absurd sizes, which others refuse
+    with np.errstate(all="ignore"):  # absurd sizes, which others refuse
         thickness = np.divide(wall, radius)
     largest = np.max(thickness, initial=0.0, where=np.isfinite(thickness))
     if not largest > THIN:

@@ -45,6 +45,14 @@ kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes", "seek_lanes
 """
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """A file's tests go to one worker: its fixtures are made once."""
+    from xdist.scheduler import LoadFileScheduling
+
+    return LoadFileScheduling(config, log)
+
+
 def pytest_sessionstart(session):
     """Before the whole suite: two processes compile side by side, or each worker would compile the same for itself."""
     options = session.config.option

@@ -53,7 +53,7 @@ def helper(y, k):
 def density(y, v, cell, load):
     twice, _ = helper(y, cell[0])  # two products; a quotient that nobody needs
     again, _ = helper(y, cell[0])
-    constant = load[0] * load[2] + 2.0  # does not depend on the point
+    constant = load[0] * load[2][0] + 2.0  # does not depend on the point
     return -(twice + again) - constant, max(v, y) / twice
 
 
