@@ -174,6 +174,8 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         found["extra"]["held_path"] = tuple(axes), paths.astype(np.int8).reshape(shape)
     result = dataset(tube, axes, stations, found, without=(held_name,))
     result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy, "buckled": int(buckled)}
+    if tube.is_loose:
+        result.attrs["fibers"] = "loose"
     result.attrs |= thin_wall_attributes(tube)
     if not buckled and np.any(result["held_path"] == 1):
         result.attrs["comment"] = (

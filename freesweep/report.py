@@ -39,7 +39,12 @@ def table(dataset) -> str:
     if "limit_found" in dataset and bool(dataset["limit_found"]):
         lines.append(f"limit pressure: {dataset['limit_pressure'].item() * 1e-3:.6g} kPa")
     if bool((dataset["slack_fiber"] > 0).any()):
-        lines.append("slack: the state relies on a fiber family that would have to push somewhere; fibers cannot")
+        loose = dataset.attrs.get("fibers") == "loose"
+        lines.append(
+            "slack: a fiber family hangs loose somewhere, and carries nothing there"
+            if loose
+            else "slack: the state relies on a fiber family that would have to push somewhere; fibers cannot"
+        )
     if any("unstable" in row[-1] for row in rows):
         lines.append("unstable: an equilibrium that the smallest disturbance makes the tube leave")
     if not all(int(value) in VALUED for value in dataset["status"].values.ravel()):

@@ -114,6 +114,8 @@ def _solve(tube, loads, stations, accuracy):
     }
     result = dataset(tube, {name: loads[name] for name in LOADS}, stations, found)
     result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy}
+    if tube.is_loose:
+        result.attrs["fibers"] = "loose"
     if not np.any(np.isinf(loads["pressure"])):  # the locked shape does not see the wall
         result.attrs |= thin_wall_attributes(tube)
     return result

@@ -5,7 +5,7 @@ import pickle
 
 import pytest
 
-from freesweep import Actuator, ActuatorError, MooneyRivlin
+from freesweep import Actuator, ActuatorError, MooneyRivlin, inflate
 from freesweep.cli import main
 from freesweep.sweep.spec import SpecificationError, parse
 
@@ -71,3 +71,14 @@ def test_sweeps_say_that_they_know_the_source_s_tube_only():
         parse(text.format('model = "physical"\nwall_model = "thick"\nfibers = "loose"'))
     for name in ("model", "wall_model", "fibers"):
         assert f"actuator.{name}: found" in str(error.value)
+
+
+def test_the_shell_says_that_loose_fibers_hang_and_that_bonded_ones_would_push():
+    from freesweep.report import table
+
+    rubber = MooneyRivlin(c10=0.17e6, c01=0.08e6)
+    state = inflate(Actuator(alpha=0, beta=30, length=0.131, radius=4.76e-3, wall=1.59e-3, material=rubber), 3e4)
+    assert "would have to push" in table(state)
+    said = table(state.assign_attrs(fibers="loose"))
+    assert "hangs loose" in said
+    assert "push" not in said
