@@ -54,7 +54,7 @@ def at_once(states, awaited, entry, *arguments) -> bool:
         return True
     if not on_disk and spent[0] < NEVER:
         where = "once for each version" if folder else "in each process, for there is no folder to keep them in"
-        print(f"freesweep: compiling the kernels, {where}: half a minute", file=sys.stderr)
+        print(f"freesweep: compiling the kernels, {where}: half a minute to three", file=sys.stderr)
     spent[0] = NEVER
     return False
 

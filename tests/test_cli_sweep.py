@@ -8,8 +8,8 @@ from grids import spec
 
 from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED
 from freesweep.solver import block
+from freesweep.solver.free import free_states
 from freesweep.solver.lanes import hold, walk
-from freesweep.solver.varying import free_states
 from freesweep.sweep import duration
 from freesweep.sweep.doubts import doubts_of
 from freesweep.sweep.spec import parse

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from freesweep.solver import held, mesh, nested, newton
 from freesweep.solver.continuation import FOLLOWED, Path, advance, correct, is_stable, last_alike, make_unit
-from freesweep.solver.varying.space import make_track
+from freesweep.solver.free.space import make_track
 
 X = 0.5
 FILM, BRATU = 0.0, 1.0

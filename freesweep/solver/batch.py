@@ -6,11 +6,11 @@ import numpy as np
 from numba import config
 
 from ..interpret import at_once
+from .free.free_states import follow_many
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
 from .problem import MOONEY_RIVLIN, SECOND, THIRD, YEOH, wall_columns
 from .profile import FIELDS
 from .status import PENDING
-from .varying.free_states import follow_many
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
 NOTHING = np.empty(0)

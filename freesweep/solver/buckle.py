@@ -12,7 +12,6 @@ import numpy as np
 from ..jit import kernel
 from . import held, lagrangian, nested, newton, pinned, turn
 from .course import at_point
-from .held import largest_drift
 from .march import (
     GROWTH,
     LARGEST_CHANGE,
@@ -26,6 +25,7 @@ from .march import (
     top,
 )  # fmt: skip
 from .problem import GAMMA, SHEAR, rubber_of
+from .shapes import largest_drift
 from .stability import unstable_directions
 from .status import HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 

@@ -15,13 +15,12 @@ torque an antisymmetric mode makes it unstable, which is no obstacle on the way;
 branch turns back, at most designs for good: BEYOND_LIMIT, decided by :mod:`turn`.
 """
 
-import numpy as np
-
 from ..jit import kernel
 from . import guide, held, lagrangian, march, neck_march, neck_shape, nested, newton, pinned, turn
 from .march import EVERY, NO_TURN, begin, cylinder_multiplier, from_free, from_rest
 from .pinned import BY_SHARE
 from .problem import GAMMA, rubber_of, wall_of
+from .shapes import differ, extremes
 from .stability import pushed, unstable_directions
 from .status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 
@@ -30,7 +29,6 @@ FROM_REST, FROM_FREE = 0, 1
 LONGER = 1e-9  # relative: than all that the fibers allow
 RAISES = 40  # of the pressure by a half, until the wall of the starting cylinder is under tension
 WITHOUT_PRESSURE = 0.1  # times the wall's section: the pressure that is gone to first where none is asked for
-MESH_CHANGE = 0.03  # relative difference of a shape from one mesh to the next
 MIRROR_OFFSET, MIRROR_TOLERANCE = 0.37, 1e-12  # places off jumps; of H, D and the section
 
 
@@ -200,7 +198,7 @@ def on_meshes(x, y, tube, load, direction, wanted, mu, accuracy, fine, work, tab
         direction, wanted, mu, 1, accuracy, fine, work, table, out,
     )  # fmt: skip
     if status == newton.CONVERGED or status == nested.UNREACHED:
-        if not strays(marched, extremes(y, tube[4])):
+        if not differ(marched, extremes(y, tube[4])):
             now = held.loaded(load, direction, out[0, nested.MULTIPLIER])
             return (OK if status == newton.CONVERGED else INACCURATE), unstable, doublings, now
     for i in range(len(x)):
@@ -214,18 +212,6 @@ def on_meshes(x, y, tube, load, direction, wanted, mu, accuracy, fine, work, tab
 def tuple_times(values, factor):
     """A load direction times a number."""
     return (0.0, 0.0, 0.0, 0.0, factor * values[4], factor * values[5], 0.0)
-
-
-@kernel
-def extremes(y, middle):
-    """What tells one branch from another: stretch in the middle, least and largest."""
-    return y[middle], np.min(y), np.max(y)
-
-
-@kernel
-def strays(one, other):
-    """Whether two shapes differ by more than meshes do."""
-    return max(abs(one[0] - other[0]), max(abs(one[1] - other[1]), abs(one[2] - other[2]))) > MESH_CHANGE * one[2]
 
 
 @kernel

@@ -123,12 +123,3 @@ def largest_change(y, response, n):
     for i in range(n + 1):
         largest = max(largest, abs(response[i]) / y[i])
     return largest
-
-
-@kernel
-def largest_drift(y, other):
-    """Largest relative difference of two shapes on the same nodes."""
-    largest = 0.0
-    for i in range(len(y)):
-        largest = max(largest, abs(y[i] - other[i]) / other[i])
-    return largest

@@ -9,10 +9,11 @@ from . import guide, held, lagrangian, nested
 from .buckle import find_buckled
 from .course import copy
 from .drawing import draw
-from .find import FROM_REST, HELD_LENGTH, MESH_CHANGE, find, valued
+from .find import FROM_REST, HELD_LENGTH, find, valued
 from .march import cylinder_multiplier
 from .problem import GAMMA, LENGTH, D, H, rubber_of, wall_of
 from .profile import FIELDS
+from .shapes import MESH_CHANGE
 from .slack import slack_fibers
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK, PENDING
 

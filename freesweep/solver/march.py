@@ -8,8 +8,8 @@ import numpy as np
 
 from ..jit import kernel
 from . import guide, held, lagrangian, nested, newton, pinned
-from .held import largest_drift
 from .pinned import BY_SHARE
+from .shapes import largest_drift
 from .stability import pushed
 from .status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 from .uniform import between

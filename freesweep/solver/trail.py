@@ -17,7 +17,7 @@ from .uniform import between
 LEAST_DRIVE = 1e-10  # of its size at the end: below it lies rounding
 FIRST_FOLDS, LONG = 3.0, 3.5  # e-folds of the drive: first step; up to which the middle is as good as a uniform tube's
 PROBE = 1e-3  # of the way
-FARTHEST = 10.0  # ways beyond the load asked for
+FARTHEST = 10.0  # times the load asked for and the way there
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 1e-3, 0.01, 1e-7  # relative changes of the middle
 TURNING_STEP = 1e-4  # with which a turning point is looked at: behind it the load may soon rise again
 SLOWER = 0.5  # times the gain per step before: less needs smaller steps
@@ -31,13 +31,18 @@ LOST, ARRIVED, TURNED = 0, 1, 2
 
 @kernel
 def load_for(cell, y, sign, drive, start, end, t):
-    """The part of the way from load ``start`` to ``end`` at which ``sign U'(y)`` is ``drive``, near ``t``; NaN if none."""
+    """The part of the way from load ``start`` to ``end`` at which ``sign U'(y)`` is ``drive``, near ``t``; NaN if none.
+
+    What is too far away counts in loads: on a short way it is many times the way.
+    """
+    size = abs(end[3]) + abs(end[4]) + abs(end[5])
+    farthest = FARTHEST * (1.0 + size / (abs(end[3] - start[3]) + abs(end[4] - start[4]) + abs(end[5] - start[5])))
     for _ in range(20):
         here = sign * lagrangian.density(y, 0.0, cell, between(start, end, t))[1] - drive
         after = sign * lagrangian.density(y, 0.0, cell, between(start, end, t + PROBE))[1] - drive
         change = here * PROBE / (here - after)
         t += change
-        if not abs(t) < FARTHEST:
+        if not abs(t) < farthest:
             return np.nan
         if abs(change) < 1e-12:
             return t

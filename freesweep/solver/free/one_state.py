@@ -1,4 +1,4 @@
-"""One free state of a tube that varies, from a guess close to it, on nested meshes; near a fold by what is conjugate to the
+"""One free state, from a guess close to it, on nested meshes; near a fold by what is conjugate to the
 pressure.
 
 Close to a fold meshes differ in whether they have a state at a pressure at all. Held instead is the volume, which rises
@@ -12,26 +12,14 @@ from .. import held, lagrangian, nested, newton, quadrature
 from ..course import fill
 from ..drawing import draw
 from ..profile import FIELDS
+from ..shapes import differ, extremes
 from ..slack import slack_fibers
 from ..status import INACCURATE, NOT_CONVERGED, OK
 
-MESH_CHANGE = 0.03  # relative difference of a shape from one mesh to the next
 ROOT_STEPS, ROOT = 40, 1e-9  # of the pressure, relative
 FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 REGRADES, COLD = 1, 3  # of the base mesh, from a good guess and from a rough one
 PLAIN, HELD = nested.PLAIN, nested.HELD
-
-
-@kernel
-def extremes(y, middle):
-    """What tells one shape from another: stretch in the middle, least and largest."""
-    return y[middle], np.min(y), np.max(y)
-
-
-@kernel
-def differ(one, other):
-    """Whether two shapes differ by more than meshes do."""
-    return max(abs(one[0] - other[0]), max(abs(one[1] - other[1]), abs(one[2] - other[2]))) > MESH_CHANGE * one[2]
 
 
 @kernel

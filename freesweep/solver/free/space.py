@@ -1,4 +1,4 @@
-"""What the free states of a tube that varies are found with, and what they are written to."""
+"""What the free states of a tube are found with, and what they are written to."""
 
 from typing import NamedTuple
 

@@ -1,8 +1,9 @@
-"""Free states of tubes that vary: continuation on meshes, along the one path of loads (:mod:`load_path`), and nothing else.
+"""Free states: each tube's own branch is followed on meshes, along the one path of loads (:mod:`load_path`).
 
 First leg: pressure, force, torque and fiber extension - 1 rise in proportion, the pressure to the settling one. Second leg:
 from there the pressure alone, upward and downward. Which pressures are asked for changes no step: each state is solved on
-nested meshes from the two states of the branch that enclose it.
+nested meshes from the two states of the branch that enclose it. Where a mesh loses the branch of a tube that is the same all
+along, its first integral goes on (:mod:`retrace`).
 """
 
 import numpy as np
@@ -13,12 +14,13 @@ from ..continuation import FOLLOWED, Path
 from ..held import loaded
 from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
 from ..retrace import retrace
+from ..shapes import differ, extremes
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from ..wall import is_loose
 from .branch import begin, follow, guess
 from .fold import FINEST
 from .meshes import stand
-from .one_state import blank, cold, differ, extremes, plain, record
+from .one_state import blank, cold, plain, record
 from .space import Rows, make_space, make_track
 
 FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for what did not converge
@@ -159,9 +161,8 @@ def along_pressure(
 @inlined
 def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accuracy):
     """All states of one design; rows whose status is not PENDING are passed over. ``settled`` is its settling pressure,
-    ``limit`` (2,) the limit pressure and its bound, NaN if none was met. Rows: see :func:`follow_many`.
+    ``limit`` (2,) takes the limit pressure and its bound, if one is met. Rows: see :func:`follow_many`.
     """
-    limit[0], limit[1] = np.nan, np.nan
     settle(problem, tube, rows)
     lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy)
     least, most = np.inf, -1.0
@@ -240,8 +241,8 @@ def follow_many(
     own_course, own_places = (np.zeros((1, 1, 3, 4)), np.zeros(2)) if same else (course, places)
     for k in range(len(problems)):
         own = slice(first[k], first[k + 1])
+        limits[k, 0], limits[k, 1] = np.nan, np.nan
         if not np.any(status[own] == PENDING):
-            limits[k, 0], limits[k, 1] = np.nan, np.nan
             continue
         if same:
             own_places[1] = 0.5 * problems[k, LENGTH]
@@ -259,8 +260,7 @@ def follow_many(
             for i in range(first[k], first[k + 1]):
                 if status[i] == NOT_CONVERGED or status[i] == INACCURATE:
                     again = True
+                    if factor < FINER[len(FINER) - 1]:
+                        status[i] = PENDING
             if not again:
                 break
-            if factor < FINER[len(FINER) - 1]:
-                for i in range(first[k], first[k + 1]):
-                    status[i] = PENDING

@@ -1,4 +1,4 @@
-"""The branch of a free tube that varies: followed through the pressures asked for, to the fold where it ends."""
+"""The branch of a free tube: followed through the pressures asked for, to the fold where it ends."""
 
 import numpy as np
 

@@ -1,0 +1,28 @@
+"""Whether two shapes are one: on the same nodes, or on meshes of their own."""
+
+import numpy as np
+
+from ..jit import kernel
+
+MESH_CHANGE = 0.03  # relative difference of a shape from one mesh to the next
+
+
+@kernel
+def largest_drift(y, other):
+    """Largest relative difference of two shapes on the same nodes."""
+    largest = 0.0
+    for i in range(len(y)):
+        largest = max(largest, abs(y[i] - other[i]) / other[i])
+    return largest
+
+
+@kernel
+def extremes(y, middle):
+    """What tells one shape from another: stretch in the middle, least and largest."""
+    return y[middle], np.min(y), np.max(y)
+
+
+@kernel
+def differ(one, other):
+    """Whether two shapes, told by their extremes, differ by more than meshes do."""
+    return max(abs(one[0] - other[0]), max(abs(one[1] - other[1]), abs(one[2] - other[2]))) > MESH_CHANGE * one[2]
