@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from varying_branch import branch
 
 from freesweep import Actuator, MooneyRivlin, Yeoh, inflate
+from freesweep.first_integral.folded import solve_near
+from freesweep.first_integral.uniform import Tubes
+from freesweep.solver import batch
 from freesweep.solver.load_path import legs, settling_pressure
 from freesweep.solver.problem import FORCE, GAMMA, PROBLEM_SIZE, TORQUE
 from freesweep.status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK
@@ -111,3 +115,59 @@ def test_a_tube_under_torque_alone_is_the_limit_of_falling_pressures():
     assert abs(rotation[1] - rotation[2]) < 1e-2
     pushed = inflate(tube, [0.0, 1.0], force=-1.0, x=[0.0])
     assert (pushed["status"] == COMPRESSED).all()
+
+
+def problem(alpha, beta, length, wall, gamma, ratio, full, f=0.0, m=0.0):
+    """A row of problems from angles in degrees; ``length`` and ``wall`` in radii."""
+    ta, tb = np.tan(np.radians([alpha, beta]))
+    return [0.5 * (ta + tb), 0.5 * (ta - tb), wall * (2.0 + wall), gamma, ratio, full, f, m, length, 0.0, 0.0]
+
+
+def states(row, pressures):
+    return batch.walk_all(
+        np.array([row]), np.array([0, len(pressures)]), np.array(pressures), batch.uniform(24), 1e-6
+    )  # fmt: skip
+
+
+SNAPS = [  # designs of a census whose loads settle through a fold, or whose pressure falls through one
+    ([81.42094542, -39.20016669, 3.08941942, 0.31222384, 1.01865458, 0.19935339, 0.0, 1.30855967], 0.01843689),
+    ([8.25466882, -80.90930343, 5.8071007, 0.43746311, 1.01778139, 0.93248384, 0.0], 0.0070341),
+    ([-20.08438605, 83.33049413, 185.0105, 0.09916933, 1.01486304, 1.12685075, 0.0, 1.75120006, 1.02170426], 0.0868004),
+]
+
+
+@pytest.mark.parametrize(("design", "pressure"), SNAPS)
+def test_loads_that_settle_through_a_fold_have_no_state_beyond_it(design, pressure):
+    """Steps along the uniform tube alone passed over it; a continuation by someone else meets it, too."""
+    row = problem(*design)
+    assert states(row, [pressure]).status.tolist() == [BEYOND_LIMIT]
+    alpha, beta, length, _, gamma, ratio, full, f, m = [*design, 0.0, 0.0][:9]
+
+    def cells(x):
+        return alpha + 0.0 * x, beta + 0.0 * x, row[2] + 0.0 * x
+
+    state, fold, lost = branch(
+        cells, [0.0, 0.5 * length, length], ratio, "full" if full else "principal", pressure, gamma, f, m
+    )
+    assert (state, lost) == (None, False)
+    assert fold is not None
+
+
+@pytest.mark.parametrize(("design", "pressures", "middles"), [
+    ([-4.37683126, -7.23066935, 75.035155, 0.11796579, 1.0, 1.44629299, 0.0, 2.31393988],
+     [0.0284708, 1.0150317, 2.0429121, 2.1385999], [1.0165, 20.919, 23.312, 23.388]),
+    ([16.77631388, 15.84023592, 169.1242, 0.48121495, 1.0, 1.15460133, 0.0, 0.0, 0.67208396],
+     [0.0801633, 0.1582366, 9.6332216], [0.9895, 0.997, 57.6]),
+])  # fmt: skip
+def test_nearly_straight_fibers_swell_through_no_fold_whichever_pressures_are_asked_for(design, pressures, middles):
+    """A mesh loses the branch; a trace over a short way of the load must look as far as one over a long way."""
+    row = problem(*design)
+    for asked in (pressures, pressures[1:2], pressures[-1:]):
+        found = states(row, asked)
+        assert found.status.tolist() == [OK] * len(asked)
+        assert found.values[:, 4] == pytest.approx([middles[pressures.index(p)] for p in asked], rel=2e-2)
+        given = [np.full(len(asked), number) for number in row]
+        H, D, area, gamma, ratio, full, f, m, length, *yeoh = given
+        tubes = Tubes(H, D, area, gamma, ratio, full, np.array(asked), f, m, 1.0 + 0.0 * H, 0.5 * length, *yeoh)
+        exact, whole = solve_near(tubes, found.values[:, 4]), np.array([2.0, 2.0, 2.0, 2.0, 1.0])
+        assert np.all(np.abs(found.values * whole - exact.values) <= found.bounds * whole + 3.0 * exact.errors)
