@@ -6,7 +6,7 @@
   two Python threads enter it).
 * A literal, or a name that stands for one, is a type of its own to Numba, which compiles what it is handed to once more:
   kernels take it for any other whole number or truth.
-* The compiler is Numba's without what kernels never need (:mod:`compiler`).
+* The compiler is Numba's without what kernels never need; only entry points become machine code (:mod:`compiler`).
 
 Entry points are cached on disk, by a cache of our own (:mod:`kernel_cache`). Numba's knows only the file of the cached
 function, so editing the physics in another file would run stale code: the folder is named after a hash of all sources in
@@ -22,12 +22,12 @@ from pathlib import Path
 import numba
 from numba.core import config, types
 
-from .compiler import KernelCompiler
+from .compiler import KernelCompiler, PartCompiler
 from .kernel_cache import KernelCache
 
 _POLICY = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True, "pipeline_class": KernelCompiler}
 _POLICY["no_cfunc_wrapper"] = True  # no kernel is called from C
-_INNER = {"no_cpython_wrapper": True}  # nor these from Python: a quarter of the compiler's time would go to that
+_INNER = {"no_cpython_wrapper": True, "pipeline_class": PartCompiler}  # nor these from Python
 
 
 @functools.cache
@@ -51,7 +51,7 @@ def cache_folder(room: str) -> str | None:
 
 def kernel(function):
     """Compile a kernel that other kernels call. Called from Python, as by a test, it hands on to one that has a door."""
-    inner = numba.njit(**_INNER, **_POLICY)(function)
+    inner = numba.njit(**{**_POLICY, **_INNER})(function)
     if config.DISABLE_JIT:
         return inner
     ask = inner.get_call_template  # by another kernel, with the types of a call
@@ -64,11 +64,6 @@ def kernel(function):
 
 
 _with_door = functools.cache(numba.njit(**_POLICY))
-
-
-def inlined(function):
-    """Put a kernel with one caller into that caller's code: LLVM otherwise optimises it anew at each level above."""
-    return numba.njit(inline="always", **_POLICY)(function)
 
 
 def entry_point(function):

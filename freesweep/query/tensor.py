@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ..jit import entry_point, inlined, kernel
+from ..jit import entry_point, kernel
 from .axis import LABEL, LOG, SQRT, WINDOW
 from .rows import ROW, weigh_rows
 
@@ -66,7 +66,7 @@ def hermite(t, order):
     return -end, (1.0 - t) * (1.0 - 3.0 * t), end, t * (3.0 * t - 2.0)
 
 
-@inlined
+@kernel
 def window(knots, a, size, label, stride, piece, share, order, offsets, weights):
     """Offsets (in the table) and weights of the nodes around a place, those of weight zero left out; returns how many."""
     first = int(knots[a, piece, FIRST])

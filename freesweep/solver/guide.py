@@ -5,7 +5,7 @@ One number for a tube that is the same all along, else one for each of some plac
 
 from math import exp, sqrt
 
-from ..jit import inlined, kernel
+from ..jit import kernel
 from . import lagrangian, mesh, uniform
 from .course import at_point
 
@@ -88,7 +88,7 @@ def start(tube, u, load, x, y):
         y[i] = 1.0 + (stretch_at(u, x[i] / total) - 1.0) * layer
 
 
-@inlined
+@kernel
 def begin(tube, load, u, ahead, x, y):
     """A small part of the way to ``load``, half at most, and its first shape; returns that part, 0 where there is none."""
     rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)

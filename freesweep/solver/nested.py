@@ -271,7 +271,9 @@ def solve(
                 where, far = middle.node(density, xs, ys, n, mesh.cell_at(own, 0), now, accuracy)
             row[MIDDLE], missed = middle.stretch(density, xs, ys, count, where, n, far, mesh.cell_at(own, 0), now)
         if level >= 3:
-            out[2], out[3] = scales(row, mesh.largest(own), now, x[n] - x[0], max(error, coarser))
+            units, floors = scales(row, mesh.largest(own), now, x[n] - x[0], max(error, coarser))
+            for k in range(OUTPUTS):
+                out[2, k], out[3, k] = units[k], floors[k]
             if goal == HELD:  # the multiplier counts in units of its direction
                 unit = max(abs(direction[3]), max(abs(direction[4]), abs(direction[5])))
                 out[2, MULTIPLIER] /= max(unit, 1.0)

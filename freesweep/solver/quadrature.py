@@ -82,7 +82,9 @@ def solve(tube, near, load, base, accuracy, space):
             x[count] = half
         if not beside.is_near(row[nested.MIDDLE], near):
             return NOT_CONVERGED, 0
-    out[2], out[3] = lagrangian.scales(table[ROWS - 1], cell, load, half, nested.SMALLEST_TOLERANCE)
+    scales, floors = lagrangian.scales(table[ROWS - 1], cell, load, half, nested.SMALLEST_TOLERANCE)
+    for k in range(nested.OUTPUTS):
+        out[2, k], out[3, k] = scales[k], floors[k]
     largest = finish(table, out)
     finest.leave_loads(table[:, nested.MULTIPLIER], ROWS - 1, 0.0, load, finest.NO_MESH, space.fine)
     return (OK if largest <= accuracy else INACCURATE), nested.MAX_DOUBLINGS

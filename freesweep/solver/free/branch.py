@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...jit import inlined, kernel
+from ...jit import kernel
 from .. import guide, lagrangian, quadrature
 from ..continuation import CHANGE, FIRST_STEP, FOLLOWED, advance, between, is_flat, is_stable, last_alike
 from ..course import fill
@@ -69,7 +69,7 @@ def answer(track, space, tube, path, first, here, ahead, rows, accuracy):
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
-@inlined
+@kernel
 def end_at_fold(track, space, tube, path, first, here, ahead, fold, rows, limit, accuracy):
     """What rows still wait for, where the branch of a rising pressure ends on a step, at the ``fold`` (load, bound): states
     before it are solved, the rest lie beyond; they wait on where the fold is not known.

@@ -8,7 +8,7 @@ along, its first integral goes on (:mod:`retrace`).
 
 import numpy as np
 
-from ...jit import entry_point, inlined, kernel
+from ...jit import entry_point, kernel
 from .. import guide, lagrangian, nested, quadrature
 from ..continuation import FOLLOWED, Path
 from ..held import loaded
@@ -26,7 +26,7 @@ from .space import Rows, make_space, make_track
 FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for what did not converge
 
 
-@inlined
+@kernel
 def settle(problem, tube, rows):
     """Write the rows that need no solving."""
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
@@ -50,7 +50,7 @@ def settle(problem, tube, rows):
             rows.status[i] = COMPRESSED
 
 
-@inlined
+@kernel
 def first_states(path, first, tube, space, rows, accuracy):
     """Unloaded tubes at pressures below that at which their branch begins."""
     for i in range(len(rows.pressures)):
@@ -98,7 +98,7 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
     return OK, 1.0, track.y[tube[4]]
 
 
-@inlined
+@kernel
 def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
     """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way
     from rest along which the wall fades.
@@ -158,7 +158,7 @@ def along_pressure(
     leave(rows, status if status != OK else NOT_CONVERGED, low, high)
 
 
-@inlined
+@kernel
 def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accuracy):
     """All states of one design; rows whose status is not PENDING are passed over. ``settled`` is its settling pressure,
     ``limit`` (2,) takes the limit pressure and its bound, if one is met. Rows: see :func:`follow_many`.
