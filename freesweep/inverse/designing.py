@@ -1,0 +1,132 @@
+"""Inverse design: the tubes that do what is wished for."""
+
+import numpy as np
+
+from ..actuator import Actuator
+from ..faults import ActuatorError
+from ..given import described
+from ..options import read_count
+from . import freedom, wishes
+from .candidates import dataset
+from .least import front, least, multipliers
+from .look import look, spread
+from .misfit import make
+from .polish import polish
+from .wishes import Goal, Limit
+
+STARTS = 3  # for each candidate that is asked for
+DIFFERENT = 0.01  # of the unit box's diagonal: nearer ones are the same candidate
+MISSED = 1.0  # tolerances
+
+
+def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, seed=0):
+    """Tubes that do what is wished for, the best ones first.
+
+    Parameters
+    ----------
+    template : an :class:`Actuator`, whose parameters hold where nothing else is free
+    free : name -> what may change: ``(lowest, highest)`` in the units of the API, or texts with units; a list of what can be
+        bought (``"radius,wall": [(4.76e-3, 1.59e-3), ...]``, ``"material": ["ecoflex-00-30", ...]``); a tie
+        (``"beta": "-alpha"``); a :class:`Profile`. ``pressure``, ``force``, ``torque`` may be free, too
+    goals : list of :class:`Goal`; ``limits`` : list of :class:`Limit`
+    minimize : an output in a state (a ``Goal`` without value is none: give ``Limit("strain_energy", at_most=..., ...)`` as
+        its state), or the name of a parameter; two of them: the candidates are their Pareto front
+    count : candidates, at most
+    seed : of the first look; the same seed gives the same candidates
+
+    Returns a Dataset along ``candidate``: parameters by name, ``goal_value``, ``goal_error`` (bound), ``goal_met``,
+    ``limit_value``, ``limit_kept``, ``misfit`` (root of the sum of squares, in tolerances), ``slope`` (change of each
+    goal's output by what is free), ``status``, ``met``, ``python`` (the line that makes it); ``attrs["summary"]`` says in a
+    sentence whether it can be done and, if not, what stands against it. Raises :class:`ActuatorError` for invalid input.
+    """
+    faults = []
+    space = freedom.read(template, free, faults)
+    asked, kept = wishes.read("goals", goals, Goal, faults), wishes.read("limits", list(limits or ()), Limit, faults)
+    if isinstance(goals, (list, tuple)) and not goals and minimize is None:
+        faults.append("goals: none; give what the tube shall do, or something to minimize")
+    objectives = _objectives(minimize, faults)
+    count = read_count("count", count, faults)
+    if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
+        faults.append(f"seed: found {described(seed)}; give a whole number, 0 or more")
+    if space is not None:
+        missing = [w.title for w in (*asked, *kept, *objectives) if _needs_pressure(w) and "pressure" not in free]
+        faults += [f"{title}: give its pressure, or let 'pressure' be free" for title in missing]
+    if faults:
+        raise ActuatorError(faults)
+    misfit = make(space, asked, kept)
+    u, choice = look(misfit, STARTS * count, seed)
+    if len(u) == 0:
+        raise ActuatorError([f"goals: no design that is allowed has a state in which {asked[0].title} could be asked"])
+    u, _, residuals, slopes = polish(misfit, u, choice)
+    if objectives:
+        return _with_least(misfit, objectives, u, choice, residuals, count)
+    cost = np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf)
+    best = spread(space, u, choice, _order(cost), count, DIFFERENT)
+    return dataset(misfit, u[best], choice[best], slopes[best])
+
+
+def _order(cost):
+    """Designs that meet everything keep the order of the look; the others follow by what they miss."""
+    return np.argsort(np.where(cost <= MISSED, 0.0, cost), kind="stable")
+
+
+def _needs_pressure(wish):
+    return wish.kind not in ("design", "limit") and "pressure" not in dict(wish.conditions)
+
+
+def _objectives(minimize, faults):
+    """What is to be least, as wishes without a range."""
+    given = list(minimize) if isinstance(minimize, (list, tuple)) else [] if minimize is None else [minimize]
+    if len(given) > 2:
+        faults.append(f"minimize: found {len(given)} of them; one, or two for a front between them")
+        return []
+    found = []
+    for k, one in enumerate(given):
+        if isinstance(one, (Goal, Limit)):
+            found += [wish._replace(low=-np.inf, high=np.inf) for wish in one.wishes(faults, f"minimize[{k}]")]
+        elif isinstance(one, str) and one in (*wishes.DESIGN, "pressure"):
+            found.append(wishes.Wish(one, (), -np.inf, np.inf, np.nan, one))
+        else:
+            can = ", ".join((*wishes.DESIGN, "pressure"))
+            faults.append(
+                f"minimize: found {described(one)}; give one of {can}, or an output in a state as a Limit of any range"
+            )
+    return found
+
+
+def _with_least(misfit, objectives, u, choice, residuals, count):
+    """Candidates among those that do it with the least of the objectives."""
+    number = len(objectives)
+    good = np.all(np.abs(np.nan_to_num(residuals, nan=np.inf)) <= MISSED, axis=1)
+    if not np.any(good):
+        best = _order(np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf))[:count]
+        _, _, _, slopes = polish(misfit, u[best], choice[best])
+        return dataset(misfit, u[best], choice[best], slopes)
+    u, choice = u[good][:count], choice[good][:count]
+    whole = misfit._replace(
+        wishes=[*misfit.wishes, *objectives], tolerances=np.append(misfit.tolerances, [1.0] * number)
+    )
+    values = whole.at(u, choice)[0].values[:, -number:]
+    scale = np.maximum(np.nanmax(np.abs(values), axis=0), 1e-300)
+    if number == 2:
+        u, choice = front(whole, u, choice, count, scale)
+    else:
+        u = least(whole, u, choice, number, scale)
+    found, residuals = whole.at(u, choice)
+    slopes = whole.slopes(u, choice, found)
+    missed = np.any(np.abs(residuals[:, :-number]) > MISSED, axis=1)
+    order = np.lexsort((found.values[:, -number], missed))
+    best = spread(misfit.space, u, choice, order, count, DIFFERENT)
+    result = dataset(whole, u[best], choice[best], slopes[best], number)
+    if number == 1:
+        prices = [multipliers(whole, u[i], slopes[i], found.values[i], number) for i in best]
+        span = misfit.space.high - misfit.space.low
+        asked = misfit.goals
+        result["goal_price"] = (("candidate", "goal"), np.array([price[0][:asked] for price in prices]))
+        if len(misfit.wishes) > asked:
+            result["limit_price"] = (("candidate", "limit"), np.array([price[0][asked:] for price in prices]))
+        result["bound_price"] = (("candidate", "parameter"), np.array([price[1] / span for price in prices]))
+        for name in ("goal_price", "limit_price", "bound_price"):
+            if name in result:
+                result[name].attrs["long_name"] = "change of what is minimized by one unit of what holds it"
+    return result

@@ -1,0 +1,136 @@
+"""Among designs that do what is wished for, those with the least of something, or a front between two of it."""
+
+import numpy as np
+
+from .misfit import FAR, Misfit
+
+ROUNDS = 60
+ENOUGH = 1e-8  # of the objective, relative
+INSIDE = 0.5  # of a goal's tolerance that the search may use
+ACTIVE = 1e-3  # of the unit box, or tolerances: a bound or a limit that stops the search
+
+
+class Least:
+    """The problem of one choice, for SciPy: the last ones of the wishes are the objectives."""
+
+    def __init__(self, misfit: Misfit, choice, objectives, scale):
+        self.misfit, self.choice, self.objectives = misfit, np.array([choice]), objectives
+        self.scale = scale  # of the objectives, (objectives,)
+        self._known = {}
+
+    def known(self, u):
+        """Values of all wishes and their slopes, in tolerances."""
+        u = np.clip(u, 0.0, 1.0)
+        if (key := u.tobytes()) not in self._known:
+            found, _ = self.misfit.at(u[None], self.choice)
+            slopes = self.misfit.slopes(u[None], self.choice, found)[0]
+            values = found.values[0] / self.misfit.tolerances
+            self._known = {key: (np.where(np.isfinite(values), values, FAR), slopes)}  # the last one only
+        return self._known[key]
+
+    def objective(self, k):
+        """One objective and its gradient, of size 1."""
+        place = len(self.misfit.wishes) - self.objectives + k
+        return (
+            lambda u: self.known(u)[0][place] / self.scale[k],
+            lambda u: self.known(u)[1][place] / self.scale[k],
+        )
+
+    def constraints(self, levels):
+        """Goals and limits as SciPy takes them; and levels (k,) of objectives that are not to be passed, NaN for none."""
+        found, wishes = [], self.misfit.wishes
+        for j, wish in enumerate(wishes[: len(wishes) - self.objectives]):
+            unit = self.misfit.tolerances[j]
+            slack = INSIDE if j < self.misfit.goals else 0.0
+            if np.isfinite(wish.low):
+                found.append(self._one(j, 1.0, wish.low / unit - slack))
+            if np.isfinite(wish.high):
+                found.append(self._one(j, -1.0, wish.high / unit + slack))
+        for k, level in enumerate(levels):
+            if np.isfinite(level):
+                found.append(self._one(len(wishes) - self.objectives + k, -1.0, level))
+        return found
+
+    def _one(self, j, sign, end):
+        size = max(abs(end), 1.0)
+        return {
+            "type": "ineq",
+            "fun": lambda u: sign * (self.known(u)[0][j] - end) / size,
+            "jac": lambda u: sign * self.known(u)[1][j] / size,
+        }
+
+    def search(self, u, k, levels):
+        """The point with the least of objective ``k`` from ``u`` (p,) on."""
+        from scipy.optimize import minimize
+
+        fun, jac = self.objective(k)
+        found = minimize(
+            fun, u, jac=jac, method="SLSQP", bounds=[(0.0, 1.0)] * len(u), constraints=self.constraints(levels),
+            options={"maxiter": ROUNDS, "ftol": ENOUGH},
+        )  # fmt: skip
+        return np.clip(found.x, 0.0, 1.0)
+
+
+def least(misfit: Misfit, u, choice, objectives, scale):
+    """Points with the least of one objective (s, p), each from its start; the wishes end with the objective."""
+    return np.array([Least(misfit, c, objectives, scale).search(one, 0, [np.nan]) for one, c in zip(u, choice)])
+
+
+def front(misfit: Misfit, u, choice, count, scale):
+    """``count`` points, and their choices, along the front of two objectives, from the starts that have the least of each:
+    the second one's least while the first is held at levels in between.
+    """
+    ends = []
+    for k in range(2):
+        found = [Least(misfit, c, 2, scale).search(one, k, [np.nan] * 2) for one, c in zip(u, choice)]
+        _, residuals = misfit.at(np.array(found), choice)
+        values = np.array([Least(misfit, c, 2, scale).objective(k)[0](one) for one, c in zip(found, choice)])
+        kept = np.all(np.abs(residuals[:, : len(misfit.wishes) - 2]) <= 1.0, axis=1)
+        best = np.argmin(np.where(kept, values, np.inf))
+        ends.append((found[best], choice[best]))
+    place = len(misfit.wishes) - 2
+    first = [Least(misfit, c, 2, scale).known(one)[0][place] for one, c in ends]
+    points, choices = [ends[0][0]], [ends[0][1]]
+    for level in np.linspace(*first, count)[1:-1]:
+        at = Least(misfit, choices[-1], 2, scale)
+        points.append(at.search(points[-1], 1, [level, np.nan]))
+        choices.append(choices[-1])
+    return np.array([*points, ends[1][0]]), np.array([*choices, ends[1][1]])
+
+
+def multipliers(misfit: Misfit, u, slopes, residuals_at, objectives):
+    """What each wish (w,) and each bound (p,) costs where one objective is least: its change by one unit of theirs.
+
+    Stationarity: the objective's gradient is a sum of those of what is active, none of them pulling the wrong way.
+    """
+    from scipy.optimize import nnls
+
+    wishes, last = misfit.wishes, len(misfit.wishes) - objectives
+    gradient = slopes[last] * misfit.tolerances[last]
+    columns, names = [], []
+    for j in range(last):
+        value, unit, wish = residuals_at[j], misfit.tolerances[j], wishes[j]
+        near = max(ACTIVE * max(abs(value), unit), 2.0 * unit)
+        own = slopes[j] * unit
+        if np.isfinite(wish.low) and value < wish.low + near:
+            columns.append(own)
+            names.append((j, 1.0))
+        if np.isfinite(wish.high) and value > wish.high - near:
+            columns.append(-own)
+            names.append((j, -1.0))
+    for i, at in enumerate(u):
+        if at < ACTIVE or at > 1.0 - ACTIVE:
+            unit = np.zeros(len(u))
+            unit[i] = 1.0 if at < ACTIVE else -1.0
+            columns.append(unit)
+            names.append((last + i, unit[i]))
+    found, bounds = np.zeros(last), np.zeros(len(u))
+    if columns:
+        matrix = np.array(columns).T
+        size = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+        for (j, sign), value in zip(names, nnls(matrix / size, gradient)[0] / size):
+            if j < last:
+                found[j] += sign * value
+            else:
+                bounds[j - last] += sign * value
+    return found, bounds

@@ -1,0 +1,48 @@
+"""A wide look at all designs that are allowed, and starts in each basin."""
+
+import numpy as np
+
+from .misfit import LOOKING, Misfit
+
+ALIKE, ONE_BY_ONE = 4096, 128  # designs of a first look: in vectors, or each by itself; for each choice a share of them
+LEAST = 32  # of each choice
+APART = 0.12  # of the unit box's diagonal: starts nearer than that lie in one basin
+BOUNDED = 1e4  # tolerances beyond which a wish is simply missed: rough looks compare designs that are close
+
+
+def look(misfit: Misfit, count, seed):
+    """Starts for :func:`polish`: points (s, p) and their choices (s,), the best ones first, each in a basin of its own."""
+    from scipy.stats import qmc
+
+    space = misfit.space
+    free, choices = len(space.names), len(space.choices)
+    if free == 0:
+        return np.zeros((choices, 0)), np.arange(choices)
+    most = ALIKE if space.is_alike else ONE_BY_ONE
+    each = 1 << int(np.ceil(np.log2(max(LEAST, most // choices))))
+    draws = qmc.Sobol(free, seed=np.random.default_rng(seed)).random(each * min(choices, most // LEAST))
+    shown = np.random.default_rng(seed).permutation(choices)[: max(len(draws) // each, 1)]
+    choice = np.repeat(shown, each)
+    _, residuals = misfit.at(draws, choice, LOOKING)
+    goals = np.abs(residuals)
+    scale = np.nanmedian(np.where(np.isfinite(goals), goals, np.nan), axis=0)
+    scale = np.where(np.nan_to_num(scale) > 0.0, scale, 1.0)
+    cost = np.sum(np.minimum(goals / scale, BOUNDED) ** 2, axis=1)
+    known = np.flatnonzero(np.isfinite(cost))
+    order = known[np.argsort(cost[known], kind="stable")]
+    picked = spread(space, draws, choice, order, count, APART)
+    return draws[picked], choice[picked]
+
+
+def spread(space, u, choice, order, count, apart):
+    """The first of ``order`` that are ``apart`` from each other, up to ``count``; symmetric copies are the same design."""
+    picked, mirrored = [], space.mirrored(u)
+    reach = apart * np.sqrt(u.shape[1])
+    for i in order:
+        others = [j for j in picked if choice[j] == choice[i]]
+        near = [u[others] - u[i], mirrored[others] - u[i]] if others else []
+        if all(np.all(~(np.linalg.norm(way, axis=1) < reach)) for way in near):
+            picked.append(int(i))
+        if len(picked) == count:
+            break
+    return np.array(picked, int)

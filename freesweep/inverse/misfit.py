@@ -1,0 +1,77 @@
+"""How far designs are from what was wished for, and how that changes with what is free."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .predict import Predicted, predict
+from .wishes import RELATIVE
+
+STEP = 1e-4  # of the unit box, of central differences
+LOOKING, POLISHING = 1e-4, 1e-9  # accuracies of the solver
+NATURAL = {"rotation": 1.0, "stroke": 0.01}  # [degree], [1]: a wish for 0 is measured by
+SHARE = {"deformed_length": "length", "length_change": "length", "mid_radius": "radius", "outer_radius": "radius"}
+FAR = 1e3  # tolerances by which a state that is not there counts as missed
+
+
+class Misfit(NamedTuple):
+    """Wishes in units of their tolerances: goals first, then limits."""
+
+    space: object
+    wishes: list
+    goals: int
+    tolerances: np.ndarray
+
+    def residuals(self, found: Predicted):
+        """By how many tolerances each wish is missed (n, wishes); beyond the range, with its sign."""
+        low = np.array([wish.low for wish in self.wishes])
+        high = np.array([wish.high for wish in self.wishes])
+        with np.errstate(invalid="ignore"):
+            above, below = np.maximum(found.values - high, 0.0), np.minimum(found.values - low, 0.0)
+            missed = np.where(np.isfinite(found.values), above + below, np.where(found.values > 0, 0.0, np.nan))
+        return missed / self.tolerances
+
+    def at(self, u, choice, accuracy=POLISHING):
+        """``(what is predicted, residuals)`` at points u (n, p)."""
+        found = predict(self.space, self.wishes, u, choice, accuracy)
+        return found, self.residuals(found)
+
+    def slopes(self, u, choice, found):
+        """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: central differences, one-sided
+        where the other side has no state.
+        """
+        count, free = u.shape
+        if free == 0:
+            return np.zeros((count, len(self.wishes), 0))
+        step = STEP * np.eye(free)
+        ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
+        values = predict(
+            self.space, self.wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING
+        ).values.reshape(count, 2, free, -1)
+        middle = found.values[:, None, None]
+        values = np.where(np.isfinite(values), values, middle)
+        along = np.arange(free)
+        width = ends[:, :free][:, along, along] - ends[:, free:][:, along, along]
+        gone = np.all(values == middle, axis=-1)  # only there, or no change at all
+        width = np.where(gone[:, 0] ^ gone[:, 1], 0.5 * width, width)
+        with np.errstate(invalid="ignore"):
+            slope = (values[:, 0] - values[:, 1]) / width[..., None]
+        return np.nan_to_num(np.moveaxis(slope, 1, 2)) / self.tolerances[:, None]
+
+
+def make(space, goals, limits) -> Misfit:
+    """The misfit of goals and limits: tolerances that are not given are a share of the value, or of its natural size."""
+    wishes = [*goals, *limits]
+    return Misfit(space, wishes, len(goals), np.array([_tolerance(space, wish) for wish in wishes]))
+
+
+def _tolerance(space, wish):
+    if np.isfinite(wish.tolerance):
+        return wish.tolerance
+    ends = [abs(end) for end in (wish.low, wish.high) if np.isfinite(end)]
+    size = max(ends, default=0.0)
+    if size == 0.0:
+        tube = space.template
+        natural = NATURAL | {"force": np.pi * tube.radius**2 * 1e4, "torque": np.pi * tube.radius**3 * 1e4}
+        size = natural.get(wish.output) or 0.1 * getattr(tube, SHARE.get(wish.output, ""), 0.0) or 1.0
+    return RELATIVE * size

@@ -1,0 +1,56 @@
+"""From starts into their basins: Levenberg and Marquardt's method between bounds, all designs at once."""
+
+import numpy as np
+
+from .misfit import Misfit
+
+ROUNDS = 40
+DAMPING, LESS, MORE, MOST = 1e-3, 0.2, 5.0, 1e9  # of the diagonal; after a step that helps, and one that does not
+DONE = 1e-3  # tolerances: closer is close enough
+STILL = 1e-9  # of the cost: no more is won
+LARGEST = 0.2  # of the unit box, in one step
+
+
+def polish(misfit: Misfit, u, choice):
+    """Points (s, p) at the bottom of the basins of ``u``; with ``(what is predicted, residuals, slopes)`` there."""
+    u, count, free = u.copy(), len(u), u.shape[1]
+    found, residuals = misfit.at(u, choice)
+    slopes = misfit.slopes(u, choice, found)
+    cost, damping = _cost(residuals), np.full(count, DAMPING)
+    active = np.isfinite(cost) & (free > 0)
+    for _ in range(ROUNDS):
+        active &= (np.sqrt(cost) > DONE) & (damping < MOST)
+        rows = np.flatnonzero(active)
+        if len(rows) == 0:
+            break
+        ahead = np.array([_ahead(u[i], residuals[i], slopes[i], damping[i]) for i in rows])
+        trial, missed = misfit.at(ahead, choice[rows])
+        new = _cost(missed)
+        better = new < cost[rows]
+        damping[rows] *= np.where(better, LESS, MORE)
+        won = rows[better]
+        active[won] = new[better] < cost[won] * (1.0 - STILL)
+        u[won], residuals[won], cost[won] = ahead[better], missed[better], new[better]
+        for own, other in zip(found, trial):
+            own[won] = other[better]
+        if len(won):
+            slopes[won] = misfit.slopes(u[won], choice[won], trial.part(better))
+    return u, found, residuals, slopes
+
+
+def _cost(residuals):
+    return np.where(np.all(np.isfinite(residuals), axis=1), np.sum(residuals**2, axis=1), np.inf)
+
+
+def _ahead(u, residuals, slopes, damping):
+    """A step of the damped normal equations, along what is not held by a bound."""
+    slopes = slopes * (residuals != 0.0)[:, None]  # a range that is kept asks for nothing
+    gradient = slopes.T @ residuals
+    free = ~(((u <= 0.0) & (gradient > 0.0)) | ((u >= 1.0) & (gradient < 0.0)))
+    step = np.zeros_like(u)
+    if np.any(free):
+        matrix = slopes[:, free].T @ slopes[:, free]
+        size = np.trace(matrix)
+        damped = matrix + np.diag(damping * (np.diag(matrix) + 1e-9 * size) + 1e-300)
+        step[free] = -np.linalg.lstsq(damped, gradient[free], rcond=None)[0]
+    return np.clip(u + step * min(1.0, LARGEST / max(np.max(np.abs(step)), 1e-300)), 0.0, 1.0)

@@ -1,0 +1,211 @@
+"""What a tube shall do: goals to meet and limits to keep, as a person gives them.
+
+A wish names an output and the state in which it counts: pressure, force and torque of a free tube, or what is held. What a
+wish leaves out is free, if ``free`` names it, else 0; a held tube is held as it is undeformed.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..atlas.schema import PARAMETERS
+from ..faults import ActuatorError
+from ..given import numbers, read_number
+from ..units import shown
+
+UNITS = {
+    "deformed_length": "m", "rotation": "degree", "volume": "m3", "mid_radius": "m", "strain_energy": "J",
+    "force": "N", "torque": "N m", "stroke": "1", "length_change": "m", "outer_radius": "m", "limit_pressure": "Pa",
+}  # fmt: skip
+CONDITIONS = {"pressure": "Pa", "force": "N", "torque": "N m", "deformed_length": "m", "rotation": "degree"}
+HELD = {
+    "force": ("deformed_length", "torque"),
+    "torque": ("rotation", "force"),
+}  # what is held, what may work on the rest
+DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "c10", "c01", "c20", "c30")
+RELATIVE = 1e-4  # of a goal's value, or of its natural size: what counts as met where no tolerance is given
+
+
+class Wish(NamedTuple):
+    """One number wished for: an output in one state, and the range it shall lie in, in SI units and degrees."""
+
+    output: str
+    conditions: tuple  # (name, value) of the state, what is free left out
+    low: float
+    high: float
+    tolerance: float  # nan: RELATIVE
+    title: str
+
+    @property
+    def kind(self) -> str:
+        """One of "free", "locked", "force" or "torque" (held), "limit" or "design"."""
+        if self.output in DESIGN or self.output == "pressure":
+            return "design"
+        if self.output in HELD:
+            return self.output
+        if self.output == "limit_pressure":
+            return "limit"
+        return "locked" if math.isinf(dict(self.conditions).get("pressure", 0.0)) else "free"
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What goals and limits share.
+
+    Parameters
+    ----------
+    output : what a solved state has (``deformed_length`` [m], ``rotation`` [degree], ``volume`` [m3], ``mid_radius`` [m],
+        ``strain_energy`` [J]), what holds one (``force`` [N] at a held deformed length, ``torque`` [N m] at a held
+        rotation), or what follows from them: ``stroke`` (1 - deformed_length/length), ``length_change`` [m],
+        ``outer_radius`` [m] (the largest of the deformed tube), ``limit_pressure`` [Pa]; or a parameter of the design
+    value : the number wished for, or an array: a curve over arrays of the same length among the conditions
+    at_least, at_most, between : a range instead
+    tolerance : by how much a goal may be missed; default 1e-4 of it
+    pressure, force, torque : the loads [Pa, N, N m]; a pressure of infinity is the locked shape
+    deformed_length, rotation : what is held, for the outputs ``force`` and ``torque`` [m, degree]
+    """
+
+    output: str
+    value: object = None
+    at_least: object = None
+    at_most: object = None
+    between: tuple = None
+    tolerance: float = None
+    pressure: object = None
+    force: object = None
+    torque: object = None
+    deformed_length: object = None
+    rotation: object = None
+
+    def __post_init__(self):
+        faults = []
+        self.wishes(faults, type(self).__name__)
+        if faults:
+            raise ActuatorError(faults)
+
+    def wishes(self, faults, where="") -> list:
+        """The single wishes; faults are noted."""
+        units = UNITS | {name: PARAMETERS[name].units for name in (*DESIGN, "pressure")}
+        if not isinstance(self.output, str) or self.output not in units:
+            faults.append(f"{where}: output: found {shown(str(self.output))}; choose one of {', '.join(units)}")
+            return []
+        before = len(faults)
+        unit = units[self.output]
+        low, high = self._range(unit, faults, where)
+        given = {}
+        for name in CONDITIONS:
+            if getattr(self, name) is not None:
+                if (found := _column(f"{where}: {name}", getattr(self, name), CONDITIONS[name], faults)) is not None:
+                    given[name] = found
+        self._check(given, faults, where)
+        tolerance = math.nan
+        if self.tolerance is not None:
+            tolerance = read_number(f"{where}: tolerance", self.tolerance, unit, faults, positive=True)
+        columns = [low, high, *given.values()]
+        sizes = {len(column) for column in columns if len(column) > 1}
+        if len(sizes) > 1:
+            faults.append(
+                f"{where}: curves of {' and '.join(map(str, sorted(sizes)))} points; give arrays of one length"
+            )
+        if len(faults) > before:
+            return []
+        count = max(len(column) for column in columns)
+        columns = [np.broadcast_to(column, count).tolist() for column in columns]
+        return [
+            Wish(self.output, tuple(zip(given, conditions)), a, b, tolerance, _title(self.output, given, conditions))
+            for a, b, *conditions in zip(*columns)
+        ]
+
+    def _range(self, unit, faults, where):
+        ways = [name for name in ("value", "at_least", "at_most", "between") if getattr(self, name) is not None]
+        if len(ways) != 1 and ways != ["at_least", "at_most"]:
+            found = ", ".join(ways) or "none"
+            faults.append(f"{where}: found {found}; give one of value, at_least, at_most, between=(low, high)")
+            return np.zeros(1), np.zeros(1)
+        if ways == ["between"]:
+            pair = self.between
+            if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+                faults.append(f"{where}: between: give two numbers, the lower one first")
+                return np.zeros(1), np.zeros(1)
+            ends = pair
+        elif ways == ["value"]:
+            ends = self.value, self.value
+        else:
+            ends = self.at_least, self.at_most
+        none = (np.full(1, -np.inf), np.full(1, np.inf))
+        low, high = (
+            none[k] if end is None else _column(f"{where}: {self.output}", end, unit, faults)
+            for k, end in enumerate(ends)
+        )
+        low, high = (none[k] if column is None else column for k, column in enumerate((low, high)))
+        if low.shape == high.shape and np.any(low > high):
+            faults.append(f"{where}: between: give the lower number first")
+        return low, high
+
+    def _check(self, given, faults, where):
+        """Conditions that belong to no state with this output."""
+        held = HELD.get(self.output)
+        allowed = ("pressure", *held) if held else ("pressure", "force", "torque")
+        if self.output in DESIGN or self.output == "pressure":
+            allowed = ()
+        if self.output == "limit_pressure":
+            allowed = ("force", "torque")
+        for name in given:
+            if name not in allowed:
+                can = f"give {', '.join(allowed)}" if allowed else "it is no matter of a state"
+                faults.append(f"{where}: {self.output} under a given {name} is not among what is solved; {can}")
+        if held and np.any(np.isinf(given.get("pressure", 0.0))):
+            faults.append(f"{where}: pressure: a locked shape has no {self.output}; give a finite pressure")
+
+
+class Goal(_Asked):
+    """What a design shall do: see the parameters of :class:`Limit`, which are the same. Goals may be missed, by as much as
+    ``misfit`` says; where all are met within their tolerance, a candidate is ``met``.
+
+    Raises :class:`ActuatorError`.
+    """
+
+    __doc__ += _Asked.__doc__.partition("\n")[2]
+
+
+class Limit(_Asked):
+    """What all candidates have to keep: at_least, at_most or between.
+
+    Raises :class:`ActuatorError`.
+    """
+
+    __doc__ += _Asked.__doc__.partition("\n")[2]
+
+    def __post_init__(self):
+        if self.value is not None:
+            raise ActuatorError(["Limit: a limit is a range; give at_least, at_most or between, or make it a Goal"])
+        super().__post_init__()
+
+
+def read(name, given, kind, faults) -> list:
+    """The single wishes of a list of goals or limits."""
+    given = [given] if isinstance(given, _Asked) else given
+    if not isinstance(given, (list, tuple)) or not all(isinstance(one, kind) for one in given):
+        faults.append(f"{name}: found {shown(str(given))}; give a list of freesweep.{kind.__name__}")
+        return []
+    return [wish for k, one in enumerate(given) for wish in one.wishes(faults, f"{name}[{k}]")]
+
+
+def _column(name, value, unit, faults):
+    try:
+        found = np.atleast_1d(numbers(value, unit))
+    except ValueError as error:
+        faults.append(f"{name}: {error}")
+        return None
+    infinite = name.endswith("pressure")
+    if found.ndim != 1 or found.size == 0 or np.any(np.isnan(found)) or not (infinite or np.all(np.isfinite(found))):
+        faults.append(f"{name}: give finite numbers, one or a column of them, in [{unit}]")
+        return None
+    return found
+
+
+def _title(output, names, values):
+    state = ", ".join(f"{name} {value:g} {CONDITIONS[name]}" for name, value in zip(names, values))
+    return f"{output} at {state}" if state else output
