@@ -8,6 +8,7 @@ import contextlib
 import sys
 
 from .calibrate import add_calibrate
+from .design import add_design
 from .draw import add_plot, check_map, draw_map
 from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
 from .judge import add_judging
@@ -87,6 +88,7 @@ def parser() -> argparse.ArgumentParser:
     add_single(commands)
     add_judging(commands)
     add_calibrate(commands)
+    add_design(commands)
     add_thesis(commands)
     return top
 

@@ -1,5 +1,7 @@
 """What was found, solved at full accuracy, as a Dataset; and in one sentence."""
 
+import warnings
+
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
@@ -93,6 +95,15 @@ def _slopes(misfit, slopes):
     """From tolerances along the unit box to units of output per unit of parameter."""
     space = misfit.space
     return slopes * misfit.tolerances[:, None] / np.where(space.high > space.low, space.high - space.low, 1.0)
+
+
+def actuators(result) -> list:
+    """The actuators of candidates, made from their Python lines."""
+    import freesweep
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # said where they were found
+        return [eval(line, {"fs": freesweep}) for line in result["python"].values]  # lines of our own
 
 
 def _lines(space, u, choice):

@@ -106,6 +106,13 @@ class Space(NamedTuple):
             warnings.simplefilter("ignore")  # what is odd about the template was said where it was made
             return replace(self.template, **changes, material=rubber)
 
+    def actuator_or_none(self, u, k):
+        """The same, None where these numbers are no actuator."""
+        try:
+            return self.actuator(u, k)
+        except ActuatorError:
+            return None
+
     @property
     def is_alike(self):
         """Whether all designs are the source's tubes, the same all along: vectors solve many of them."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from .misfit import LOOKING, Misfit
 
-ALIKE, ONE_BY_ONE = 4096, 128  # designs of a first look: in vectors, or each by itself; for each choice a share of them
+ALIKE, ONE_BY_ONE = 4096, 128  # designs of a first look: in vectors, or each by itself; the choices share them
 LEAST = 32  # of each choice
 APART = 0.12  # of the unit box's diagonal: starts nearer than that lie in one basin
 BOUNDED = 1e4  # tolerances beyond which a wish is simply missed: rough looks compare designs that are close
@@ -19,10 +19,10 @@ def look(misfit: Misfit, count, seed):
     if free == 0:
         return np.zeros((choices, 0)), np.arange(choices)
     most = ALIKE if space.is_alike else ONE_BY_ONE
-    each = 1 << int(np.ceil(np.log2(max(LEAST, most // choices))))
-    draws = qmc.Sobol(free, seed=np.random.default_rng(seed)).random(each * min(choices, most // LEAST))
-    shown = np.random.default_rng(seed).permutation(choices)[: max(len(draws) // each, 1)]
-    choice = np.repeat(shown, each)
+    shown = np.random.default_rng(seed).permutation(choices)[: most // LEAST]
+    total = int(np.ceil(np.log2(max(most, LEAST * len(shown)))))
+    draws = qmc.Sobol(free, seed=np.random.default_rng(seed)).random_base2(total)
+    choice = shown[np.arange(len(draws)) % len(shown)]
     _, residuals = misfit.at(draws, choice, LOOKING)
     goals = np.abs(residuals)
     scale = np.nanmedian(np.where(np.isfinite(goals), goals, np.nan), axis=0)

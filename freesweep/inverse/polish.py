@@ -4,7 +4,7 @@ import numpy as np
 
 from .misfit import Misfit
 
-ROUNDS = 40
+ROUNDS = 120
 DAMPING, LESS, MORE, MOST = 1e-3, 0.2, 5.0, 1e9  # of the diagonal; after a step that helps, and one that does not
 DONE = 1e-3  # tolerances: closer is close enough
 STILL = 1e-9  # of the cost: no more is won

@@ -1,0 +1,43 @@
+"""The command `freesweep design`: parses and calls."""
+
+
+def add_design(commands):
+    """Add the command to the command line."""
+    command = commands.add_parser(
+        "design",
+        help="the tubes that do what a file of wishes says",
+        description="Looks for the tubes that meet the goals and keep the limits of a TOML file, such as those under"
+        " sweeps/wishes, and says in one sentence whether there are any.",
+    )
+    command.add_argument("wishes", metavar="WISH.toml", help="goals, limits and what is free")
+    command.add_argument("-o", "--out", metavar="FILE", help="keep the candidates (.csv or .nc)")
+    command.add_argument("--picture", metavar="FILE", help="draw them: angles, goal curves, shapes (.png, .svg, .pdf)")
+    command.set_defaults(run=_run)
+
+
+def _run(options):
+    from pathlib import Path
+
+    from ..atlas.files import write_whole
+    from ..inverse import wish_file
+    from ..inverse.designing import design
+    from ..inverse.report import csv, lines, table
+
+    if options.out and Path(options.out).suffix not in (".csv", ".nc"):
+        raise ValueError(f"--out: found {options.out!r}; candidates are kept as .csv or .nc")
+    asked = wish_file.read(options.wishes)
+    found = design(**asked)
+    print(table(found))
+    print(found.attrs["summary"])
+    print(lines(found))
+    if options.out:
+        content = csv(found).encode() if options.out.endswith(".csv") else found.to_netcdf(engine="netcdf4")
+        write_whole(options.out, content)
+        print(options.out)
+    if options.picture:
+        from ..inverse.candidates import actuators
+        from ..plot.candidates import draw
+        from ..plot.style import save
+
+        save(draw(found, asked["goals"], actuators(found)), options.picture)
+        print(options.picture)

@@ -1,0 +1,51 @@
+"""Outputs that are wished for, from those that a state has."""
+
+import numpy as np
+
+from ..status import VALUED
+
+
+def output(name, kind, found, design):
+    """``(value, bound)`` of an output; ``found`` as the solvers give it, ``design`` name -> numbers; arrays broadcast."""
+    if kind == "limit":
+        none = np.isnan(found["limit_pressure"]) & np.isin(found["status"], VALUED)
+        return np.where(none, np.inf, found["limit_pressure"]), np.where(none, 0.0, found["limit_pressure_error"])
+    if name == "stroke":
+        length, bound = found["deformed_length"], found["deformed_length_error"]
+        return 1.0 - length / design["length"], bound / design["length"]
+    if name == "length_change":
+        return found["deformed_length"] - design["length"], found["deformed_length_error"]
+    if name == "outer_radius" and "outer_radius" not in found:
+        return _outer_radius(found["mid_radius"], found["mid_radius_error"], design)
+    return found[name], found[f"{name}_error"]
+
+
+def _outer_radius(middle, bound, design):
+    """The largest outer radius of a tube that bulges or necks in its middle: the wall keeps its volume, ``r_o^2 = r^2 +
+    (r_o0^2 - r_0^2)/lambda_1`` outside the fibers (theory, section 11).
+    """
+    ta, tb = np.tan(np.radians(design["alpha"])), np.tan(np.radians(design["beta"]))
+    h, d, gg = 0.5 * (ta + tb), 0.5 * (ta - tb), design["fiber_extension"] ** 2
+    r0 = design["fiber_radius"]
+    outside = (design["radius"] + design["wall"]) ** 2 - r0**2
+
+    def outer(r):
+        q = (r / r0) ** 2
+        squared = gg * (1.0 + h * h + d * d) - d * d * q - gg * gg * h * h / q  # lambda_1^2, Eqs. 2.3, 2.4
+        return np.sqrt(r * r + outside / np.sqrt(squared))
+
+    with np.errstate(invalid="ignore"):
+        here = outer(middle)
+        return np.maximum(here, outer(r0)), np.maximum(np.abs(outer(middle + bound) - here), bound)
+
+
+def widest(tube, found):
+    """The largest outer radius along the profiles of states (..., x), and its bound; fibers that are taut tell the stretch,
+    ``lambda_1 = gamma cos(alpha')/cos(alpha)``.
+    """
+    share = found["x"].values / tube.length
+    alpha, _ = tube.angles(share)
+    outside = (tube.radius + tube.profile("wall").at(share)) ** 2 - tube.fiber_surface**2
+    r, turned = found["deformed_radius"].values, np.radians(found["alpha_deformed"].values)
+    stretch = tube.fiber_extension * np.cos(turned) / np.cos(np.radians(alpha))
+    return np.max(np.sqrt(r * r + outside / stretch), axis=-1), np.max(found["deformed_radius_error"].values, axis=-1)

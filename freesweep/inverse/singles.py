@@ -1,0 +1,66 @@
+"""States of any tubes, each by the public functions: what differs in pressure only, in one call."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from ..holding import blocked_force, blocked_torque
+from ..statics import inflate, lock
+from ..status import INVALID, OK
+from .outputs import output, widest
+from .vectors import HARDLY
+
+
+def solve_singles(tubes, asked, columns, accuracy) -> dict:
+    """As :func:`vectors.solve_vectors`, of ``tubes`` (n,), None where there is none."""
+
+    def one(i):
+        design = {name: float(column[i]) for name, column in columns.items()}
+        return solve_single(tubes[i], asked, design, accuracy) if tubes[i] is not None else None
+
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        rows = list(pool.map(one, range(len(tubes))))
+    none = {"status": INVALID}
+    answers = {}
+    for state, names in asked.items():
+        own = [none | dict.fromkeys(names, (np.nan, np.nan)) if row is None else row[state] for row in rows]
+        answers[state] = {name: tuple(np.array([each[name] for each in own], float).T) for name in names}
+        answers[state]["status"] = np.array([each["status"] for each in own])
+    return answers
+
+
+def solve_single(tube, asked, design, accuracy) -> dict:
+    """Of one tube: state -> "status", and output -> (value, bound); ``design`` has its numbers and loads."""
+    answers, families = {}, {}
+    for state in asked:
+        rest = tuple((name, value) for name, value in state.conditions if name != "pressure")
+        families.setdefault((state.kind, rest), []).append(state)
+    for (kind, rest), states in families.items():
+        given = design | dict(rest)
+        own = [HARDLY if kind == "limit" and s.pressure is None else s.pressure for s in states]
+        own = np.array([given["pressure"] if p is None else p for p in own])
+        pressures, places = np.unique(own, return_inverse=True)
+        names = {name for state in states for name in asked[state]}
+        x = None if "outer_radius" in names else 0.0
+        force, torque = given["force"], given["torque"]
+        if kind == "locked":
+            found = lock(tube, x=x, accuracy=accuracy).expand_dims("pressure")
+        elif kind == "force":
+            length = dict(rest).get("deformed_length")
+            found = blocked_force(tube, pressures, length, torque, x=x, accuracy=accuracy)
+        elif kind == "torque":
+            found = blocked_torque(tube, pressures, dict(rest).get("rotation", 0.0), force, x=x, accuracy=accuracy)
+        else:
+            found = inflate(tube, pressures, force, torque, x=x, accuracy=accuracy)
+        numbers = {name: v.values for name, v in found.data_vars.items() if "x" not in v.dims}
+        for name in names:
+            seen = (name, kind, numbers, given)
+            value, bound = widest(tube, found) if name == "outer_radius" and name not in numbers else output(*seen)
+            value, bound = np.broadcast_to(value, len(pressures)), np.broadcast_to(bound, len(pressures))
+            for state, place in zip(states, places):
+                if name in asked[state]:
+                    answers.setdefault(state, {})[name] = float(value[place]), float(bound[place])
+        for state, place in zip(states, places):
+            answers[state]["status"] = OK if kind == "limit" else int(numbers["status"][place])
+    return answers

@@ -1,0 +1,45 @@
+"""States of the source's tubes that are the same all along: all designs and all states of a kind in one call."""
+
+import numpy as np
+
+from ..query.exact import solve
+from ..query.reference import COLUMNS, LENGTH_HELD, LOADED, LOCKED, ROTATION_HELD
+from ..status import INVALID, OK
+from .outputs import output
+from .wishes import HELD
+
+KINDS = {"free": LOADED, "locked": LOCKED, "force": LENGTH_HELD, "torque": ROTATION_HELD, "limit": LOADED}
+HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
+
+
+def solve_vectors(energy, asked, columns, accuracy) -> dict:
+    """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status", output -> (value, bound), all (n,)."""
+    answers, count = {}, len(columns["alpha"])
+    for kind in dict.fromkeys(state.kind for state in asked):
+        states = [state for state in asked if state.kind == kind]
+        parts = [_points(state, columns, count) for state in states]
+        points = np.concatenate([np.column_stack([part[name] for name in COLUMNS]) for part in parts])
+        most = max(part["pressure"].max() for part in parts) if kind == "limit" else None
+        found = solve(KINDS[kind], points, energy, accuracy, most)
+        for k, (state, part) in enumerate(zip(states, parts)):
+            own = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
+            answers[state] = {name: output(name, kind, own, part) for name in asked[state]}
+            limit = np.where(own["status"] == INVALID, INVALID, OK)
+            answers[state]["status"] = limit if kind == "limit" else own["status"]
+    return answers
+
+
+def _points(state, columns, count):
+    """Columns of the points of one state."""
+    given = dict(state.conditions)
+    points = columns | {name: np.full(count, value) for name, value in given.items()} | {"held": np.zeros(count)}
+    if state.kind == "limit":
+        points["pressure"] = np.full(count, HARDLY if state.least is None else state.least)
+    elif state.kind in HELD:
+        held = HELD[state.kind][0]
+        if state.kind == "force":
+            points["held"] = points[held] / points["length"] if held in given else np.ones(count)
+        else:
+            points["held"] = points[held] if held in given else np.zeros(count)
+        points[state.kind] = np.zeros(count)
+    return points
