@@ -24,12 +24,12 @@ def same(found, expected):
     return close and NUMBER.sub("#", found) == NUMBER.sub("#", expected)
 
 
-@pytest.mark.parametrize("page", ["model.md", "cookbook.md"])
+@pytest.mark.parametrize("page", ["model.md", "cookbook.md", "designing.md"])
 def test_blocks_of_a_page_run_and_print_what_it_says(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     text = (DOCS / page).read_text(encoding="utf-8")
     blocks = list(BLOCK.finditer(text))
-    assert len(blocks) == text.count("```python") > 4
+    assert len(blocks) == text.count("```python") > 1
     names = {}
     for block in blocks:
         code, expected = block.groups()

@@ -35,9 +35,9 @@ def _run(options):
         write_whole(options.out, content)
         print(options.out)
     if options.picture:
-        from ..inverse.candidates import actuators
+        from ..inverse.shown import shown
         from ..plot.candidates import draw
         from ..plot.style import save
 
-        save(draw(found, asked["goals"], actuators(found)), options.picture)
+        save(draw(found, *shown(found, asked["goals"])), options.picture)
         print(options.picture)

@@ -25,8 +25,8 @@ def dataset(misfit: Misfit, u, choice, slopes, objectives=0):
     residuals = misfit.residuals(found)
     columns = space.columns(u, choice)
     asked, last = misfit.goals, len(wishes) - objectives
-    kept = np.abs(found.values - np.clip(found.values, *_ends(wishes))) <= found.bounds
-    kept |= np.isposinf(found.values)
+    low, high = (np.array([getattr(wish, end) for wish in wishes]) for end in ("low", "high"))
+    kept = (found.values >= low - found.bounds) & (found.values <= high + found.bounds)
     met = np.abs(residuals) <= 1.0 + found.bounds / misfit.tolerances
     data = {
         name: ("candidate", columns[name], {"units": PARAMETERS[name].units})
@@ -79,10 +79,6 @@ def dataset(misfit: Misfit, u, choice, slopes, objectives=0):
     }  # fmt: skip
     result.attrs = {"title": f"designs from {space.template!r}", "summary": sentence(misfit, result, u, slopes)}
     return result
-
-
-def _ends(wishes):
-    return np.array([wish.low for wish in wishes]), np.array([wish.high for wish in wishes])
 
 
 def _worst(status):

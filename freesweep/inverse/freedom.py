@@ -22,8 +22,8 @@ from .wishes import DESIGN
 LOADS = ("pressure", "force", "torque")
 CONSTANTS = ("c10", "c01", "c20", "c30")
 TIE = re.compile(r"\s*(-?)\s*(?:([0-9.]+(?:e-?[0-9]+)?)\s*\*\s*)?([a-z_0-9]+)\s*", re.ASCII)
-LEAST_APART = 0.5  # [degree]: nearer angles are no actuator
 MOST_KNOTS = 40
+FOLLOWED = 1e-6  # accuracy to which splines follow most profiles
 
 
 @dataclass(frozen=True)
@@ -118,6 +118,10 @@ class Space(NamedTuple):
         """Whether all designs are the source's tubes, the same all along: vectors solve many of them."""
         tube = self.template
         return not (self.knots or tube.varies or tube.is_thick or tube.is_loose)
+
+    def accuracy(self, asked):
+        """The accuracy that is ``asked`` for, or what profiles along a tube allow."""
+        return max(asked, FOLLOWED) if self.knots or self.template.varies else asked
 
     def mirrored(self, u):
         """Points u (n, p) with the two fiber families exchanged, which is the same tube; NaN where that is not free."""

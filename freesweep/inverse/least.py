@@ -43,16 +43,15 @@ class Least:
             unit = self.misfit.tolerances[j]
             slack = INSIDE if j < self.misfit.goals else 0.0
             if np.isfinite(wish.low):
-                found.append(self._one(j, 1.0, wish.low / unit - slack))
+                found.append(self._one(j, 1.0, wish.low / unit - slack, max(abs(wish.low / unit), 1.0)))
             if np.isfinite(wish.high):
-                found.append(self._one(j, -1.0, wish.high / unit + slack))
+                found.append(self._one(j, -1.0, wish.high / unit + slack, max(abs(wish.high / unit), 1.0)))
         for k, level in enumerate(levels):
             if np.isfinite(level):
-                found.append(self._one(len(wishes) - self.objectives + k, -1.0, level))
+                found.append(self._one(len(wishes) - self.objectives + k, -1.0, level, self.scale[k]))
         return found
 
-    def _one(self, j, sign, end):
-        size = max(abs(end), 1.0)
+    def _one(self, j, sign, end, size):
         return {
             "type": "ineq",
             "fun": lambda u: sign * (self.known(u)[0][j] - end) / size,
@@ -89,13 +88,28 @@ def front(misfit: Misfit, u, choice, count, scale):
         best = np.argmin(np.where(kept, values, np.inf))
         ends.append((found[best], choice[best]))
     place = len(misfit.wishes) - 2
-    first = [Least(misfit, c, 2, scale).known(one)[0][place] for one, c in ends]
-    points, choices = [ends[0][0]], [ends[0][1]]
-    for level in np.linspace(*first, count)[1:-1]:
-        at = Least(misfit, choices[-1], 2, scale)
-        points.append(at.search(points[-1], 1, [level, np.nan]))
-        choices.append(choices[-1])
-    return np.array([*points, ends[1][0]]), np.array([*choices, ends[1][1]])
+    (first, one), (last, other) = ends
+    levels = [Least(misfit, c, 2, scale).known(end)[0][place] for end, c in ends]
+    points, choices = [first], [one]
+    for share in np.linspace(0.0, 1.0, count)[1:-1]:
+        level = levels[0] + share * (levels[1] - levels[0])
+        starts = [(points[-1], choices[-1]), (last, other)]
+        starts += [(first + share * (last - first), one)] if one == other else []
+        point, own = _best(misfit, scale, starts, level)
+        points.append(point)
+        choices.append(own)
+    return np.array([*points, last]), np.array([*choices, other])
+
+
+def _best(misfit, scale, starts, level):
+    """The least of the second objective among what the ``starts`` lead to, the first one up to ``level``: point, choice."""
+    found = []
+    for start, choice in starts:
+        at = Least(misfit, choice, 2, scale)
+        point = at.search(start, 1, [level, np.nan])
+        broken = sum(max(0.0, -float(each["fun"](point)) - ACTIVE) for each in at.constraints([level, np.nan]))
+        found.append((broken, float(at.objective(1)[0](point)), point, choice))
+    return min(found, key=lambda one: one[:2])[2:]
 
 
 def multipliers(misfit: Misfit, u, slopes, residuals_at, objectives):

@@ -11,6 +11,7 @@ STEP = 1e-4  # of the unit box, of central differences
 LOOKING, POLISHING = 1e-4, 1e-9  # accuracies of the solver
 NATURAL = {"rotation": 1.0, "stroke": 0.01}  # [degree], [1]: a wish for 0 is measured by
 SHARE = {"deformed_length": "length", "length_change": "length", "mid_radius": "radius", "outer_radius": "radius"}
+INSIDE = 1e-2  # tolerances: a limit is kept where the search ends a little short of it
 FAR = 1e3  # tolerances by which a state that is not there counts as missed
 
 
@@ -26,6 +27,10 @@ class Misfit(NamedTuple):
         """By how many tolerances each wish is missed (n, wishes); beyond the range, with its sign."""
         low = np.array([wish.low for wish in self.wishes])
         high = np.array([wish.high for wish in self.wishes])
+        within = np.where(
+            np.arange(len(low)) < self.goals, 0.0, np.minimum(INSIDE * self.tolerances, 0.5 * (high - low))
+        )
+        low, high = low + within, high - within
         with np.errstate(invalid="ignore"):
             above, below = np.maximum(found.values - high, 0.0), np.minimum(found.values - low, 0.0)
             missed = np.where(np.isfinite(found.values), above + below, np.where(found.values > 0, 0.0, np.nan))
@@ -47,15 +52,14 @@ class Misfit(NamedTuple):
         ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
         values = predict(
             self.space, self.wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING
-        ).values.reshape(count, 2, free, -1)
-        middle = found.values[:, None, None]
-        values = np.where(np.isfinite(values), values, middle)
+        ).values.reshape(count, 2 * free, -1)
+        middle, there = found.values[:, None], np.isfinite(values)
+        values = np.where(there, values, middle)
         along = np.arange(free)
         width = ends[:, :free][:, along, along] - ends[:, free:][:, along, along]
-        gone = np.all(values == middle, axis=-1)  # only there, or no change at all
-        width = np.where(gone[:, 0] ^ gone[:, 1], 0.5 * width, width)
+        halved = np.where(there[:, :free] & there[:, free:], 1.0, 0.5)  # one side has a state
         with np.errstate(invalid="ignore"):
-            slope = (values[:, 0] - values[:, 1]) / width[..., None]
+            slope = (values[:, :free] - values[:, free:]) / (halved * width[..., None])
         return np.nan_to_num(np.moveaxis(slope, 1, 2)) / self.tolerances[:, None]
 
 

@@ -51,7 +51,7 @@ def predict(space: Space, wishes, u, choice, accuracy) -> Predicted:
     from .singles import solve_singles
     from .vectors import solve_vectors
 
-    shape = len(u), len(wishes)
+    shape, accuracy = (len(u), len(wishes)), space.accuracy(accuracy)
     found = Predicted(np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, INVALID))
     columns, states = space.columns(u, choice), [state_of(wish) for wish in wishes]
     for k, wish in enumerate(wishes):

@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from ..faults import ActuatorError
 from ..holding import blocked_force, blocked_torque
 from ..statics import inflate, lock
 from ..status import INVALID, OK
@@ -17,7 +18,10 @@ def solve_singles(tubes, asked, columns, accuracy) -> dict:
 
     def one(i):
         design = {name: float(column[i]) for name, column in columns.items()}
-        return solve_single(tubes[i], asked, design, accuracy) if tubes[i] is not None else None
+        try:
+            return solve_single(tubes[i], asked, design, accuracy) if tubes[i] is not None else None
+        except ActuatorError:  # a profile that no spline follows so closely
+            return None
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         rows = list(pool.map(one, range(len(tubes))))

@@ -13,7 +13,7 @@ HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
 
 
 def solve_vectors(energy, asked, columns, accuracy) -> dict:
-    """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status", output -> (value, bound), all (n,)."""
+    """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound)."""
     answers, count = {}, len(columns["alpha"])
     for kind in dict.fromkeys(state.kind for state in asked):
         states = [state for state in asked if state.kind == kind]

@@ -1,0 +1,83 @@
+"""What a picture of candidates shows: their curves over the pressure, and their shapes."""
+
+import math
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+
+from ..statics import inflate
+from .candidates import actuators
+from .predict import state_of
+from .singles import solve_single
+from .wishes import UNITS
+
+CANDIDATES, GOALS = 5, 2  # that are shown
+PRESSURES, BEYOND = 61, 1.25  # of a curve, up to so many times the pressure that was asked for
+ROUGH = 1e-5  # accuracy
+LOADS = ("pressure", "force", "torque")
+
+
+class Curve(NamedTuple):
+    """An output over the ``pressure`` (p,) [Pa]: ``values`` (candidates, p); what was ``asked``: (pressure, low, high)."""
+
+    output: str
+    unit: str
+    pressure: np.ndarray
+    values: np.ndarray
+    asked: list
+
+
+class Shape(NamedTuple):
+    """A candidate at a ``pressure`` [Pa]: position and radius (x,) [m], rotation [degree]; length and radius at ``rest``."""
+
+    pressure: float
+    position: np.ndarray
+    radius: np.ndarray
+    rotation: float
+    rest: tuple
+
+
+def shown(found, goals):
+    """``(curves, shapes)`` of the first candidates in ``found``, for :func:`freesweep.plot.candidates.draw`."""
+    tubes = actuators(found.isel(candidate=slice(CANDIDATES)))
+    loads = [
+        {name: float(found[name].values[k]) if name in found else 0.0 for name in LOADS} for k in range(len(tubes))
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # said where the candidates were found
+        curves = [
+            _curve(goal, tubes, loads) for goal in goals if goal.wishes([])[0].kind in ("free", "force", "torque")
+        ]
+        return curves[:GOALS], _shapes(goals, tubes, loads)
+
+
+def _pressures(goal, loads):
+    given = [dict(wish.conditions).get("pressure", loads[0]["pressure"]) for wish in goal.wishes([])]
+    return [p for p in given if math.isfinite(p)]
+
+
+def _curve(goal, tubes, loads):
+    wishes, asked = goal.wishes([]), _pressures(goal, loads)
+    grid = np.linspace(0.0, BEYOND * max(asked), PRESSURES)[1:]
+    first = state_of(wishes[0])
+    rest = tuple(item for item in first.conditions if item[0] != "pressure")
+    states = {first._replace(conditions=(*rest, ("pressure", p))): [goal.output] for p in grid.tolist()}
+    values = []
+    for tube, own in zip(tubes, loads):
+        answers = solve_single(tube, states, tube.design() | own, ROUGH)
+        values.append([answers[state][goal.output][0] for state in states])
+    ends = [[end for end in (wish.low, wish.high) if math.isfinite(end)] for wish in wishes]
+    marks = [(p, min(end), max(end)) for p, end in zip(asked, ends)]
+    return Curve(goal.output, UNITS.get(goal.output, ""), grid, np.array(values), marks)
+
+
+def _shapes(goals, tubes, loads):
+    asked = [p for goal in goals for p in _pressures(goal, loads)]
+    found = []
+    for tube, own in zip(tubes, loads):
+        pressure = asked[0] if asked else own["pressure"]
+        state = inflate(tube, pressure, own["force"], own["torque"], accuracy=ROUGH)
+        position, radius = state["axial_position"].values, state["deformed_radius"].values
+        found.append(Shape(pressure, position, radius, float(state["rotation"]), (tube.length, tube.fiber_surface)))
+    return found

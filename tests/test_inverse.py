@@ -1,0 +1,259 @@
+"""Inverse design: hidden tubes are found again, limits are kept, and what cannot be done is said in a sentence."""
+
+import csv
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from grids import CHILD_ENVIRONMENT
+
+import freesweep as fs
+from freesweep.cli import main
+from freesweep.inverse import candidates, wish_file
+from freesweep.inverse.wishes import Wish
+
+ROOT = Path(__file__).parent.parent
+RUBBER = fs.MooneyRivlin(1.2e5, 6e4)
+BOUNDS = {"alpha": (0, 85), "beta": (-85, 85), "radius": (3e-3, 12e-3), "length": (0.05, 0.3), "pressure": (2e4, 3e5)}
+
+
+def tube(alpha=30.0, beta=-50.0, length=0.15, radius=5e-3, wall=1e-3, **more):
+    return fs.Actuator(alpha=alpha, beta=beta, length=length, radius=radius, wall=wall, material=RUBBER, **more)
+
+
+def bounds(*names):
+    return {name: BOUNDS[name] for name in names}
+
+
+@pytest.fixture(scope="module")
+def hidden():
+    """A tube that nobody knows, and what it does."""
+    secret = tube(alpha=62.0, beta=-23.0, radius=6.5e-3)
+    return secret, fs.inflate(secret, 8e4, x=0.0), fs.blocked_force(secret, 1.5e5, x=0.0)
+
+
+def test_a_hidden_tube_is_found_again(hidden):
+    secret, free, held = hidden
+    goals = [
+        fs.Goal("rotation", free["rotation"].item(), pressure=8e4),
+        fs.Goal("deformed_length", free["deformed_length"].item(), pressure=8e4),
+        fs.Goal("force", held["force"].item(), pressure=1.5e5),
+    ]
+    found = fs.design(tube(), bounds("alpha", "beta", "radius"), goals, count=5)
+    assert found["met"].values[0]
+    np.testing.assert_allclose(found["goal_value"].values[0], [goal.value for goal in goals], rtol=1e-4)
+    near = np.hypot(found["alpha"] - secret.alpha, found["beta"] - secret.beta)  # perhaps among others
+    again = np.hypot(found["alpha"] - secret.beta, found["beta"] - secret.alpha)
+    assert min(near.min(), again.min()) < 0.1 or found["met"].values.sum() > 1
+
+
+def test_a_candidate_does_what_it_says(hidden):
+    """The line of Python makes a tube whose own solution is the value that was told, within both bounds."""
+    _, free, _ = hidden
+    goals = [fs.Goal("rotation", free["rotation"].item(), pressure=8e4), fs.Goal("stroke", 0.05, pressure=8e4)]
+    found = fs.design(tube(), bounds("alpha", "beta", "length"), goals, count=3)
+    for k, made in enumerate(candidates.actuators(found)):
+        state = fs.inflate(made, 8e4, x=0.0)
+        stroke = 1.0 - state["deformed_length"].item() / made.length
+        errors = found["goal_error"].values[k] + [state["rotation_error"].item(), state["deformed_length_error"].item()]
+        assert np.all(np.abs(found["goal_value"].values[k] - [state["rotation"].item(), stroke]) <= errors)
+
+
+def test_a_free_pressure_is_found(hidden):
+    secret, free, _ = hidden
+    found = fs.design(secret, bounds("pressure"), [fs.Goal("rotation", free["rotation"].item())], count=1)
+    assert found["pressure"].item() == pytest.approx(8e4, rel=1e-3)
+
+
+def test_a_curve_is_one_wish_of_many_points(hidden):
+    secret, _, _ = hidden
+    pressures = np.linspace(2e4, 2e5, 7)
+    curve = fs.inflate(secret, pressures, x=0.0)["rotation"].values
+    found = fs.design(
+        secret, bounds("alpha", "beta"), [fs.Goal("rotation", curve, pressure=pressures, tolerance=0.1)], count=2
+    )
+    assert found.sizes["goal"] == 7
+    assert found["met"].values[0]
+
+
+def test_a_straight_muscle_that_shall_rotate_says_why_not():
+    wish = [fs.Goal("rotation", 90, pressure=1e5, tolerance=1)]
+    found = fs.design(tube(beta=-30.0), {"alpha": (10, 80), "beta": "-alpha"}, wish)
+    assert not found["met"].values.any()
+    assert found.attrs["summary"].endswith("instead of 90 degree: nothing that is free changes it")
+
+
+def test_goals_that_fight_are_named():
+    wish = [
+        fs.Goal("stroke", at_least=0.2, pressure=2e5, tolerance=0.001),
+        fs.Goal("force", at_least=5000, pressure=2e5, tolerance=1),
+    ]
+    found = fs.design(tube(beta=-30.0), {"alpha": (20, 50), "beta": "-alpha"}, wish, count=2)
+    assert not found["met"].values.any()
+    assert re.search("fights with|bounds .* stop it", found.attrs["summary"])
+
+
+def test_the_slimmest_muscle_and_the_price_of_its_force():
+    """A blocked force grows with r^2: one newton more costs dr/dF = r/(2 F) where only the radius is left."""
+    free, state = {"radius": ("2 mm", "15 mm")}, {"pressure": 2e5}
+    found = fs.design(
+        tube(beta=-30.0), free, [fs.Goal("force", 100, tolerance=1e-3, **state)], minimize="radius", count=1
+    )
+    radius = found["radius"].item()
+    assert found["met"].item()
+    assert found["goal_price"].item() == pytest.approx(radius / 200.0, rel=0.02)
+
+
+def test_no_candidate_breaks_a_limit():
+    wish = [fs.Goal("rotation", 200, pressure=1e5, tolerance=1)]
+    kept = [fs.Limit("outer_radius", at_most=7e-3, pressure=1e5), fs.Limit("limit_pressure", at_least=2e5)]
+    found = fs.design(tube(), bounds("alpha", "beta", "radius"), wish, kept, count=6)
+    good = found["met"].values
+    assert good.any()
+    assert np.all(found["limit_value"].values[good, 0] <= 7e-3 + found["limit_error"].values[good, 0])
+    for made, fine in zip(candidates.actuators(found), good):
+        if fine:
+            assert fs.inflate(made, 2e5, x=0.0)["status"] == 0
+
+
+def test_a_front_trades_one_for_the_other():
+    wish = [fs.Goal("force", at_least=60, pressure=2e5, tolerance=0.1)]
+    least = ["radius", fs.Limit("stroke", at_least=-1, pressure=2e5)]
+    found = fs.design(tube(beta=-30.0), {"alpha": (15, 50), "beta": "-alpha", "radius": (3e-3, 9e-3)}, wish,
+                      minimize=least, count=5)  # fmt: skip
+    first = np.argsort(found["objective"].values[:, 0])
+    second = found["objective"].values[first, 1]
+    assert len(second) >= 3
+    assert found["met"].values.all()
+    assert np.all(np.diff(second) < 1e-4)
+
+
+def test_what_can_be_bought_is_chosen_from():
+    shop = [(4.76e-3, 1.59e-3), (6.35e-3, 0.8e-3)]
+    free = bounds("alpha", "beta") | {"radius,wall": shop, "material": ["ecoflex-00-30", "dragon-skin-30"]}
+    found = fs.design(tube(), free, [fs.Goal("rotation", 300, pressure=1e5, tolerance=1)], count=8)
+    assert found["met"].values.any()
+    assert {*zip(found["radius"].values.tolist(), found["wall"].values.tolist())} <= set(shop)
+    assert all(made.material in fs.materials.values() for made in candidates.actuators(found))
+
+
+def test_a_profile_along_the_tube_is_free():
+    wish = [
+        fs.Goal("rotation", 60, pressure=1e5, tolerance=0.5),
+        fs.Goal("length_change", 0, pressure=1e5, tolerance=1e-4),
+    ]
+    start = tube(alpha=[(0, 20), (1, 40)], beta=-60.0)
+    found = fs.design(start, {"alpha": fs.Profile(2, (10, 60))}, wish, count=1)
+    assert found["alpha"].dims == ("candidate", "knot")
+    (made,) = candidates.actuators(found)
+    assert fs.inflate(made, 1e5, x=0.0)["rotation"].item() == pytest.approx(found["goal_value"].values[0, 0], abs=1e-3)
+    assert found["misfit"].item() < 0.5 * _missed(start, wish)
+
+
+def _missed(made, wish):
+    state = fs.inflate(made, 1e5, x=0.0)
+    values = state["rotation"].item(), state["deformed_length"].item() - made.length
+    return np.hypot(*((value - goal.value) / goal.tolerance for value, goal in zip(values, wish)))
+
+
+def test_the_same_seed_gives_the_same_bits():
+    wish = [fs.Goal("rotation", 120, pressure=1e5)]
+    one, other = (fs.design(tube(), bounds("alpha", "beta"), wish, count=4, seed=3) for _ in range(2))
+    assert one.identical(other)
+
+
+def test_symmetric_copies_are_one_candidate():
+    found = fs.design(
+        tube(), {"alpha": (-80, 80), "beta": (-80, 80)}, [fs.Goal("rotation", 120, pressure=1e5)], count=8
+    )
+    pairs = np.sort(np.column_stack([found["alpha"], found["beta"]]), axis=1)
+    apart = np.linalg.norm(pairs[:, None] - pairs, axis=-1) + 1e3 * np.eye(len(pairs))
+    assert apart.min() > 1.0
+
+
+@pytest.mark.parametrize(
+    ("free", "goals", "words"),
+    [
+        ({"alpha": (0, 85), "size": (1, 2)}, [], ["free: found 'size'", "goals: none"]),
+        ({"alpha": (85, 0)}, [fs.Goal("rotation", 90)], ["free['alpha']", "lowest, highest"]),
+        ({"alpha": "3*gamma"}, [fs.Goal("rotation", 90, pressure=1e5)], ["a tie is a parameter"]),
+        ({"alpha": "beta", "beta": "-alpha"}, [fs.Goal("rotation", 90, pressure=1e5)], ["tied itself"]),
+        ({"radius": ["five"]}, [fs.Goal("rotation", 90, pressure=1e5)], ["free['radius']"]),
+        ({"material": ["rubber"]}, [fs.Goal("rotation", 90, pressure=1e5)], ["The library holds"]),
+        ({"alpha": (0, 85)}, [fs.Goal("rotation", 90)], ["give its pressure, or let 'pressure' be free"]),
+        ({"alpha": (0, 85)}, "rotation", ["give a list of freesweep.Goal"]),
+    ],
+)
+def test_every_fault_of_a_wish_is_listed(free, goals, words):
+    with pytest.raises(fs.ActuatorError) as fault:
+        fs.design(tube(), free, goals)
+    assert all(word in str(fault.value) for word in words)
+
+
+@pytest.mark.parametrize(
+    ("wish", "word"),
+    [
+        (dict(output="rotatoin", value=1), "choose one of"),
+        (dict(output="rotation"), "give one of value"),
+        (dict(output="rotation", value=90, at_most=3), "give one of value"),
+        (dict(output="force", value=10, pressure=1e5, force=3), "give pressure, deformed_length, torque"),
+        (dict(output="rotation", value=[1, 2], pressure=[1, 2, 3]), "arrays of one length"),
+        (dict(output="rotation", value="ninety"), "rotation"),
+        (dict(output="rotation", between=(5, 3)), "lower number first"),
+        (dict(output="radius", value=5e-3, pressure=1e5), "no matter of a state"),
+    ],
+)
+def test_a_wish_that_makes_no_sense_is_refused(wish, word):
+    with pytest.raises(fs.ActuatorError, match=re.escape(word)):
+        fs.Goal(**wish)
+
+
+def test_units_are_read_in_wishes():
+    (wish,) = fs.Goal("rotation", "90 deg", pressure="1 bar", tolerance="1 deg").wishes([])
+    assert wish == Wish("rotation", (("pressure", 1e5),), 90.0, 90.0, 1.0, wish.title)
+
+
+def test_a_limit_is_a_range():
+    with pytest.raises(fs.ActuatorError, match="at_least, at_most or between"):
+        fs.Limit("rotation", 3, pressure=1e5)
+
+
+@pytest.mark.parametrize("name", ["rotator", "muscle", "bought"])
+def test_examples_of_wishes_are_read(name):
+    asked = wish_file.read(ROOT / "sweeps" / "wishes" / f"{name}.toml")
+    assert asked["goals"]
+    assert isinstance(asked["template"], fs.Actuator)
+
+
+def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, capsys):
+    out, picture = tmp_path / "candidates.csv", tmp_path / "candidates.png"
+    wish = str(ROOT / "sweeps" / "wishes" / "bought.toml")
+    assert main(["design", wish, "--out", str(out), "--picture", str(picture)]) == 0
+    said = capsys.readouterr().out
+    assert "meet every goal and keep every limit" in said
+    assert "fs.Actuator(" in said
+    rows = list(csv.reader(out.read_text(encoding="utf-8").splitlines()))
+    assert {"alpha [degree]", "radius [m]", "rotation at pressure 150000 Pa", "python"} <= set(rows[0])
+    assert len({len(row) for row in rows}) == 1
+    assert picture.stat().st_size > 20_000
+
+
+def test_a_wish_file_lists_every_fault(tmp_path, capsys):
+    path = tmp_path / "wish.toml"
+    path.write_text("[actuator]\nlenght = 3\n[free]\nalpha = {start = 0}\n[[goals]]\nvalue = 3\n[extra]\n")
+    assert main(["design", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert all(word in said for word in ("extra: unknown", "actuator.lenght", "give start and stop", "goals[0].output"))
+
+
+def test_help_of_design_needs_no_solver():
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "freesweep", "design", "--help"], capture_output=True, text=True,
+        env=CHILD_ENVIRONMENT,
+    )  # fmt: skip
+    assert done.returncode == 0
+    assert "WISH.toml" in done.stdout
+    assert "numba" not in done.stderr
