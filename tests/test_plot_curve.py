@@ -174,3 +174,15 @@ def _foreign(tmp_path):
     path = tmp_path / "foreign.nc"
     xr.Dataset({"t": 1.0}).to_netcdf(path, engine="netcdf4")
     return str(path)
+
+
+def test_what_pyplot_sets_when_it_is_first_imported_within_a_plot_stays():
+    """In a notebook that is `interactive`: taken back, later plots of others would not be seen."""
+    before, font = matplotlib.is_interactive(), matplotlib.rcParams["font.family"]
+    with style.context():
+        matplotlib.interactive(not before)
+        assert matplotlib.rcParams["font.family"] == ["STIXGeneral"]
+    after = matplotlib.is_interactive()
+    matplotlib.interactive(before)
+    assert after is not before
+    assert matplotlib.rcParams["font.family"] == font

@@ -4,6 +4,7 @@ Importing this changes nothing: the settings hold inside ``with context():`` onl
 CIELAB, so equal steps of a value look equally large and keep their order in grey, for colour-blind eyes too.
 """
 
+import contextlib
 import io
 import os
 from pathlib import Path
@@ -67,9 +68,17 @@ SETTINGS = {
 }
 
 
+@contextlib.contextmanager
 def context():
-    """The settings, as a context manager."""
-    return mpl.rc_context(SETTINGS)
+    """The settings, for a while. What pyplot sets when it is first imported meanwhile stays: ``rc_context`` would take a
+    notebook's ``interactive`` back, and later plots would not be seen.
+    """
+    before = {name: mpl.rcParams[name] for name in SETTINGS}
+    mpl.rcParams.update(SETTINGS)
+    try:
+        yield
+    finally:
+        mpl.rcParams.update(before)
 
 
 def new_axes(width: float, height: float) -> Axes:
