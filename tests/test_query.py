@@ -359,6 +359,7 @@ def test_junk_is_refused_or_answered_by_a_status(atlas):
     ("change", "says"),
     [
         ({"presure": 1.0}, "axis 'presure' is unknown here; did you mean 'pressure'"),
+        ({"rotation": 90}, "rotation: it is what a design does.*freesweep.design finds those that do it"),
         ({"alpha": "25 mm"}, "alpha: expects an angle such as '30 deg', got '25 mm', a length"),
         ({"wall": 1e-3}, "wall: found 0.001; the atlas holds only 0.00159"),
         ({"alpha": [1.0, 2.0], "beta": [1.0, 2.0, 3.0]}, "do not broadcast"),
