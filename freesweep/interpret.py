@@ -23,6 +23,7 @@ FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
 _spent = {}  # awaited entry point -> [states, seconds] in plain Python
 _twins = {}
+_making = threading.RLock()  # of twins: one that is found knows all its names
 
 
 class _Clock(threading.local):
@@ -79,19 +80,20 @@ def _is_done(entry, arguments, spent, seconds):
 
 def _twin(function):
     """A kernel's function, whose names stand for the twins of what it calls."""
-    if function not in _twins:
-        names = {"__builtins__": function.__globals__["__builtins__"]}
-        plain = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__)
+    with _making:
+        if function not in _twins:
+            names = {"__builtins__": function.__globals__["__builtins__"]}
+            plain = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__)
 
-        def twin(*arguments):
-            if time.perf_counter() > _clock.end:
-                raise _TooLong
-            return plain(*arguments)
+            def twin(*arguments):
+                if time.perf_counter() > _clock.end:
+                    raise _TooLong
+                return plain(*arguments)
 
-        _twins[function] = twin
-        known = function.__globals__  # its own name may be among them
-        names.update({name: _plain(known[name]) for name in function.__code__.co_names if name in known})
-    return _twins[function]
+            _twins[function] = twin
+            known = function.__globals__  # its own name may be among them
+            names.update({name: _plain(known[name]) for name in function.__code__.co_names if name in known})
+        return _twins[function]
 
 
 def _plain(thing):

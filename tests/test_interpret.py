@@ -4,7 +4,9 @@ import json
 import os
 import subprocess
 import sys
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numba
@@ -145,3 +147,22 @@ def test_only_what_vectors_leave_counts(monkeypatch):
     problems = np.zeros((40, 11))
     batch.walk_all(problems, np.arange(41), np.ones(40), batch.uniform(24), 1e-6, soon=True)
     assert [states for states, _ in asked] == [40, 1]
+
+
+def test_twins_are_whole_whichever_thread_asks_first():
+    """Threads ask for the twin of one kernel at once, which takes a while to make: each gets one that knows all names."""
+    names = "".join(f"    x = inverse_{k}(x)\n" for k in range(400))
+    room = {f"inverse_{k}": numba.njit(lambda x: 1.0 / x) for k in range(400)}
+    exec(f"def chain(x):\n{names}    return x\n", room)
+    start, interval = threading.Barrier(8), sys.getswitchinterval()
+
+    def ask(_):
+        start.wait()
+        return interpret._twin(room["chain"])(2.0)
+
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(8) as pool:
+            assert list(pool.map(ask, range(8))) == [2.0] * 8
+    finally:
+        sys.setswitchinterval(interval)

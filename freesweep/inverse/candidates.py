@@ -22,7 +22,7 @@ def dataset(misfit: Misfit, u, choice, slopes, objectives=0):
 
     space, wishes = misfit.space, misfit.wishes
     found = predict(space, wishes, u, choice, ACCURACY)
-    residuals = misfit.residuals(found)
+    residuals = misfit.residuals(found.values)
     columns = space.columns(u, choice)
     asked, last = misfit.goals, len(wishes) - objectives
     low, high = (np.array([getattr(wish, end) for wish in wishes]) for end in ("low", "high"))

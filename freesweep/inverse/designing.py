@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..actuator import Actuator
+from ..atlas.store import Atlas
 from ..faults import ActuatorError
 from ..given import described
 from ..options import read_count
@@ -19,7 +20,7 @@ DIFFERENT = 0.01  # of the unit box's diagonal: nearer ones are the same candida
 MISSED = 1.0  # tolerances
 
 
-def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, seed=0):
+def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, atlas=None, seed=0):
     """Tubes that do what is wished for, the best ones first.
 
     Parameters
@@ -32,6 +33,8 @@ def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, 
     minimize : an output in a state (a ``Goal`` without value is none: give ``Limit("strain_energy", at_most=..., ...)`` as
         its state), or the name of a parameter; two of them: the candidates are their Pareto front
     count : candidates, at most
+    atlas : an :class:`freesweep.Atlas` to ask in the first look, where it holds such tubes: it makes the look of physical
+        tubes as wide as that of the source's
     seed : of the first look; the same seed gives the same candidates
 
     Returns a Dataset along ``candidate``: parameters by name, ``goal_value``, ``goal_error`` (bound), ``goal_met``,
@@ -46,6 +49,8 @@ def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, 
         faults.append("goals: none; give what the tube shall do, or something to minimize")
     objectives = _objectives(minimize, faults)
     count = read_count("count", count, faults)
+    if atlas is not None and not isinstance(atlas, Atlas):
+        faults.append(f"atlas: found {described(atlas)}; give what freesweep.open_atlas opens, or None")
     if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
         faults.append(f"seed: found {described(seed)}; give a whole number, 0 or more")
     if space is not None:
@@ -54,7 +59,7 @@ def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, 
     if faults:
         raise ActuatorError(faults)
     misfit = make(space, asked, kept)
-    u, choice = look(misfit, STARTS * count, seed)
+    u, choice = look(misfit, STARTS * count, seed, atlas)
     if len(u) == 0:
         raise ActuatorError([f"goals: no design that is allowed has a state in which {asked[0].title} could be asked"])
     u, _, residuals, slopes = polish(misfit, u, choice)

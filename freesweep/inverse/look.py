@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .from_atlas import ask, told
 from .misfit import LOOKING, Misfit
 
 ALIKE, ONE_BY_ONE = 4096, 128  # designs of a first look: in vectors, or each by itself; the choices share them
@@ -10,20 +11,27 @@ APART = 0.12  # of the unit box's diagonal: starts nearer than that lie in one b
 BOUNDED = 1e4  # tolerances beyond which a wish is simply missed: rough looks compare designs that are close
 
 
-def look(misfit: Misfit, count, seed):
-    """Starts for :func:`polish`: points (s, p) and their choices (s,), the best ones first, each in a basin of its own."""
+def look(misfit: Misfit, count, seed, atlas=None):
+    """Starts for :func:`polish`: points (s, p) and their choices (s,), the best ones first, each in a basin of its own. With
+    an ``atlas`` it is that which is asked, as far as it can tell.
+    """
     from scipy.stats import qmc
 
     space = misfit.space
     free, choices = len(space.names), len(space.choices)
     if free == 0:
         return np.zeros((choices, 0)), np.arange(choices)
-    most = ALIKE if space.is_alike else ONE_BY_ONE
+    known = [] if atlas is None else told(atlas, misfit.wishes)
+    most = ALIKE if space.is_alike or any(known) else ONE_BY_ONE
     shown = np.random.default_rng(seed).permutation(choices)[: most // LEAST]
     total = int(np.ceil(np.log2(max(most, LEAST * len(shown)))))
     draws = qmc.Sobol(free, seed=np.random.default_rng(seed)).random_base2(total)
     choice = shown[np.arange(len(draws)) % len(shown)]
-    _, residuals = misfit.at(draws, choice, LOOKING)
+    if any(known):
+        values = ask(atlas, misfit.wishes, space.columns(draws, choice), known)
+        residuals = np.where(known, misfit.residuals(values), 0.0)
+    else:
+        _, residuals = misfit.at(draws, choice, LOOKING)
     goals = np.abs(residuals)
     scale = np.nanmedian(np.where(np.isfinite(goals), goals, np.nan), axis=0)
     scale = np.where(np.nan_to_num(scale) > 0.0, scale, 1.0)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .predict import Predicted, predict
+from .predict import predict
 from .wishes import RELATIVE
 
 STEP = 1e-4  # of the unit box, of central differences
@@ -23,8 +23,8 @@ class Misfit(NamedTuple):
     goals: int
     tolerances: np.ndarray
 
-    def residuals(self, found: Predicted):
-        """By how many tolerances each wish is missed (n, wishes); beyond the range, with its sign."""
+    def residuals(self, values):
+        """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""
         low = np.array([wish.low for wish in self.wishes])
         high = np.array([wish.high for wish in self.wishes])
         within = np.where(
@@ -32,14 +32,14 @@ class Misfit(NamedTuple):
         )
         low, high = low + within, high - within
         with np.errstate(invalid="ignore"):
-            above, below = np.maximum(found.values - high, 0.0), np.minimum(found.values - low, 0.0)
-            missed = np.where(np.isfinite(found.values), above + below, np.where(found.values > 0, 0.0, np.nan))
+            above, below = np.maximum(values - high, 0.0), np.minimum(values - low, 0.0)
+            missed = np.where(np.isfinite(values), above + below, np.where(values > 0, 0.0, np.nan))
         return missed / self.tolerances
 
     def at(self, u, choice, accuracy=POLISHING):
         """``(what is predicted, residuals)`` at points u (n, p)."""
         found = predict(self.space, self.wishes, u, choice, accuracy)
-        return found, self.residuals(found)
+        return found, self.residuals(found.values)
 
     def slopes(self, u, choice, found):
         """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: central differences, one-sided

@@ -34,20 +34,32 @@ def _colour(k):
 
 
 def _draw_angles(ax, found):
-    alpha, beta = (_middle(found[name]) for name in ("alpha", "beta"))
+    """Both angles of each candidate as a point; over the tube, where they vary along it."""
     met = found["met"].values
-    for k in range(len(met)):
-        colour = _colour(k)
-        ax.plot(alpha[k], beta[k], "o", color=colour, markerfacecolor=colour if met[k] else style.PAPER, markersize=5)
-        ax.annotate(str(k), (alpha[k], beta[k]), (4, 3), textcoords="offset points", color=colour)
-    low, high = min(0.0, alpha.min() - 5), max(alpha.max() + 8, 20)
-    ax.set(xlabel=axis_label("alpha"), ylabel=axis_label("beta"), xlim=(low, high))
-    ax.set_ylim(min(beta.min() - 8, -10), max(beta.max() + 8, 10))
     ax.set_title("filled: meets all" if met.any() else "none meets all", fontsize=style.NORMAL)
+    if "knot" in found.dims:
+        for k in range(min(len(met), MOST)):
+            for name, line in (("alpha", "-"), ("beta", "--")):
+                _draw_along(ax, found, name, k, linestyle=line)
+        ax.set(xlabel="place along the tube, x/l", ylabel="fiber angle [degree]")
+        ax.set_title("solid: alpha, dashed: beta", fontsize=style.NORMAL)
+        return
+    alpha, beta = found["alpha"].values, found["beta"].values
+    for k, fine in enumerate(met):
+        colour = _colour(k)
+        ax.plot(alpha[k], beta[k], "o", color=colour, markerfacecolor=colour if fine else style.PAPER, markersize=5)
+        ax.annotate(str(k), (alpha[k], beta[k]), (4, 3), textcoords="offset points", color=colour)
+    ax.set(xlabel=axis_label("alpha"), ylabel=axis_label("beta"))
+    ax.set_xlim(min(0.0, alpha.min() - 5), max(alpha.max() + 8, 20))
+    ax.set_ylim(min(beta.min() - 8, -10), max(beta.max() + 8, 10))
 
 
-def _middle(variable):
-    return variable.values if variable.ndim == 1 else variable.values[:, variable.shape[1] // 2]
+def _draw_along(ax, found, name, k, **how):
+    if "knot" in found[name].dims:
+        places, values = found[f"{name}_place"].values, found[name].values[k]
+    else:
+        places, values = [0.0, 1.0], np.repeat(found[name].values[k], 2)
+    ax.plot(places, values, color=_colour(k), marker="o", markersize=3, **how)
 
 
 def _draw_curve(ax, curve):

@@ -40,7 +40,7 @@ def read_question(given: dict, frame, needed) -> Question:
         if name in frame.dims and name not in frame.values:
             faults.append(
                 f"{name}: it is what a design does, not what it is; freesweep.design finds those that do it:"
-                f" design(template, free={{'alpha': (0, 85), ...}}, goals=[Goal({name!r}, {given[name]!r:.40}, pressure=...)])"
+                f" design(template, free={{'alpha': (0, 85)}}, goals=[Goal({name!r}, {given[name]!r:.40}, pressure=...)])"
             )
         elif name not in frame.values:
             faults.append(unknown("axis", name, frame.asked))
