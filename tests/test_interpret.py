@@ -161,7 +161,7 @@ def test_twins_are_whole_whichever_thread_asks_first():
 
     sys.setswitchinterval(1e-6)
     try:
-        for _ in range(20):
+        for _ in range(8):
             room = {f"inverse_{k}": numba.njit(lambda x: 1.0 / x) for k in range(400)}
             exec(f"def chain(x):\n{names}    return x\n", room)
             with ThreadPoolExecutor(8) as pool:
