@@ -10,6 +10,7 @@ from . import grid
 from .course import Course
 from .equilibrium import NotFound
 from .nested import Found, solve
+from .physical import PhysicalTube
 from .physics import OWN, Physics
 from .request import SHAPE, attributes, sizes
 from .rest import at_rest, is_at_rest
@@ -68,8 +69,9 @@ class Asked:
 
     def state(self, loads, target, y) -> Found:
         """Outputs and derivatives of one state whose stretches at :meth:`stations` are ``y``."""
-        known = Physics(self.tube, self.course, loads, self.seeds[:1] if self.unknown else ())
-        wanted = Physics(self.tube, self.course, loads, self.seeds)
+        kind = PhysicalTube if self.tube.is_thick or self.tube.is_loose else Physics
+        known = kind(self.tube, self.course, loads, self.seeds[:1] if self.unknown else ())
+        wanted = kind(self.tube, self.course, loads, self.seeds)
 
         def finish(made, physics):
             rows = self.table(made, physics)

@@ -12,6 +12,7 @@ LEVELS, MOST_LEVELS = 4, 8  # meshes, each with twice the cells of the one befor
 SAFETY = 3.3  # as in the solver's bounds
 FAINT = 0.02  # likewise
 ROUNDING = 1e-11  # of a derivative's own unit: what nearly cancels in it
+ROUNDS, CAUTION = 6, 2.0  # of placing nodes where kinds of cells change; times what is left of their way
 SHRINKINGS, SHRUNK = 60, 0.85
 
 
@@ -33,14 +34,15 @@ def admissible(physics, x, y):
     raise NotFound
 
 
-def follow(physics, x, y, free, held, segments):
-    """``(nodes, edges, stretches)`` of a coarse mesh that follows a state known about, from its stretches at ``x``."""
-    y = equilibrium(physics, x, admissible(physics, x, y), free, held)
+def follow(physics, x, y, free, segments):
+    """``(nodes, edges, stretches)`` of a coarse mesh that follows a state, from its stretches ``y`` at ``x``."""
+    shape, x = PchipInterpolator(x, y), np.union1d(x, segments)
+    y = shape(x)
     slope = np.diff(y) / (np.diff(x) * physics.length.value)
     s = physics.axial(0.5 * (y[1:] + y[:-1]), slope, 0.5 * (x[1:] + x[:-1]))
     whole = np.hypot(s, slope)
     nodes, edges = grid.graded(x, slope / whole, s / whole, segments, free)
-    return nodes, edges, PchipInterpolator(x, y)(nodes)
+    return nodes, edges, shape(nodes)
 
 
 def on_mesh(known, wanted, x, y, free, held):
@@ -51,6 +53,7 @@ def on_mesh(known, wanted, x, y, free, held):
     y = equilibrium(known, x, admissible(known, x, y), free, held)
     if held is not None:
         wanted.load = known.load
+    wanted.begin(known)
     found = sums(wanted, x, y)
     moved, _ = responses(found, free)
     return y, outputs(wanted, x, y, free, found, moved)
@@ -59,21 +62,49 @@ def on_mesh(known, wanted, x, y, free, held):
 def solve(known, wanted, x, y, free, held, segments, finish, accuracy) -> Found:
     """Outputs and derivatives of the state whose stretches at ``x`` are about ``y``; ``finish`` makes a table of the outputs
     of one mesh, ``names`` and an array, and tells the unit of each.
+
+    Where the kind of cell changes (:mod:`physical`) a node is put: on either side everything is smooth then. What is left of
+    its distance from there enters the bounds, as the results moved when it was moved before.
     """
-    nodes, edges, y = follow(known, x, y, free, held, segments)
-    x, table = nodes, []
+    y = equilibrium(known, x, admissible(known, x, y), free, held)
+    kinks, before, shift = known.kinks(segments), None, None
+    for _ in range(ROUNDS):
+        found, units, seen = on_nested(
+            known, wanted, x, y, free, held, np.union1d(segments, kinks), segments, finish, accuracy
+        )
+        if len(kinks) == 0 and len(seen) == 0:
+            return found
+        if len(seen) == len(kinks):
+            left = np.max(np.abs(seen - kinks))
+            if before is not None and len(before.values) and shift is not None:
+                doubt = np.abs(found.values - before.values) * (CAUTION * left / shift if shift > 0.0 else 0.0)
+                if np.max(doubt / units) <= accuracy or _ == ROUNDS - 1:
+                    return Found(found.names, found.values, found.bounds + doubt)
+            before, shift = found, left
+        else:
+            before, shift = None, None
+        kinks = seen
+    raise NotFound
+
+
+def on_nested(known, wanted, x, y, free, held, all_segments, segments, finish, accuracy):
+    """Results on nested meshes with nodes at ``all_segments``, their units, and where kinds of cells change."""
+    nodes, edges, y = follow(known, x, y, free, all_segments)
+    x, table, seen = nodes, [], []
     for level in range(MOST_LEVELS):
         if level > 0:
-            before, x = x, grid.finer(nodes, edges, 1 << level)
-            y = PchipInterpolator(before, y)(x)
+            coarse, x = x, grid.finer(nodes, edges, 1 << level)
+            y = PchipInterpolator(coarse, y)(x)
         y, made = on_mesh(known, wanted, x, y, free, held)
         names, rows, units = finish(made, wanted)
         table.append(rows)
+        seen.append(known.kinks(segments))
         if level + 1 >= LEVELS:
             values, bounds = extrapolate(table, units)
             if np.max(bounds / units) <= accuracy:
                 break
-    return Found(names, values, bounds)
+    last, one = seen[-1], seen[-2]
+    return Found(names, values, bounds), units, (4.0 * last - one) / 3.0 if len(last) == len(one) else last
 
 
 def extrapolate(table, units):
