@@ -170,3 +170,33 @@ def test_no_state_has_no_derivative_and_unknown_names_are_listed():
         fs.inflate(tube, "?", derivatives=["alpha", "gamma", 3])
     assert len(fault.value.faults) == 3
     assert "choose from alpha, beta, length" in str(fault.value)
+
+
+def test_a_physical_tube_in_which_threads_go_slack_along_it():
+    """Nodes lie where the families go slack, so that bounds hold there, too."""
+    state = {"pressure": 5e4, "alpha": 5, "beta": 30, "model": "physical"}
+    found = solved("inflate", state, derivatives=["alpha", "wall", "pressure"])
+    assert int(found["slack_fiber"]) > 0
+    for name in ("alpha", "wall", "pressure"):
+        outputs = ["deformed_length", "rotation", "volume"]
+        for output, difference in zip(outputs, differences("inflate", state, name, outputs)):
+            exact, bound = float(found[f"d_{output}_d_{name}"]), float(found[f"d_{output}_d_{name}_error"])
+            assert exact == pytest.approx(difference, rel=2e-5)  # the solver's own bounds, over the step
+            assert bound < 1e-5 * abs(exact)
+
+
+def test_tolerances_of_manufacture_spread_the_outputs():
+    """To first order: against a sample of tubes, each solved by itself, and shares that add up to one."""
+    spread = {"alpha": 0.5, "wall": 2e-5, "pressure_tolerance": 300.0}
+    told = fs.tolerance(fs.Actuator(**TUBE), 5e4, **spread)
+    rng, rotations = np.random.default_rng(3), []
+    for alpha, wall, pressure in rng.standard_normal((100, 3)) * list(spread.values()):
+        tube = fs.Actuator(**TUBE | {"alpha": TUBE["alpha"] + alpha, "wall": TUBE["wall"] + wall})
+        rotations.append(float(fs.inflate(tube, 5e4 + pressure, x=[0.0])["rotation"]))
+    assert float(told["rotation_deviation"]) == pytest.approx(np.std(rotations), rel=0.2)
+    assert float(told["rotation_share"].sum()) == pytest.approx(1.0)
+    assert float(told["rotation_share"].sel(parameter="alpha")) > 0.5
+    assert told["rotation_deviation"].attrs["units"] == "degree"
+    with pytest.raises(fs.ActuatorError) as fault:
+        fs.tolerance(fs.Actuator(**TUBE), 5e4, gamma=1.0, wall=-1.0)
+    assert len(fault.value.faults) == 2

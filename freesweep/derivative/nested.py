@@ -68,7 +68,7 @@ def solve(known, wanted, x, y, free, held, segments, finish, accuracy) -> Found:
     """
     y = equilibrium(known, x, admissible(known, x, y), free, held)
     kinks, before, shift = known.kinks(segments), None, None
-    for _ in range(ROUNDS):
+    for made in range(ROUNDS):
         found, units, seen = on_nested(
             known, wanted, x, y, free, held, np.union1d(segments, kinks), segments, finish, accuracy
         )
@@ -76,9 +76,9 @@ def solve(known, wanted, x, y, free, held, segments, finish, accuracy) -> Found:
             return found
         if len(seen) == len(kinks):
             left = np.max(np.abs(seen - kinks))
-            if before is not None and len(before.values) and shift is not None:
+            if before is not None:
                 doubt = np.abs(found.values - before.values) * (CAUTION * left / shift if shift > 0.0 else 0.0)
-                if np.max(doubt / units) <= accuracy or _ == ROUNDS - 1:
+                if np.max(doubt / units) <= accuracy or made == ROUNDS - 1:
                     return Found(found.names, found.values, found.bounds + doubt)
             before, shift = found, left
         else:
@@ -87,9 +87,9 @@ def solve(known, wanted, x, y, free, held, segments, finish, accuracy) -> Found:
     raise NotFound
 
 
-def on_nested(known, wanted, x, y, free, held, all_segments, segments, finish, accuracy):
-    """Results on nested meshes with nodes at ``all_segments``, their units, and where kinds of cells change."""
-    nodes, edges, y = follow(known, x, y, free, all_segments)
+def on_nested(known, wanted, x, y, free, held, ends, segments, finish, accuracy):
+    """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change."""
+    nodes, edges, y = follow(known, x, y, free, ends)
     x, table, seen = nodes, [], []
     for level in range(MOST_LEVELS):
         if level > 0:

@@ -1,13 +1,13 @@
 """The physical tube's density over all cells of a mesh, as dual numbers: a thick wall, threads that cannot push, or both.
 
-Where the meridional stretch G and the twist rate psi settle (:mod:`freesweep.solver.relaxed`), with multipliers a and b of both
+Where meridional stretch G and twist rate psi settle (:mod:`freesweep.solver.relaxed`), with multipliers a and b of both
 families::
 
     T/(2 s) - W_G = a + b,    m - W_psi = 2 y^2 (a (t_a + psi) + b (t_b + psi)),
     g = 0 or multiplier = 0   of each family,    g = G + y^2 (t + psi)^2 - gamma^2 (1 + t^2)
 
-Newton's method solves that in all cells at once; a taut family whose multiplier is negative goes slack, a slack one beyond its
-reach taut. One more step, in dual numbers, gives all first derivatives of the four; bonded fibers stay taut.
+Newton's method solves that in all cells at once; a taut family whose multiplier is negative goes slack, a slack one beyond
+its reach taut. One more step, in dual numbers, gives all first derivatives of the four; bonded fibers stay taut.
 """
 
 from functools import cache
@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .dual import Dual
+from .dual import Dual, maximum, sqrt
 from .equilibrium import NotFound
 from .physics import Physics
 from .twins import twin
@@ -74,7 +74,7 @@ class Local(NamedTuple):
     wall: tuple
 
 
-def equations(local, s, four, alpha, beta, w_G, w_p):
+def equations(local, s, four, w_G, w_p):
     """The four equations' left sides."""
     G_1, psi, a, b = four
     y2 = local.y * local.y
@@ -137,7 +137,7 @@ class PhysicalTube(Physics):
                 break
             W = energy(Dual(y), Dual(four[0]), Dual(four[1]), weighed, rubber, wall)
             s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
-            _, _, over_a, over_b = equations(plain, s, four, alpha, beta, value(W[2]), value(W[3]))
+            _, _, over_a, over_b = equations(plain, s, four, value(W[2]), value(W[3]))
             new_alpha = np.where(alpha, four[2] >= -BEYOND * size, over_a > BEYOND)
             new_beta = np.where(beta, four[3] >= -BEYOND * size, over_b > BEYOND)
             if np.array_equal(new_alpha, alpha) and np.array_equal(new_beta, beta):
@@ -146,7 +146,7 @@ class PhysicalTube(Physics):
         else:
             raise NotFound
         self.settled = Settled(share, four, alpha, beta)
-        return local, weighed, e, area, four, alpha, beta, low, T
+        return local, e, area, four, alpha, beta, low, T
 
     def _first(self, place, y, v, share, H, D, gg, T, m, area, rubber, wall):
         """From the kernel itself, cell by cell."""
@@ -170,7 +170,7 @@ class PhysicalTube(Physics):
             W = energy(Dual(plain.y), Dual(four[0]), Dual(four[1]), area, rubber, wall)
             w = [np.broadcast_to(one.value if isinstance(one, Dual) else one, v.shape) for one in W]
             s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
-            left = equations(plain, s, four, alpha, beta, w[2], w[3])
+            left = equations(plain, s, four, w[2], w[3])
             wrong = np.stack(
                 [left[0], left[1], np.where(alpha, left[2], four[2]), np.where(beta, left[3], four[3])], axis=1
             )
@@ -193,13 +193,13 @@ class PhysicalTube(Physics):
 
     def local(self, y, v, share):
         """As of :class:`Physics`."""
-        local, weighed, e, area, four, alpha, beta, low, T = self.settle(y.value, v.value, share)
+        local, e, area, four, alpha, beta, low, T = self.settle(y.value, v.value, share)
         energy, n = walls()[0], len(share)
         G_1, psi = four[0], four[1]
         own = Local(y, *local[1:])
         W = energy(y, Dual(G_1), Dual(psi), area * e, local.rubber, local.wall) if e > 0.0 else [Dual(np.zeros(n))] * 10
         s = _root(G_1 + 1.0 - v * v)
-        left = equations(own, s, four, alpha, beta, W[2], W[3])
+        left = equations(own, s, four, W[2], W[3])
         w = [np.broadcast_to(one.value, n) for one in W]
         matrix = jacobian(
             y.value, T, np.broadcast_to(s.value, n), four, np.broadcast_to(local.t_a.value, n),
@@ -245,7 +245,7 @@ class PhysicalTube(Physics):
 
     def axial(self, y, v, share):
         """As of :class:`Physics`."""
-        _, _, _, _, four, _, _, _, _ = self.settle(y, v, share)
+        four = self.settle(y, v, share)[3]
         return np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
 
 
@@ -259,8 +259,6 @@ def _vanishes(x, mu, near):
 
 
 def _root(square):
-    from .dual import maximum, sqrt
-
     return sqrt(maximum(square, NO_ROOM))
 
 
