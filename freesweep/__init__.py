@@ -23,6 +23,7 @@ _HOMES = {
     "blocked_force": "holding",
     "blocked_torque": "holding",
     "corrected_torque": "holding",
+    "tolerance": "spread",
     "Helix": "sleeve",
     "constriction": "sleeve",
     "Measurement": "calibration.measured",

@@ -9,6 +9,7 @@ or rotation found is changed to the value asked for: ``held_path`` says so.
 import numpy as np
 
 from .actuator import Actuator
+from .derivative.request import asked_of
 from .faults import ActuatorError
 from .given import numbers
 from .loads import read_load, read_stations, warn_of_loads
@@ -31,7 +32,17 @@ BOTH_HELD = (
 )
 
 
-def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *, rotation=None, x=None, accuracy=1e-6):
+def blocked_force(
+    tube: Actuator,
+    pressure,
+    deformed_length=None,
+    torque=0.0,
+    *,
+    rotation=None,
+    x=None,
+    accuracy=1e-6,
+    derivatives=None,
+):
     """The axial force that holds the deformed length, the free end being free to rotate (Eqs. 2.16, 2.18).
 
     Parameters
@@ -40,7 +51,8 @@ def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *,
     pressure, torque : number or 1-D array [Pa, N m]
     deformed_length : held length [m], number or 1-D array (a force-stroke curve); default: the undeformed length
     rotation : None; a held rotation beside the held length is refused, with the reason
-    x, accuracy : as in :func:`freesweep.lock`
+    x, accuracy, derivatives : as in :func:`freesweep.lock`; of ``pressure``, ``torque`` and ``deformed_length``, too. The
+        undeformed length that is held by default changes with ``length``, one that is given does not
 
     Returns a Dataset with ``force`` [N], positive in tension, on the coordinate ``deformed_length``, and what else deforms.
     Where the wall would have to be pushed (an undeformed tube of region I, low pressure with fiber extension) there is no
@@ -50,12 +62,14 @@ def blocked_force(tube: Actuator, pressure, deformed_length=None, torque=0.0, *,
     if rotation is not None:
         raise ActuatorError([f"rotation: {BOTH_HELD}"])
     held = tube.length if deformed_length is None and isinstance(tube, Actuator) else deformed_length
-    return _hold(tube, "deformed_length", held, "torque", torque, "force", pressure, x, accuracy)
+    arguments = tube, "deformed_length", held, "torque", torque, "force", pressure, x, accuracy
+    return _hold(*arguments, derivatives=derivatives, tied=deformed_length is None)
 
 
 def blocked_torque(
-    tube: Actuator, pressure, rotation=0.0, force=0.0, *, deformed_length=None, buckled=False, x=None, accuracy=1e-6
-):
+    tube: Actuator, pressure, rotation=0.0, force=0.0, *, deformed_length=None, buckled=False, x=None, accuracy=1e-6,
+    derivatives=None,
+):  # fmt: skip
     """The torque that holds the rotation of the free end, the length being free (Eqs. 2.19, 2.20).
 
     Parameters
@@ -68,7 +82,7 @@ def blocked_torque(
         unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Many
         tubes have one below the critical pressure, too, which a disturbance may lead to: a safe limit is
         ``least_buckled_pressure`` [Pa], the least at which the buckled branch has a state. Where there is none: status 4
-    x, accuracy : as in :func:`freesweep.lock`
+    x, accuracy, derivatives : as in :func:`freesweep.lock`; of ``pressure``, ``force`` and ``rotation``, too
 
     Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``
     counts every mode of the whole tube while the rotation stays held. Raises :class:`ActuatorError`.
@@ -91,10 +105,13 @@ def blocked_torque(
             )
         if buckled and tube.varies:
             raise ActuatorError(["buckled: only a tube that is the same all along has a straight state to buckle from"])
-    return _hold(tube, "rotation", rotation, "force", force, "torque", pressure, x, accuracy, buckled)
+    return _hold(tube, "rotation", rotation, "force", force, "torque", pressure, x, accuracy, buckled, derivatives)
 
 
-def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False):
+def _hold(
+    tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False, derivatives=None, tied=False
+):  # fmt: skip
+    from .derivative.attach import Asked, attach, shapes_of
     from .interpret import at_once
     from .solver.find import HELD_LENGTH, HELD_ROTATION
     from .solver.hold import hold_many
@@ -110,6 +127,7 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
         name: read_load(name, value, units[name], faults, **domains.get(name, {}))
         for name, value in ((held_name, held), (load_name, load), ("pressure", pressure))
     }
+    names = asked_of(tube, derivatives, faults, ("pressure", load_name), held_name)
     stations, accuracy = read_stations(tube, x, accuracy, faults)
     warn_of_loads(tube, **{name: axes[name] for name in (load_name, "pressure")}, stacklevel=4)
     grid = np.meshgrid(*axes.values(), indexing="ij")
@@ -182,7 +200,26 @@ def _hold(tube, held_name, held, load_name, load, unknown, pressure, x, accuracy
             "held_path: the way from rest with the undeformed length or rotation held ends elsewhere, or the wall would have"
             " to be pushed on it; some states were found from the free one"
         )
-    return result
+    if not names:
+        return result
+    asked = Asked(
+        tube,
+        names,
+        accuracy,
+        (course, edges, places) if tube.varies else None,
+        error,
+        held_name,
+        unknown,
+        tied,
+        buckled,
+    )
+    shapes = shapes_of(
+        asked,
+        lambda x, guess: _hold(tube, held_name, held, load_name, load, unknown, pressure, x, guess, buckled),
+    )
+    at = [array.reshape(result["status"].shape) for array in (pressures, others, targets)]
+    loads = {"pressure": at[0], load_name: at[1], unknown: result[unknown].values}
+    return attach(result, asked, loads, shapes, at[2])
 
 
 def corrected_torque(tube: Actuator, pressure):

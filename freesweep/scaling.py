@@ -15,6 +15,11 @@ def problem_rows(design, energy, thick=False, loose=False) -> np.ndarray:
     """Dimensionless problems (n, 11), or (n, 13) where the wall is ``thick`` or the fibers are ``loose``, of a ``design``:
     name -> array (n,), in SI units and degrees, loads among them.
     """
+    return np.column_stack(problem_columns(design, energy, thick, loose))
+
+
+def problem_columns(design, energy, thick=False, loose=False) -> tuple:
+    """The columns of :func:`problem_rows`, in plain arithmetic: of arrays, or of dual numbers."""
     ta, tb = np.tan(np.radians(design["alpha"])), np.tan(np.radians(design["beta"]))
     r, c10 = design["fiber_radius"], design["c10"]
     inner = design["radius"]
@@ -25,7 +30,7 @@ def problem_rows(design, energy, thick=False, loose=False) -> np.ndarray:
         area,
         design["fiber_extension"],
         design["c01"] / c10,
-        np.full_like(area, float(energy == "full")),
+        0.0 * area + float(energy == "full"),
         design["force"] / (np.pi * r**2 * c10),
         design["torque"] / (np.pi * r**3 * c10),
         design["length"] / r,
@@ -33,8 +38,8 @@ def problem_rows(design, energy, thick=False, loose=False) -> np.ndarray:
         design.get("c30", 0.0) / c10,
     )
     if thick or loose:
-        columns += ((inner / r) ** 2 * float(thick), np.full_like(area, float(loose)))
-    return np.column_stack(columns)
+        columns += ((inner / r) ** 2 * float(thick), 0.0 * area + float(loose))
+    return columns
 
 
 def output_scales(design) -> dict:
@@ -43,7 +48,7 @@ def output_scales(design) -> dict:
     return {
         "deformed_length": 2.0 * r,
         "volume": 2.0 * np.pi * r**3,
-        "rotation": np.full_like(r, np.degrees(2.0)),
+        "rotation": 0.0 * r + np.degrees(2.0),
         "strain_energy": 2.0 * np.pi * r**3 * c10,
         "mid_radius": r,
     }

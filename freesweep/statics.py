@@ -5,6 +5,7 @@ import numpy as np
 from . import profiles, status
 from .actuator import Actuator
 from .atlas.schema import attributes
+from .derivative.request import asked_of
 from .faults import ActuatorError
 from .loads import read_load, read_stations, warn_of_loads
 from .profiles import SENSITIVITY, widened
@@ -16,7 +17,7 @@ BASE_CELLS = 96  # four times a sweep's: profiles are wanted as exact as scalars
 LOADS = ("force", "torque", "pressure")
 
 
-def lock(tube: Actuator, *, x=None, accuracy=1e-6):
+def lock(tube: Actuator, *, x=None, accuracy=1e-6, derivatives=None):
     """The locked shape: largest volume that the fibers allow, whatever the wall (Eq. 2.12).
 
     Parameters
@@ -24,12 +25,19 @@ def lock(tube: Actuator, *, x=None, accuracy=1e-6):
     tube : the actuator
     x : stations of the profiles [m], distances from the fixed end before deformation, ascending; default 201
     accuracy : scaled error bound to reach, for every scalar output, and every profile at every station
+    derivatives : "all", or names of the actuator's parameters (``alpha``, ``beta``, ``length``, ``radius``, ``wall``,
+        ``fiber_extension``, the rubber's constants, ``fiber_radius`` if it is a number): adds the exact derivative of each
+        scalar output with respect to each, ``d_<output>_d_<parameter>`` in their units (per degree for angles), with its
+        ``_error``. A profile's is that of the same change all along
 
     Returns a Dataset of scalars and profiles along ``x`` with their ``_error`` bounds; fiber tensions per pressure [N/Pa].
     Raises :class:`ActuatorError` for invalid input.
     """
-    stations, accuracy = read_stations(tube, x, accuracy, [])
-    result = _solve(tube, {"force": 0.0, "torque": 0.0, "pressure": np.inf}, stations, accuracy)
+    faults = []
+    names = asked_of(tube, derivatives, faults)
+    stations, accuracy = read_stations(tube, x, accuracy, faults)
+    loads = {"force": 0.0, "torque": 0.0, "pressure": np.inf}
+    result = _differentiated(_solve(tube, loads, stations, accuracy), tube, names, loads, accuracy)
     result = result.drop_vars(["limit_pressure", "limit_pressure_error", "limit_found", *LOADS])
     for name in ("fiber_tension_alpha", "fiber_tension_beta"):
         # the kernel's locked state is that of the pressure c10
@@ -40,7 +48,7 @@ def lock(tube: Actuator, *, x=None, accuracy=1e-6):
     return result
 
 
-def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy=1e-6):
+def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy=1e-6, derivatives=None):
     """Equilibrium under pressure, axial force and torque (Eqs. 2.11, 2.15, 2.18).
 
     Parameters
@@ -48,7 +56,7 @@ def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy
     tube : the actuator
     pressure, force, torque : number or 1-D array [Pa, N, N m]; an array makes a dimension of that name. Force is positive
         in tension, torque toward growing rotation
-    x, accuracy : as in :func:`lock`
+    x, accuracy, derivatives : as in :func:`lock`; of the loads, too: ``pressure``, ``force``, ``torque``
 
     Returns a Dataset. What physics forbids is NaN with a ``status``: beyond ``limit_pressure`` the branch that starts at
     the undeformed cylinder has ended. Where the wall is thicker than a tenth of the radius, the attributes
@@ -61,9 +69,25 @@ def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy
         "torque": read_load("torque", torque, "N m", faults),
         "pressure": read_load("pressure", pressure, "Pa", faults, least=0.0),
     }
+    names = asked_of(tube, derivatives, faults, LOADS)
     stations, accuracy = read_stations(tube, x, accuracy, faults)
     warn_of_loads(tube, **loads)
-    return _solve(tube, loads, stations, accuracy)
+    return _differentiated(_solve(tube, loads, stations, accuracy), tube, names, loads, accuracy)
+
+
+def _differentiated(result, tube, names, loads, accuracy):
+    """A result with its derivatives by the parameters ``names``, if there are any."""
+    if not names:
+        return result
+    from .derivative.attach import Asked, attach, shapes_of
+
+    course, error = read_course(tube, accuracy) if tube.varies else (None, 0.0)
+    asked = Asked(tube, names, accuracy, course, error)
+    shapes = shapes_of(asked, lambda stations, guess: _solve(tube, loads, stations, guess))
+    dims = result["status"].dims
+    grid = dict(zip(dims, np.meshgrid(*(loads[name] for name in dims), indexing="ij")))
+    at = {name: grid.get(name, np.full(result["status"].shape, loads[name])) for name in LOADS}
+    return attach(result, asked, at, shapes)
 
 
 def _solve(tube, loads, stations, accuracy):

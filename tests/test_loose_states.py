@@ -130,3 +130,22 @@ def test_public_functions_find_prototype_b():
         assert float(free.deformed_length[k]) == pytest.approx(length * 1e-3, abs=1e-7)
         assert float(held.torque[k]) / by_eq_220 == pytest.approx(torque, abs=1e-5)
         assert float(held.deformed_length[k]) == pytest.approx(held_length * 1e-3, abs=1e-7)
+
+
+@pytest.mark.long
+def test_many_held_states_are_those_of_machine_code():
+    """More than plain Python does at once: the kernel of held states is compiled for a physical wall, too."""
+    tube = Actuator(
+        alpha=0,
+        beta=30,
+        length=LENGTH,
+        radius=RADIUS,
+        wall=WALL,
+        material=MooneyRivlin(c10=C10, c01=C01),
+        fibers="loose",
+    )
+    pressure = np.union1d(np.linspace(20e3, 200e3, 40), list(KNOWN))
+    held = blocked_torque(tube, pressure, x=[0.0])
+    assert np.all(held["status"] == 0)
+    for p, (_, _, _, length) in KNOWN.items():
+        assert float(held["deformed_length"].sel(pressure=p)) == pytest.approx(length * 1e-3, abs=1e-7)

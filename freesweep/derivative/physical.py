@@ -1,0 +1,273 @@
+"""The physical tube's density over all cells of a mesh, as dual numbers: a thick wall, threads that cannot push, or both.
+
+Where meridional stretch G and twist rate psi settle (:mod:`freesweep.solver.relaxed`), with multipliers a and b of both
+families::
+
+    T/(2 s) - W_G = a + b,    m - W_psi = 2 y^2 (a (t_a + psi) + b (t_b + psi)),
+    g = 0 or multiplier = 0   of each family,    g = G + y^2 (t + psi)^2 - gamma^2 (1 + t^2)
+
+Newton's method solves that in all cells at once; a taut family whose multiplier is negative goes slack, a slack one beyond
+its reach taut. One more step, in dual numbers, gives all first derivatives of the four; bonded fibers stay taut.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from .dual import Dual, maximum, sqrt
+from .equilibrium import NotFound
+from .physics import Physics
+from .twins import twin
+
+STEPS, CHANGES = 60, 30
+SETTLED = 1e-13  # of what is sought
+SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves
+BEYOND = 1e-12  # by which a family may be beyond its reach, or a multiplier negative, of the load
+NO_ROOM = 1e-30
+
+
+@cache
+def walls():
+    """Strain energy of a wall, and where loose fibers settle."""
+    from ..solver import physical, wall
+
+    counted = twin(wall.points)
+
+    def points(inner, area):
+        """As many Gauss points in all cells as one of them needs."""
+        thickest = np.max(area.value)
+        return counted(float(inner.value[0]), float(thickest))
+
+    return twin(wall.energy, points=points), twin(wall.narrowest), twin(physical.place)
+
+
+class Settled(NamedTuple):
+    """Where cells at places ``share`` settle: the four unknowns, (4, cells), and which families are taut."""
+
+    share: np.ndarray
+    four: np.ndarray
+    alpha: np.ndarray
+    beta: np.ndarray
+
+    def at(self, share):
+        """A first guess in other cells."""
+        if np.array_equal(share, self.share):
+            return self
+        near = np.clip(np.searchsorted(0.5 * (self.share[1:] + self.share[:-1]), share), 0, len(self.share) - 1)
+        four = np.stack([np.interp(share, self.share, row) for row in self.four])
+        return Settled(share, four, self.alpha[near], self.beta[near])
+
+
+class Local(NamedTuple):
+    """A cell's numbers, values only or dual ones."""
+
+    y: object
+    p: object
+    f: object
+    m: object
+    t_a: object
+    t_b: object
+    gg: object
+    area: object
+    rubber: tuple
+    wall: tuple
+
+
+def equations(local, s, four, w_G, w_p):
+    """The four equations' left sides."""
+    G_1, psi, a, b = four
+    y2 = local.y * local.y
+
+    def reach(t):
+        return G_1 + 1.0 + y2 * (t + psi) * (t + psi) - local.gg * (1.0 + t * t)
+
+    first = (local.p * y2 + local.f) / (2.0 * s) - w_G - a - b
+    second = local.m - w_p - 2.0 * y2 * (a * (local.t_a + psi) + b * (local.t_b + psi))
+    return first, second, reach(local.t_a), reach(local.t_b)
+
+
+def jacobian(y, T, s, four, t_a, t_b, alpha, beta, w_GG, w_Gp, w_pp):
+    """Their derivatives by the four, (cells, 4, 4); a slack family's last equation is that its multiplier is 0."""
+    _, psi, a, b = four
+    out = np.zeros((len(psi), 4, 4))
+    twice = 2.0 * y * y
+    by_a, by_b = twice * (t_a + psi), twice * (t_b + psi)
+    out[:, 0, 0], out[:, 0, 1], out[:, 0, 2], out[:, 0, 3] = -0.25 * T / s**3 - w_GG, -w_Gp, -1.0, -1.0
+    out[:, 1, 0], out[:, 1, 1], out[:, 1, 2], out[:, 1, 3] = -w_Gp, -w_pp - twice * (a + b), -by_a, -by_b
+    out[:, 2, 0], out[:, 2, 1], out[:, 2, 2] = alpha, alpha * by_a, ~alpha
+    out[:, 3, 0], out[:, 3, 1], out[:, 3, 3] = beta, beta * by_b, ~beta
+    return out
+
+
+class PhysicalTube(Physics):
+    """As :class:`Physics`, of tubes with a thick wall, loose fibers, or both."""
+
+    settled = None
+
+    def _local(self, y, v, share):
+        (H, D, area), (gamma, rubber, wall, p, f, m, e) = self.properties(share)
+        return Local(y, p, f, m, H + D, H - D, gamma * gamma, area, rubber, wall), (H, D, area), e
+
+    def settle(self, y, v, share):
+        """Where each cell settles, ``y`` and ``v`` being values."""
+        local, (H, D, area), e = self._local(Dual(y), Dual(v), share)
+        energy, narrowest, place = walls()
+
+        def value(number):
+            return np.broadcast_to(number.value if isinstance(number, Dual) else number, y.shape)
+
+        rubber, wall = tuple(Dual(c.value) for c in local.rubber), tuple(Dual(c.value) for c in local.wall)
+        p, f, m, t_a, t_b, gg = map(value, (local.p, local.f, local.m, local.t_a, local.t_b, local.gg))
+        T = np.maximum(p * y * y + f, NO_ROOM)
+        weighed = Dual(e * area.value)
+        low = np.maximum(v * v, value(narrowest(Dual(y), wall))) - 1.0
+        if self.settled is None:
+            self.settled = self._first(place, y, v, share, H, D, gg, T, m, weighed, rubber, wall)
+        known = self.settled.at(share)
+        four, alpha, beta = known.four.copy(), known.alpha.copy(), known.beta.copy()
+        plain = Local(y, p, f, m, t_a, t_b, gg, None, None, None)
+        size = np.abs(T) + np.abs(m) + NO_ROOM
+        four[0] = np.maximum(four[0], low + 1e-9)
+        for _ in range(CHANGES):
+            four[2] *= alpha
+            four[3] *= beta
+            four = self._newton(plain, v, low, four, alpha, beta, weighed, rubber, wall)
+            if not self.tube.is_loose:
+                break
+            W = energy(Dual(y), Dual(four[0]), Dual(four[1]), weighed, rubber, wall)
+            s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
+            _, _, over_a, over_b = equations(plain, s, four, value(W[2]), value(W[3]))
+            new_alpha = np.where(alpha, four[2] >= -BEYOND * size, over_a > BEYOND)
+            new_beta = np.where(beta, four[3] >= -BEYOND * size, over_b > BEYOND)
+            if np.array_equal(new_alpha, alpha) and np.array_equal(new_beta, beta):
+                break
+            alpha, beta = new_alpha, new_beta
+        else:
+            raise NotFound
+        self.settled = Settled(share, four, alpha, beta)
+        return local, e, area, four, alpha, beta, low, T
+
+    def _first(self, place, y, v, share, H, D, gg, T, m, area, rubber, wall):
+        """From the kernel itself, cell by cell."""
+        four, taut = np.zeros((4, len(y))), np.ones((2, len(y)), bool)
+
+        def at(number, j):
+            number = number.value if isinstance(number, Dual) else np.asarray(number)
+            return float(number[j] if np.size(number) > 1 else number.reshape(-1)[0])
+
+        gamma = float(np.sqrt(gg[0]))
+        numbers = tuple(at(c, 0) for c in rubber), tuple(at(c, 0) for c in wall)
+        for j in range(len(y)):
+            cell = at(H, j), at(D, j), at(area, j)
+            load = (gamma, *numbers, 0.0, 0.0, float(m[j]), 1.0)
+            _, four[0, j], four[1, j], taut[0, j], taut[1, j] = place(float(y[j]), float(v[j]), float(T[j]), cell, load)
+        return Settled(share, four, taut[0], taut[1])
+
+    def _newton(self, plain, v, low, four, alpha, beta, area, rubber, wall):
+        energy = walls()[0]
+        for _ in range(STEPS):
+            W = energy(Dual(plain.y), Dual(four[0]), Dual(four[1]), area, rubber, wall)
+            w = [np.broadcast_to(one.value if isinstance(one, Dual) else one, v.shape) for one in W]
+            s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
+            left = equations(plain, s, four, w[2], w[3])
+            wrong = np.stack(
+                [left[0], left[1], np.where(alpha, left[2], four[2]), np.where(beta, left[3], four[3])], axis=1
+            )
+            matrix = jacobian(
+                plain.y, plain.p * plain.y**2 + plain.f, s, four, plain.t_a, plain.t_b, alpha, beta, w[7], w[8], w[9]
+            )
+            try:
+                step = -np.linalg.solve(matrix, wrong[..., None])[..., 0].T
+            except np.linalg.LinAlgError:
+                raise NotFound from None
+            before = four[0]
+            four = four + step
+            four[0] = np.maximum(four[0], low + SHORT * (before - low))
+            moved = max(np.max(np.abs(four[0] - before) / (1.0 + before)), np.max(np.abs(step[1])))
+            if not np.isfinite(moved):
+                raise NotFound
+            if moved < 1e-8:
+                return four
+        raise NotFound
+
+    def local(self, y, v, share):
+        """As of :class:`Physics`."""
+        local, e, area, four, alpha, beta, low, T = self.settle(y.value, v.value, share)
+        energy, n = walls()[0], len(share)
+        G_1, psi = four[0], four[1]
+        own = Local(y, *local[1:])
+        W = energy(y, Dual(G_1), Dual(psi), area * e, local.rubber, local.wall) if e > 0.0 else [Dual(np.zeros(n))] * 10
+        s = _root(G_1 + 1.0 - v * v)
+        left = equations(own, s, four, W[2], W[3])
+        w = [np.broadcast_to(one.value, n) for one in W]
+        matrix = jacobian(
+            y.value, T, np.broadcast_to(s.value, n), four, np.broadcast_to(local.t_a.value, n),
+            np.broadcast_to(local.t_b.value, n), alpha, beta, w[7], w[8], w[9],
+        )  # fmt: skip
+        count = y.parts.shape[0]
+        parts = np.stack([_parts(one, count, n) for one in left], axis=-1)  # (count, n, 4)
+        parts[..., 2] *= alpha
+        parts[..., 3] *= beta
+        moved = -np.linalg.solve(matrix, parts.transpose(1, 2, 0)).transpose(1, 2, 0)  # (4, count, n)
+        G, twist, a, b = (Dual(value, part) for value, part in zip(four, moved))
+        s = _root(G + 1.0 - v * v)
+        by_a, by_b = own.t_a + twist, own.t_b + twist
+        W_y = _with(W[1], w[5], w[6], moved)
+        tension = own.p * y * y + own.f
+        L_y = 2.0 * own.p * y * s - W_y - 2.0 * y * (a * by_a * by_a + b * by_b * by_b)
+        L_v = -(tension * v / s)
+        if e == 0.0:
+            W = energy(y, Dual(G_1), Dual(psi), area, local.rubber, local.wall)
+            w = [np.broadcast_to(one.value, n) for one in W]
+        stored = _with(W[0], w[2], w[3], moved)
+        room = np.minimum(G_1 - low, np.broadcast_to(tension.value, n))
+        return room, L_y, L_v, (s, y * y * s, twist, stored)
+
+    def begin(self, other):
+        """As of :class:`Physics`."""
+        self.settled = other.settled
+
+    def kinks(self, segments):
+        """As of :class:`Physics`: where the multiplier of the family that goes slack vanishes, seen from its taut side."""
+        share, four, *taut = self.settled
+        found = []
+        for family, mu in zip(taut, four[2:]):
+            for j in np.flatnonzero(family[1:] != family[:-1]):
+                low, high = share[j], share[j + 1]
+                if np.any((segments > low) & (segments < high)):
+                    continue
+                near = j - np.arange(3) if family[j] else j + 1 + np.arange(3)
+                near = near[(near >= 0) & (near < len(share))]
+                near = near[np.cumprod(family[near]).astype(bool)]
+                found.append(np.clip(_vanishes(share[near], mu[near], low if family[j] else high), low, high))
+        return np.unique(found)
+
+    def axial(self, y, v, share):
+        """As of :class:`Physics`."""
+        four = self.settle(y, v, share)[3]
+        return np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
+
+
+def _vanishes(x, mu, near):
+    """Where the polynomial through up to three points vanishes, beyond the first one, or that where it does not."""
+    at = x[0]
+    roots = np.roots(np.polyfit((x - at) / (np.ptp(x) + NO_ROOM), mu, len(x) - 1)) if len(x) > 1 else np.zeros(0)
+    roots = roots[np.isreal(roots)].real * (np.ptp(x) + NO_ROOM) + at
+    beyond = roots[(roots - at) * (at - x[-1]) >= 0.0]
+    return beyond[np.argmin(np.abs(beyond - at))] if len(beyond) else near
+
+
+def _root(square):
+    return sqrt(maximum(square, NO_ROOM))
+
+
+def _parts(number, count, n):
+    parts = number.parts if isinstance(number, Dual) else None
+    return np.zeros((count, n)) if parts is None else np.broadcast_to(parts, (count, n))
+
+
+def _with(number, by_G, by_twist, moved):
+    """A number with what it changes by as G and psi do."""
+    count, n = moved.shape[1:]
+    return Dual(number.value, _parts(number, count, n) + by_G * moved[0] + by_twist * moved[1])

@@ -1,0 +1,125 @@
+"""A state's density and integrands over all cells of a mesh, as dual numbers of what design and load are: in SI units and
+degrees, so that no chain rule is left to do outside.
+"""
+
+from functools import cache
+
+import numpy as np
+
+from ..elastomer import Yeoh
+from ..scaling import output_scales, problem_columns, wall_volume_inside
+from ..tube_model import FIBER_PLACES, fiber_place
+from .dual import Dual
+from .request import constants, place_of_fibers
+from .twins import twin
+
+BY_Y, BY_V, OWN = 0, 1, 2  # first parts of every dual number: by y, by its slope; then by the parameters
+NEXT_TO_NOTHING = 1e-300  # of C1: a constant of Yeoh's that is 0 counts, too, where its derivative is asked for
+ALONG = ("alpha", "beta", "wall")
+
+
+@cache
+def membranes():
+    """Density and integrands of the source's tube."""
+    from ..solver import membrane
+
+    return twin(membrane.density), twin(membrane.integrands)
+
+
+class Physics:
+    """A tube's state under given loads, whose derivatives by some ``parameters`` are wanted.
+
+    ``loads``: pressure, force and torque in SI units; an infinite pressure is that of the locked shape. ``course``: what
+    varies along the tube, or None.
+    """
+
+    def __init__(self, tube, course, loads, parameters):
+        self.tube, self.course, self.parameters = tube, course, tuple(parameters)
+        self.design = {name: self._seed(name, value) for name, value in (tube.design() | loads).items()}
+        for own, name in constants(tube.material).items():
+            self.design[name] = self._seed(own, self.design[name].value)
+        place = place_of_fibers(tube)
+        if place in FIBER_PLACES:
+            thinnest = float(np.min(tube.profile("wall").samples()))
+            self.design["fiber_radius"] = fiber_place(place, self.design["radius"], self._seed("wall", thinnest))
+        self.is_locked = bool(np.isinf(loads["pressure"]))
+        if self.is_locked:
+            self.design["pressure"] = 0.0 * self.design["length"]
+        self.length = self.design["length"] / self.design["fiber_radius"]
+
+    def _seed(self, name, value):
+        value = np.atleast_1d(np.asarray(value, float))
+        parts = np.zeros((OWN + len(self.parameters), 1))
+        if name not in self.parameters:
+            return Dual(value)
+        parts[OWN + self.parameters.index(name)] = 1.0
+        return Dual(value, parts)
+
+    @property
+    def load(self):
+        """The load that is the first parameter, which holds something, in its own unit."""
+        return float(self.design[self.parameters[0]].value[0])
+
+    @load.setter
+    def load(self, value):
+        self.design[self.parameters[0]] = self._seed(self.parameters[0], value)
+
+    @property
+    def unit(self):
+        """What that load is measured by."""
+        r, c10 = self.design["fiber_radius"].value[0], self.design["c10"].value[0]
+        return np.pi * r ** (2 if self.parameters[0] == "force" else 3) * c10
+
+    def properties(self, share):
+        """``(cell, load)`` as kernels take them, for cells whose middles lie at places x/l."""
+        design = self.design
+        if self.course is not None:
+            H, D, area = self.course.at(share)
+            radius, r = design["radius"].value, design["fiber_radius"].value
+            along = (
+                np.degrees(np.arctan(H + D)), np.degrees(np.arctan(H - D)), np.sqrt(area * r**2 + radius**2) - radius
+            )  # fmt: skip
+            design = design | {name: self._seed(name, value) for name, value in zip(ALONG, along)}
+        tube = self.tube
+        H, D, area, gamma, ratio, shear, f, m, _, second, third, *wall = problem_columns(
+            design, tube.energy, tube.is_thick, tube.is_loose
+        )
+        p, e = design["pressure"] / design["c10"], 0.0 if self.is_locked else 1.0
+        if self.is_locked:
+            p, f, m = 1.0, 0.0, 0.0
+        rubber = (ratio,)
+        if isinstance(tube.material, Yeoh):
+            rubber = (ratio, second, third + NEXT_TO_NOTHING)
+        return (H, D, area), (gamma, rubber, (shear, *wall), p, f, m, e)
+
+    def outputs(self, integrals, middle, half):
+        """The outputs in SI units and degrees from dimensionless dual numbers, of ``half`` the tube or all of it."""
+        share = 1.0 if half else 0.5
+        length, volume, twist, energy = (share * integral for integral in integrals)
+        scale = output_scales(self.design)
+        return {
+            "deformed_length": length * scale["deformed_length"],
+            "rotation": twist * scale["rotation"],
+            "mid_radius": middle * scale["mid_radius"],
+            "volume": volume * scale["volume"] - wall_volume_inside(self.design),
+            "strain_energy": energy * scale["strain_energy"],
+        }
+
+    def local(self, y, v, share):
+        """``(room, L_y, L_v, the four integrands)`` in all cells, at their middles."""
+        cell, load = self.properties(share)
+        density, integrands = membranes()
+        room, L_y, L_v, _, _, _ = density(y, v, cell, load)
+        return room.value, L_y, L_v, integrands(y, v, cell, load)[:4]
+
+    def begin(self, other):
+        """Take over from another one of the same state what helps to find it."""
+
+    def kinks(self, segments):
+        """Places x/l, other than where segments meet, at which the kind of cell changed that was seen last."""
+        return np.zeros(0)
+
+    def axial(self, y, v, share):
+        """Axial stretch in all cells."""
+        cell, load = self.properties(share)
+        return np.broadcast_to(membranes()[1](Dual(y), Dual(v), cell, load)[0].value, y.shape)

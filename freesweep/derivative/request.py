@@ -1,0 +1,86 @@
+"""What derivatives may be asked for, and how each is named and measured."""
+
+import numpy as np
+
+from ..actuator import Actuator
+from ..atlas.schema import PARAMETERS, VARIABLES
+from ..elastomer import Yeoh
+from ..given import described
+from ..tube_model import MODELS
+
+SHAPE = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
+DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension")
+ANGLE = 57.3  # [degree], what angles and rotations are measured by
+
+
+def constants(material) -> dict:
+    """Names of a rubber's constants as it has them -> as a design has them."""
+    return dict(zip(material.constants, ("c10", "c20", "c30") if isinstance(material, Yeoh) else ("c10", "c01")))
+
+
+def place_of_fibers(tube):
+    """One of FIBER_PLACES, or a radius [m]."""
+    return MODELS[tube.model].fiber_radius if tube.fiber_radius is None else tube.fiber_radius
+
+
+def parameters(tube, loads=(), held=None) -> tuple:
+    """Names of all parameters of a tube and its loads, and of what is ``held``."""
+    own = ("fiber_radius",) if not isinstance(place_of_fibers(tube), str) else ()
+    return (*DESIGN, *own, *constants(tube.material), *loads, *(() if held is None else (held,)))
+
+
+def read_derivatives(value, allowed, faults):
+    """The names asked for, each once: "all", one name or several; None after noting every fault."""
+    if value is None:
+        return ()
+    if isinstance(value, str):
+        if value == "all":
+            return allowed
+        value = [value]
+    try:
+        names = list(value)
+    except TypeError:
+        names = [value]
+    unknown = [name for name in names if not (isinstance(name, str) and name in allowed)]
+    for name in unknown:
+        faults.append(f"derivatives: found {described(name)}; choose from {', '.join(allowed)}, or 'all'")
+    return None if unknown else tuple(dict.fromkeys(names))
+
+
+def asked_of(tube, value, faults, loads=(), held=None):
+    """:func:`read_derivatives` of what a tube, if it is one, has; nothing where ``value`` is None."""
+    if value is None or not isinstance(tube, Actuator):
+        return ()
+    return read_derivatives(value, parameters(tube, loads, held), faults)
+
+
+def unit_of(name, tube) -> str:
+    """Unit of an output or a parameter."""
+    of = constants(tube.material).get(name, name)
+    return PARAMETERS[of].units if of in PARAMETERS else VARIABLES[of].units
+
+
+def attributes(output, parameter, tube) -> dict:
+    """Attributes of ``d_<output>_d_<parameter>``."""
+    above, below = unit_of(output, tube), unit_of(parameter, tube)
+    below = f"({below})" if " " in below else below
+    units = above if below == "1" else f"{above}/{below}"
+    return {"units": units, "long_name": f"derivative of {output} with respect to {parameter}"}
+
+
+def sizes(tube, loads, outputs, parameters, values):
+    """What each output, and each of its derivatives, is measured by: (outputs, 1 + parameters); ``values`` (outputs,)."""
+    design = tube.design()
+    r, c10 = design["fiber_radius"], design["c10"]
+    area, size = np.pi * r**2, np.zeros(3)
+    size[:] = loads["pressure"] if np.isfinite(loads["pressure"]) else c10, abs(loads["force"]) / area, 0.0
+    pressure = max(size.max(), abs(loads["torque"]) / (area * r), 1e-3 * c10)
+    natural = {
+        "deformed_length": tube.length, "rotation": ANGLE, "mid_radius": r, "volume": area * tube.length,
+        "strain_energy": 0.0, "pressure": pressure, "force": pressure * area, "torque": pressure * area * r,
+        "alpha": ANGLE, "beta": ANGLE, "fiber_extension": 1.0, **{name: c10 for name in constants(tube.material)},
+    }  # fmt: skip
+    natural |= {name: design[name] for name in ("length", "radius", "wall", "fiber_radius")}
+    above = [max(natural[name], abs(value)) for name, value in zip(outputs, values)]
+    below = [1.0, *(natural[name] for name in parameters)]
+    return np.array(above)[:, None] / np.array(below)

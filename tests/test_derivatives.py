@@ -1,0 +1,202 @@
+"""Derivatives of scalar outputs: closed forms, symmetries of Maxwell's, scaling, and differences of the solver itself."""
+
+import numpy as np
+import pytest
+
+import freesweep as fs
+
+RUBBER = fs.MooneyRivlin(c10=0.11e6, c01=0.06e6)
+TUBE = {"alpha": 30, "beta": -50, "length": 0.12, "radius": 4.76e-3, "wall": 1.59e-3, "material": RUBBER}
+LOADS = {"pressure": 5e4, "force": 2.0, "torque": 0.01}
+SIZES = {"alpha": 60.0, "beta": 60.0, "c10": 1e5, "c01": 1e5, "c1": 1e5, "c2": 1e5, "c3": 1e5, "fiber_extension": 1.0}
+SIZES |= {"length": 0.1, "deformed_length": 0.1, "radius": 5e-3, "wall": 1.5e-3, "fiber_radius": 5e-3}
+SIZES |= {"rotation": 60.0, "pressure": 5e4, "force": 5.0, "torque": 0.02}
+STEP = 2e-3
+
+
+def tube_of(changes):
+    design = TUBE | changes
+    constants = {name: design.pop(name) for name in ("c10", "c01") if name in design}
+    if constants:
+        design["material"] = fs.MooneyRivlin(**({"c10": RUBBER.c10, "c01": RUBBER.c01} | constants))
+    constants = {name: design.pop(name) for name in ("c1", "c2", "c3") if name in design}
+    if constants:
+        design["material"] = fs.Yeoh(**constants)
+    return fs.Actuator(**design)
+
+
+def solved(way, state, **more):
+    loads = {
+        name: state[name] for name in ("pressure", "force", "torque", "deformed_length", "rotation") if name in state
+    }
+    design = {name: value for name, value in state.items() if name not in loads}
+    return getattr(fs, way)(tube_of(design), **loads, x=[0.0], **more)
+
+
+def moved(value, by):
+    return [(share, number + by) for share, number in value] if isinstance(value, list) else value + by
+
+
+def differences(way, state, name, outputs):
+    """Central differences of the solver at its best accuracy, extrapolated."""
+    at = (TUBE | {"c10": RUBBER.c10, "c01": RUBBER.c01, "force": 0.0, "torque": 0.0, "fiber_extension": 1.0} | state)[
+        name
+    ]
+    h = STEP * SIZES[name]
+
+    def outputs_at(by):
+        found = solved(way, state | {name: moved(at, by)}, accuracy=1e-10)
+        return np.array([float(found[output]) for output in outputs])
+
+    near, far = outputs_at(h / 2) - outputs_at(-h / 2), outputs_at(h) - outputs_at(-h)
+    return (8.0 * near - far) / (6.0 * h)
+
+
+STATES = {
+    "loads": ("inflate", LOADS, ["alpha", "wall", "c01"]),
+    "extension": ("inflate", {"pressure": 5e4, "fiber_extension": 1.02}, ["fiber_extension", "beta"]),
+    "locked": ("lock", {}, ["alpha", "length", "radius"]),
+    "principal": ("inflate", {"pressure": 5e4, "energy": "principal", "fiber_radius": 5e-3}, ["fiber_radius", "alpha"]),
+    "held length": (
+        "blocked_force",
+        {"pressure": 5e4, "deformed_length": 0.115},
+        ["deformed_length", "alpha", "pressure"],
+    ),
+    "held rotation": ("blocked_torque", {"pressure": 5e4, "rotation": 20.0}, ["rotation", "radius"]),
+}
+LONG = {
+    "varying angle": (
+        "inflate",
+        {"pressure": 5e4, "alpha": [(0, 0), (1, 60)], "beta": -40},
+        ["alpha", "length", "force"],
+    ),
+    "varying wall": (
+        "blocked_force",
+        {"pressure": 1e5, "deformed_length": 0.11, "wall": [(0, 1e-3), (0.5, 1e-3), (0.5, 2e-3), (1, 2e-3)]},
+        ["wall", "radius"],
+    ),
+    "yeoh": ("inflate", {"pressure": 5e4, "c1": 1e5, "c2": 2e4, "c3": 1e3}, ["c1", "c2", "c3"]),
+}
+
+
+@pytest.mark.parametrize("kind", STATES)
+def test_derivatives_are_what_the_solver_s_own_differences_tell(kind):
+    judge(*STATES[kind])
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", LONG)
+def test_derivatives_of_dearer_states_are_what_differences_tell(kind):
+    judge(*LONG[kind])
+
+
+def judge(way, state, names):
+    found = solved(way, state, derivatives=names)
+    assert int(found["status"]) == 0
+    for name in names:
+        ending = f"_d_{name}"
+        outputs = [one[2 : -len(ending)] for one in found.data_vars if one.startswith("d_") and one.endswith(ending)]
+        assert len(outputs) == 5
+        for output, difference in zip(outputs, differences(way, state, name, outputs)):
+            exact, bound = float(found[f"d_{output}_d_{name}"]), float(found[f"d_{output}_d_{name}_error"])
+            least = 1e-6 * abs(float(found[output])) / SIZES[name]
+            assert abs(exact - difference) <= max(1e-6 * max(abs(exact), least), bound), (output, name)
+            assert bound <= 1e-5 * max(abs(exact), 1e3 * least), (output, name)
+
+
+def test_loads_work_on_each_other_s_displacements_alike():
+    """Maxwell's symmetries of volume, length and rotation, conjugate to pressure, force and torque."""
+    d = fs.inflate(fs.Actuator(**TUBE), **LOADS, derivatives=["pressure", "force", "torque"])
+    by_torque, by_pressure = float(d["d_deformed_length_d_torque"]), float(d["d_deformed_length_d_pressure"])
+    assert float(d["d_rotation_d_force"]) == pytest.approx(np.degrees(by_torque), rel=1e-8)
+    assert float(d["d_volume_d_force"]) == pytest.approx(by_pressure, rel=1e-8)
+    assert float(d["d_rotation_d_pressure"]) == pytest.approx(np.degrees(float(d["d_volume_d_torque"])), rel=1e-8)
+    assert d["d_rotation_d_torque"].attrs["units"] == "degree/(N m)"
+
+
+def test_outputs_scale_with_sizes_and_stiffness():
+    """Euler's theorem: twice as large, or twice as stiff with twice the loads."""
+    d = fs.inflate(fs.Actuator(**TUBE), **LOADS, derivatives="all")
+    at = TUBE | LOADS | {"c10": RUBBER.c10, "c01": RUBBER.c01}
+
+    def growth(output, **powers):
+        return sum(power * at[name] * float(d[f"d_{output}_d_{name}"]) for name, power in powers.items())
+
+    size = {"length": 1, "radius": 1, "wall": 1, "force": 2, "torque": 3}
+    stiffness = {"c10": 1, "c01": 1, "pressure": 1, "force": 1, "torque": 1}
+    for output, by_size, by_stiffness in (
+        ("deformed_length", 1, 0),
+        ("rotation", 0, 0),
+        ("volume", 3, 0),
+        ("strain_energy", 3, 1),
+    ):
+        value = float(d[output])
+        assert growth(output, **size) == pytest.approx(by_size * value, abs=1e-8 * abs(value))
+        assert growth(output, **stiffness) == pytest.approx(by_stiffness * value, abs=1e-8 * abs(value))
+
+
+def test_a_blocked_cylinder_changes_as_its_closed_form():
+    """F = pi r^2 P (2 cot^2(alpha) - 1) of a McKibben muscle (Eq. 2.16), which holds the undeformed length."""
+    muscle = fs.Actuator(**TUBE | {"beta": -30})
+    with_length = fs.blocked_force(muscle, 5e4, derivatives="all")
+    tangent = np.tan(np.radians(30.0))
+    by_family = np.pi * TUBE["radius"] ** 2 * 5e4 * 2.0 / tangent**3 * (1.0 + tangent**2) * np.radians(1.0)
+    assert float(with_length["d_force_d_alpha"]) == pytest.approx(-by_family, rel=1e-9)
+    assert float(with_length["d_force_d_beta"]) == pytest.approx(by_family, rel=1e-9)
+    assert float(with_length["d_force_d_pressure"]) == pytest.approx(float(with_length["force"]) / 5e4, rel=1e-9)
+    assert float(with_length["d_force_d_length"]) == pytest.approx(0.0, abs=1e-6)
+    given = fs.blocked_force(muscle, 5e4, deformed_length=TUBE["length"], derivatives=["length", "deformed_length"])
+    stiffness = float(given["d_force_d_deformed_length"])
+    assert stiffness > 0.0
+    assert float(given["d_force_d_length"]) == pytest.approx(-stiffness, rel=1e-6)  # a longer tube is pulled less
+
+
+def test_the_undeformed_tube_has_derivatives_by_its_first_load():
+    tube = fs.Actuator(**TUBE)
+    rest, soon = (fs.inflate(tube, p, derivatives=["pressure", "length"]) for p in (0.0, 100.0))
+    assert float(rest["d_deformed_length_d_length"]) == 1.0
+    for output in ("deformed_length", "rotation", "volume", "mid_radius"):
+        name = f"d_{output}_d_pressure"
+        assert float(soon[name]) == pytest.approx(float(rest[name]), rel=0.05)
+
+
+def test_no_state_has_no_derivative_and_unknown_names_are_listed():
+    tube = fs.Actuator(alpha=0, beta=60, **{name: TUBE[name] for name in ("length", "radius", "wall", "material")})
+    found = fs.inflate(tube, [1e4, 2e4], force=[-9.0, 0.0], derivatives="alpha")
+    assert found["d_volume_d_alpha"].dims == ("force", "pressure")
+    assert np.array_equal(np.isnan(found["d_volume_d_alpha"]), np.isnan(found["volume"]))
+    assert 0 < np.count_nonzero(found["status"] == 0) < 4
+    with pytest.raises(fs.ActuatorError) as fault:
+        fs.inflate(tube, "?", derivatives=["alpha", "gamma", 3])
+    assert len(fault.value.faults) == 3
+    assert "choose from alpha, beta, length" in str(fault.value)
+
+
+def test_a_physical_tube_in_which_threads_go_slack_along_it():
+    """Nodes lie where the families go slack, so that bounds hold there, too."""
+    state = {"pressure": 5e4, "alpha": 5, "beta": 30, "model": "physical"}
+    found = solved("inflate", state, derivatives=["alpha", "wall", "pressure"])
+    assert int(found["slack_fiber"]) > 0
+    for name in ("alpha", "wall", "pressure"):
+        outputs = ["deformed_length", "rotation", "volume"]
+        for output, difference in zip(outputs, differences("inflate", state, name, outputs)):
+            exact, bound = float(found[f"d_{output}_d_{name}"]), float(found[f"d_{output}_d_{name}_error"])
+            assert exact == pytest.approx(difference, rel=2e-5)  # the solver's own bounds, over the step
+            assert bound < 1e-5 * abs(exact)
+
+
+def test_tolerances_of_manufacture_spread_the_outputs():
+    """To first order: against a sample of tubes, each solved by itself, and shares that add up to one."""
+    spread = {"alpha": 0.5, "wall": 2e-5, "pressure_tolerance": 300.0}
+    told = fs.tolerance(fs.Actuator(**TUBE), 5e4, **spread)
+    rng, rotations = np.random.default_rng(3), []
+    for alpha, wall, pressure in rng.standard_normal((100, 3)) * list(spread.values()):
+        tube = fs.Actuator(**TUBE | {"alpha": TUBE["alpha"] + alpha, "wall": TUBE["wall"] + wall})
+        rotations.append(float(fs.inflate(tube, 5e4 + pressure, x=[0.0])["rotation"]))
+    assert float(told["rotation_deviation"]) == pytest.approx(np.std(rotations), rel=0.2)
+    assert float(told["rotation_share"].sum()) == pytest.approx(1.0)
+    assert float(told["rotation_share"].sel(parameter="alpha")) > 0.5
+    assert told["rotation_deviation"].attrs["units"] == "degree"
+    with pytest.raises(fs.ActuatorError) as fault:
+        fs.tolerance(fs.Actuator(**TUBE), 5e4, gamma=1.0, wall=-1.0)
+    assert len(fault.value.faults) == 2
