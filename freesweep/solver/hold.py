@@ -172,7 +172,15 @@ def hold_many(
             status[i], unstable, doublings, bare = find_buckled(
                 problem, pressures[i], others[i], target, tube, accuracy, space, out, least[i]
             )
-            now = (bare[0], bare[1], wall_of(problem, walls), bare[3], bare[4], bare[5], bare[6])  # a load's type is one
+            now = (
+                bare[0],
+                bare[1],
+                wall_of(problem, walls),
+                bare[3],
+                bare[4],
+                bare[5],
+                bare[6],
+            )  # a load's type is one
         else:
             status[i], unstable, doublings, now, tube, space, paths[i] = find_on_some_mesh(
                 problem, walls, pressures[i], others[i], target, kind, course, first_tube, accuracy, first_space, out
