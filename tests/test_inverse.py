@@ -252,8 +252,8 @@ def test_a_rotator_beats_the_switch_of_the_source():
     """
     places = (0.0, 1 / 3, 2 / 3, 1.0)
     rotator = tube(
-        alpha=list(zip(places, (5.505661504, 15.349956297, 62.315975181, 82.923718012))),
-        beta=list(zip(places, (-63.0774403, -56.875952007, -66.442433366, -54.018740755))),
+        alpha=list(zip(places, (5.50777916, 15.364258698, 62.316682009, 82.950193561))),
+        beta=list(zip(places, (-63.051602913, -56.877608903, -66.433401521, -54.015628784))),
         length=0.2, radius=4.76e-3, wall=1.59e-3, rubber=fs.MooneyRivlin(0.1716e6, 0.08e6),
     )  # fmt: skip
     found = fs.inflate(rotator, np.linspace(0.0, 0.14e6, 57), x=0.0)
