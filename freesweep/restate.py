@@ -9,6 +9,7 @@ import numpy as np
 from .query import reference
 from .query.exact import solve
 from .query.family import FAMILIES
+from .tube_model import model_of
 
 WIDER = 100.0  # times a bound may be another's: one state in a thousand is solved on another mesh
 WIDER_THAN_ASKED = 3.0  # times the accuracy a bound may be, rounding among it, where its state is not told inaccurate
@@ -18,14 +19,14 @@ ROUNDING = 1e-12  # of a limit pressure
 def faults(points) -> list:
     """Sentences on stored bounds and limit pressures that are not the solver's at ``points`` of an atlas."""
     data, found = points.data, []
-    energy, accuracy = data.attrs["energy"], float(data.attrs["accuracy"])
+    energy, accuracy, model = data.attrs["energy"], float(data.attrs["accuracy"]), model_of(data.attrs)
     highest = float(data["pressure"].max()) if "limit_pressure" in data else None
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data]
         if key == "limit" or not names:
             continue
         most = highest if family.kind == reference.LOADED else None
-        anew = solve(family.kind, _columns(points, family.kind), energy, accuracy, most)
+        anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model)
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
             found += _of_bounds(name, points, anew[of], anew[f"{of}_error"])
@@ -34,7 +35,7 @@ def faults(points) -> list:
     return found
 
 
-def _columns(points, kind):
+def columns(points, kind):
     """Points (n, 15) as :mod:`freesweep.query.exact` takes them."""
     known = dict(points.column) | {"fiber_radius": points.radius, "held": np.zeros(points.count)}
     if kind == reference.LENGTH_HELD:

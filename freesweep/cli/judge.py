@@ -58,7 +58,10 @@ def _resolve(atlas, options):
 
     points = draw(atlas.data, options.resolve, options.seed)
     comparisons, notes = resolve(points)
-    print("solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n")
+    if not points.model.is_physical:
+        print(
+            "solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n"
+        )
     print(*([table(comparisons)] if comparisons else []), *notes, sep="\n")
     if broken := sum(int(compared.broken.sum()) for compared in comparisons):
         raise AtlasError(f"{broken:,} stored numbers lie farther from the second method's than both errors allow")
