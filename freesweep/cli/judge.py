@@ -1,5 +1,7 @@
 """The commands that judge: verify, bench, census. They parse and call."""
 
+from ..tube_model import DEFAULT, MODELS
+
 
 def add_judging(commands):
     """Add the commands of this module to the command line."""
@@ -30,6 +32,7 @@ def add_judging(commands):
     census.add_argument(
         "--audit", type=int, default=1000, metavar="M", help="states solved again on a finer mesh (default 1000)"
     )
+    census.add_argument("--model", choices=tuple(MODELS), default=DEFAULT, help=f"of the tubes (default: {DEFAULT})")
     census.add_argument("--threads", type=int, metavar="N", help="default: one for each core")
     census.add_argument("--quiet", action="store_true", help="no progress bar")
     census.set_defaults(run=_run_census)
@@ -92,6 +95,7 @@ def _run_census(options):
     from ..census.run import census
 
     found = census(
-        options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet
-    )
+        options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet,
+        model=options.model,
+    )  # fmt: skip
     print(found.report())
