@@ -8,16 +8,11 @@ from .atlas.schema import VARIABLES, YEOH
 from .first_integral import folded, held
 from .first_integral.tube import NO_GUIDE, OUTPUTS, SOLVED, cylinders, solve
 from .first_integral.uniform import Tubes, follow, to_corner
-from .query import exact
-from .query.family import FAMILIES
-from .restate import columns
-from .scaling import ACCURACIES
 from .status import VALUED
 from .tube_model import fiber_surface, model_of
 
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "c10", "c01", "force", "torque")
 NEXT_TO_NOTHING = 1e-14  # of the torque: a pressure for none
-FINER, SHARPER = 4, 1e-2  # times the cells, and the accuracy, of states of physical tubes solved anew
 MANY = 1 << 25  # numbers of one variable read at once
 
 
@@ -52,14 +47,9 @@ def resolve(points):
     """Solve ``points`` of an atlas anew; ``(comparisons, notes)``, sentences on what could not be judged without help."""
     if not points.count:
         return [], ["no point of this atlas has a result"]
-    if points.model.is_physical:
-        return finer(points), [
-            "not by a second method, which knows membranes with bonded fibers only, but on a mesh"
-            f" {FINER} times finer, to an accuracy {1.0 / SHARPER:g} times better"
-        ]
     notes = []
     found = [*_shapes(points, "", *_free(points, notes)), *_shapes(points, "locked_", *_locked(points))]
-    found += [_limits(points), *_blocked(points), *_ideal(points)]
+    found += [_limits(points), *_blocked(points), *ideal(points)]
     found = [compared for compared in found if compared is not None]
     if any(compared.unjudged for compared in found):
         notes.append(
@@ -67,25 +57,6 @@ def resolve(points):
             " limit pressures at which the second method finds no longest tube"
         )
     return found, notes
-
-
-def finer(points):
-    """Comparisons with the solver's own states on a finer mesh."""
-    data, found = points.data, []
-    accuracy = max(SHARPER * float(data.attrs["accuracy"]), ACCURACIES[0])
-    for key, family in FAMILIES.items():
-        names = [name for name in family.variables if name in data]
-        if key == "limit" or not names:
-            continue
-        anew = exact.solve(
-            family.kind, columns(points, family.kind), data.attrs["energy"], accuracy, None, points.model,
-            FINER * exact.CELLS,
-        )  # fmt: skip
-        for name in names:
-            of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
-            found.append(_compare(points, name, anew[of], anew[f"{of}_error"]))
-    found += _ideal(points)
-    return [compared for compared in found if compared is not None]
 
 
 class Points:
@@ -183,7 +154,7 @@ def _shapes(points, prefix, values, errors):
         value = values[:, k] * unit
         if name == "volume":  # the wall inside the fibers keeps its volume
             value = value - np.pi * (r**2 - points.column["radius"] ** 2) * points.column["length"]
-        yield _compare(points, prefix + name, value, errors[:, k] * unit)
+        yield compare(points, prefix + name, value, errors[:, k] * unit)
 
 
 def _limits(points):
@@ -198,7 +169,7 @@ def _limits(points):
         turning, t = follow(u, corner, beyond)
         value[some] = folded.limit_pressures(tubes, turning, corner.toward(beyond, t).pressure, near[some])
     own = 1e-9 * np.abs(value) * points.column["c10"]
-    return _compare(points, "limit_pressure", value * points.column["c10"], own)
+    return compare(points, "limit_pressure", value * points.column["c10"], own)
 
 
 def _blocked(points):
@@ -215,10 +186,10 @@ def _blocked(points):
         value, own = np.full((2, points.count), np.nan)
         value[good], own[good] = held.blocked(mine, kind, points.target(kind)[good], near[good])
         value[nothing], own[nothing] = 0.0, 0.0
-        yield _compare(points, name, value * unit, own * unit)
+        yield compare(points, name, value * unit, own * unit)
 
 
-def _ideal(points):
+def ideal(points):
     """The closed forms of inextensible fibers: the load that makes a straight cylinder of no wall stationary."""
     ones, r = np.ones(points.count), points.radius
     tubes = points.tubes(gamma=ones, weight=0.0 * ones, force=0.0 * ones, torque=0.0 * ones)
@@ -226,10 +197,10 @@ def _ideal(points):
         unit = np.pi * r ** (2 + kind) * points.column["c10"]
         with np.errstate(all="ignore"):
             value = held.cylinder_load(tubes, kind, ones) * unit
-        yield _compare(points, name, value, 1e-13 * np.abs(value))
+        yield compare(points, name, value, 1e-13 * np.abs(value))
 
 
-def _compare(points, name, value, own):
+def compare(points, name, value, own):
     """A variable's stored numbers against ``value`` with its ``own`` error; None where nothing is stored."""
     if name not in points.data or name not in VARIABLES:
         return None

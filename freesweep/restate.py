@@ -7,13 +7,16 @@ the atlas may be any; the others are those of the states solved alone, but for t
 import numpy as np
 
 from .query import reference
-from .query.exact import solve
+from .query.exact import CELLS, solve
 from .query.family import FAMILIES
+from .resolve import compare, ideal
+from .scaling import ACCURACIES
 from .tube_model import model_of
 
 WIDER = 100.0  # times a bound may be another's: one state in a thousand is solved on another mesh
 WIDER_THAN_ASKED = 3.0  # times the accuracy a bound may be, rounding among it, where its state is not told inaccurate
 ROUNDING = 1e-12  # of a limit pressure
+FINER, SHARPER = 4, 1e-2  # times the cells, and the accuracy, of states of physical tubes solved anew
 
 
 def faults(points) -> list:
@@ -43,6 +46,32 @@ def columns(points, kind):
     elif kind == reference.ROTATION_HELD:
         known |= {"torque": 0.0 * points.radius, "held": np.degrees(points.target(1))}
     return np.column_stack([np.broadcast_to(known[name], points.count) for name in reference.COLUMNS])
+
+
+def finer(points):
+    """Comparisons of ``points`` of physical tubes, which the second method does not know, with states on a finer mesh; and
+    notes, as :func:`resolve.resolve` gives them.
+    """
+    if not points.count:
+        return [], ["no point of this atlas has a result"]
+    data, found = points.data, []
+    accuracy = max(SHARPER * float(data.attrs["accuracy"]), ACCURACIES[0])
+    for key, family in FAMILIES.items():
+        names = [name for name in family.variables if name in data]
+        if key == "limit" or not names:
+            continue
+        anew = solve(
+            family.kind, columns(points, family.kind), data.attrs["energy"], accuracy, None, points.model,
+            FINER * CELLS,
+        )  # fmt: skip
+        for name in names:
+            of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
+            found.append(compare(points, name, anew[of], anew[f"{of}_error"]))
+    found += ideal(points)
+    return [compared for compared in found if compared is not None], [
+        "not by a second method, which knows membranes with bonded fibers only, but on a mesh"
+        f" {FINER} times finer, to an accuracy {1.0 / SHARPER:g} times better"
+    ]
 
 
 def _of_bounds(name, points, value, anew):

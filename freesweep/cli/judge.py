@@ -57,10 +57,10 @@ def _run_verify(options):
 def _resolve(atlas, options):
     from ..atlas.store import AtlasError
     from ..resolve import draw, resolve, table
-    from ..restate import faults
+    from ..restate import faults, finer
 
     points = draw(atlas.data, options.resolve, options.seed)
-    comparisons, notes = resolve(points)
+    comparisons, notes = (finer if points.model.is_physical else resolve)(points)
     if not points.model.is_physical:
         print(
             "solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n"
