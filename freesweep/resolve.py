@@ -9,6 +9,7 @@ from .first_integral import folded, held
 from .first_integral.tube import NO_GUIDE, OUTPUTS, SOLVED, cylinders, solve
 from .first_integral.uniform import Tubes, follow, to_corner
 from .status import VALUED
+from .tube_model import fiber_surface, model_of
 
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "c10", "c01", "force", "torque")
 NEXT_TO_NOTHING = 1e-14  # of the torque: a pressure for none
@@ -48,7 +49,7 @@ def resolve(points):
         return [], ["no point of this atlas has a result"]
     notes = []
     found = [*_shapes(points, "", *_free(points, notes)), *_shapes(points, "locked_", *_locked(points))]
-    found += [_limits(points), *_blocked(points), *_ideal(points)]
+    found += [_limits(points), *_blocked(points), *ideal(points)]
     found = [compared for compared in found if compared is not None]
     if any(compared.unjudged for compared in found):
         notes.append(
@@ -73,7 +74,9 @@ class Points:
         self.count = len(drawn)
         self.column = {name: self.stored(name) for name in (*DESIGN, "pressure")}
         self.column |= {name: self.stored(name) if name in data else np.zeros(self.count) for name in YEOH}
-        self.radius = self.stored("fiber_radius") if "fiber_radius" in data else self.column["radius"]
+        self.model = model_of(data.attrs)
+        given = {"fiber_radius": self.stored("fiber_radius")} if "fiber_radius" in data else {}
+        self.radius = fiber_surface(self.column | given, self.model)
 
     def stored(self, name):
         """Numbers of a variable at the points (n,)."""
@@ -151,7 +154,7 @@ def _shapes(points, prefix, values, errors):
         value = values[:, k] * unit
         if name == "volume":  # the wall inside the fibers keeps its volume
             value = value - np.pi * (r**2 - points.column["radius"] ** 2) * points.column["length"]
-        yield _compare(points, prefix + name, value, errors[:, k] * unit)
+        yield compare(points, prefix + name, value, errors[:, k] * unit)
 
 
 def _limits(points):
@@ -166,7 +169,7 @@ def _limits(points):
         turning, t = follow(u, corner, beyond)
         value[some] = folded.limit_pressures(tubes, turning, corner.toward(beyond, t).pressure, near[some])
     own = 1e-9 * np.abs(value) * points.column["c10"]
-    return _compare(points, "limit_pressure", value * points.column["c10"], own)
+    return compare(points, "limit_pressure", value * points.column["c10"], own)
 
 
 def _blocked(points):
@@ -183,10 +186,10 @@ def _blocked(points):
         value, own = np.full((2, points.count), np.nan)
         value[good], own[good] = held.blocked(mine, kind, points.target(kind)[good], near[good])
         value[nothing], own[nothing] = 0.0, 0.0
-        yield _compare(points, name, value * unit, own * unit)
+        yield compare(points, name, value * unit, own * unit)
 
 
-def _ideal(points):
+def ideal(points):
     """The closed forms of inextensible fibers: the load that makes a straight cylinder of no wall stationary."""
     ones, r = np.ones(points.count), points.radius
     tubes = points.tubes(gamma=ones, weight=0.0 * ones, force=0.0 * ones, torque=0.0 * ones)
@@ -194,10 +197,10 @@ def _ideal(points):
         unit = np.pi * r ** (2 + kind) * points.column["c10"]
         with np.errstate(all="ignore"):
             value = held.cylinder_load(tubes, kind, ones) * unit
-        yield _compare(points, name, value, 1e-13 * np.abs(value))
+        yield compare(points, name, value, 1e-13 * np.abs(value))
 
 
-def _compare(points, name, value, own):
+def compare(points, name, value, own):
     """A variable's stored numbers against ``value`` with its ``own`` error; None where nothing is stored."""
     if name not in points.data or name not in VARIABLES:
         return None

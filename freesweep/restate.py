@@ -7,25 +7,29 @@ the atlas may be any; the others are those of the states solved alone, but for t
 import numpy as np
 
 from .query import reference
-from .query.exact import solve
+from .query.exact import CELLS, solve
 from .query.family import FAMILIES
+from .resolve import compare, ideal
+from .scaling import ACCURACIES
+from .tube_model import model_of
 
 WIDER = 100.0  # times a bound may be another's: one state in a thousand is solved on another mesh
 WIDER_THAN_ASKED = 3.0  # times the accuracy a bound may be, rounding among it, where its state is not told inaccurate
 ROUNDING = 1e-12  # of a limit pressure
+FINER, SHARPER = 4, 1e-2  # times the cells, and the accuracy, of states of physical tubes solved anew
 
 
 def faults(points) -> list:
     """Sentences on stored bounds and limit pressures that are not the solver's at ``points`` of an atlas."""
     data, found = points.data, []
-    energy, accuracy = data.attrs["energy"], float(data.attrs["accuracy"])
+    energy, accuracy, model = data.attrs["energy"], float(data.attrs["accuracy"]), model_of(data.attrs)
     highest = float(data["pressure"].max()) if "limit_pressure" in data else None
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data]
         if key == "limit" or not names:
             continue
         most = highest if family.kind == reference.LOADED else None
-        anew = solve(family.kind, _columns(points, family.kind), energy, accuracy, most)
+        anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model)
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
             found += _of_bounds(name, points, anew[of], anew[f"{of}_error"])
@@ -34,7 +38,7 @@ def faults(points) -> list:
     return found
 
 
-def _columns(points, kind):
+def columns(points, kind):
     """Points (n, 15) as :mod:`freesweep.query.exact` takes them."""
     known = dict(points.column) | {"fiber_radius": points.radius, "held": np.zeros(points.count)}
     if kind == reference.LENGTH_HELD:
@@ -42,6 +46,32 @@ def _columns(points, kind):
     elif kind == reference.ROTATION_HELD:
         known |= {"torque": 0.0 * points.radius, "held": np.degrees(points.target(1))}
     return np.column_stack([np.broadcast_to(known[name], points.count) for name in reference.COLUMNS])
+
+
+def finer(points):
+    """Comparisons of ``points`` of physical tubes, which the second method does not know, with states on a finer mesh; and
+    notes, as :func:`resolve.resolve` gives them.
+    """
+    if not points.count:
+        return [], ["no point of this atlas has a result"]
+    data, found = points.data, []
+    accuracy = max(SHARPER * float(data.attrs["accuracy"]), ACCURACIES[0])
+    for key, family in FAMILIES.items():
+        names = [name for name in family.variables if name in data]
+        if key == "limit" or not names:
+            continue
+        anew = solve(
+            family.kind, columns(points, family.kind), data.attrs["energy"], accuracy, None, points.model,
+            FINER * CELLS,
+        )  # fmt: skip
+        for name in names:
+            of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
+            found.append(compare(points, name, anew[of], anew[f"{of}_error"]))
+    found += ideal(points)
+    return [compared for compared in found if compared is not None], [
+        "not by a second method, which knows membranes with bonded fibers only, but on a mesh"
+        f" {FINER} times finer, to an accuracy {1.0 / SHARPER:g} times better"
+    ]
 
 
 def _of_bounds(name, points, value, anew):

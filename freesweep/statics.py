@@ -93,6 +93,7 @@ def _differentiated(result, tube, names, loads, accuracy):
 def _solve(tube, loads, stations, accuracy):
     """Solve for the product of the loads, and put the results into a Dataset."""
     from .solver.batch import uniform, walk_all
+    from .solver.halves import in_two_halves
 
     shape = tuple(np.size(loads[name]) for name in LOADS)
     force, torque = (grid.ravel() for grid in np.meshgrid(loads["force"], loads["torque"], indexing="ij"))
@@ -105,7 +106,7 @@ def _solve(tube, loads, stations, accuracy):
     if tube.varies:
         course, error = read_course(tube, accuracy)
     else:
-        course = in_two_halves(tube, rows[0], BASE_CELLS // 2) if whole else uniform(BASE_CELLS)
+        course = in_two_halves(rows[0], BASE_CELLS // 2) if whole else uniform(BASE_CELLS)
     unique, index = near_stations(tube, stations, whole)
     first = np.arange(count + 1, dtype=np.int64) * steps
     pressures = np.tile(pressure[order] / tube.material.c10, count)
@@ -148,13 +149,6 @@ def _solve(tube, loads, stations, accuracy):
 def is_solved_whole(tube):
     """Whether all of a tube is solved, and not its half up to a plane of symmetry: first integrals are the source's."""
     return tube.varies or tube.is_thick or tube.is_loose
-
-
-def in_two_halves(tube, row, cells):
-    """``(course, edges, places)`` of a tube that is the same all along, of so many cells in each half."""
-    course = np.zeros((2, 1, 3, 4))
-    course[:, 0, :, 0] = row[:3]
-    return course, np.arange(3) * cells, np.arange(3) * 0.5 * tube.length / tube.fiber_surface
 
 
 def undeformed(tube, stations, whole):

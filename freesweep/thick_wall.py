@@ -13,6 +13,7 @@ changes, less is wrong.
 import numpy as np
 
 from .profiles import as_profile
+from .tube_model import fiber_surface, model_of
 
 NOTES = ("thin_wall_ratio", "thin_wall_note")
 DESIGN = ("alpha", "beta", "radius", "wall", "fiber_radius")
@@ -64,15 +65,18 @@ def grid_attributes(data) -> dict:
     """Attributes of an atlas' Dataset, of which coordinates and attributes count, if some of its tubes have a thick wall."""
     import xarray as xr
 
+    if model_of(data.attrs).is_thick:
+        return {}
     arrays = {name: data[name] for name in DESIGN if name in data.coords}
     for name in (name for name in DESIGN if f"profile_{name}" in data.attrs):
         pairs = np.reshape(data.attrs[f"profile_{name}"], (-1, 2)).tolist()
         arrays[name] = xr.DataArray(as_profile(pairs).at(SHARE), dims="x")
-    arrays.setdefault("fiber_radius", arrays["radius"])
     few = {
         name: array.isel({name: _some(len(array), FEW[name])}) for name, array in arrays.items() if name in array.dims
     }
     arrays |= {name: array.reset_coords(drop=True) for name, array in (arrays | few).items()}
+    thinnest = arrays | {"wall": arrays["wall"].min("x") if "x" in arrays["wall"].dims else arrays["wall"]}
+    arrays["fiber_radius"] = fiber_surface(thinnest, model_of(data.attrs))
     alpha, beta, radius, wall, fibers = (array.values for array in xr.broadcast(*(arrays[name] for name in DESIGN)))
     inside = (fibers >= radius) & (fibers <= (radius + wall) * (1.0 + 1e-12))  # others are no tubes
     return attributes_of(

@@ -12,6 +12,7 @@ import pytest
 from freesweep.atlas.schema import HELD, PARAMETERS, YEOH
 from freesweep.sweep import toml_guard
 from freesweep.sweep.spec import MAX_POINTS, SpecificationError, parse, read_file
+from freesweep.tube_model import MODELS
 from freesweep.units import quantity
 
 SWEEPS = Path(__file__).parent.parent / "sweeps"
@@ -450,6 +451,7 @@ def test_the_shipped_sweeps_have_the_size_they_say():
         "blocked",
         "curves",
         "design-space",
+        "physical",
         "prototypes",
         "quick",
         "validity-full",
@@ -460,6 +462,9 @@ def test_the_shipped_sweeps_have_the_size_they_say():
     assert "25 092" in quick.text
     assert space.points == 3_781_890
     assert "3 781 890" in space.text
+    physical = read_file(SWEEPS / "physical.toml")
+    assert all(np.array_equal(physical.axes[name], values) for name, values in space.axes.items())
+    assert (physical.fixed, physical.model, space.model) == (space.fixed, MODELS["physical"], MODELS["source"])
     assert prototypes.shape == (6, 41)
     assert prototypes.designs["names"] == ("McKibben 30", "McKibben 35", "McKibben 40", "A", "B", "C")
     assert prototypes.designs["columns"]["c01"].tolist() == [60e3, 120e3, 100e3, 80e3, 80e3, 80e3]

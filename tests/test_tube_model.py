@@ -7,7 +7,6 @@ import pytest
 
 from freesweep import Actuator, ActuatorError, MooneyRivlin, inflate
 from freesweep.cli import main
-from freesweep.sweep.spec import SpecificationError, parse
 
 PAM = {
     "alpha": 30, "beta": -30, "length": 0.192, "radius": 4e-3, "wall": 2e-3, "material": MooneyRivlin(c10=1e5)
@@ -61,16 +60,6 @@ def test_the_shell_takes_the_same_words(capsys):
     assert capsys.readouterr().out == plain
     assert main(["inflate", *size, "--model=physical", "--energy=principal", "--pressure=0"]) == 2
     assert "'principal' charges a twist nothing" in capsys.readouterr().err
-
-
-def test_sweeps_say_that_they_know_the_source_s_tube_only():
-    text = "[actuator]\nalpha = 30\nbeta = -30\nlength = 0.1\nradius = 4e-3\nwall = 1e-3\nc10 = 1e5\n{}\n"
-    text += "[axes]\npressure = [0, 1e4]\n"
-    assert parse(text.format('model = "source"\nfibers = "bonded"')).points == 2
-    with pytest.raises(SpecificationError) as error:
-        parse(text.format('model = "physical"\nwall_model = "thick"\nfibers = "loose"'))
-    for name in ("model", "wall_model", "fibers"):
-        assert f"actuator.{name}: found" in str(error.value)
 
 
 def test_the_shell_says_that_loose_fibers_hang_and_that_bonded_ones_would_push():

@@ -5,7 +5,8 @@ What an atlas says of its own numbers (values against statuses, the grid against
 
 import numpy as np
 
-from .schema import FLAG_OF, PARAMETERS, STATUS_OF, VARIABLES, attributes, status_of, without
+from ..tube_model import ATTRIBUTES, FIBER_PLACES, FIBERS, WALL_MODELS, model_of
+from .schema import FLAG_OF, PARAMETERS, STATUS_OF, VARIABLES, absent, attributes, status_of
 
 MOST_VALUES = 1_000_000  # of one axis: a specification gives 10 000, and axes may grow
 MOST_CODES = 1 << 26  # labels read when an atlas is opened; of a larger one verify reads the rest
@@ -30,6 +31,9 @@ def _of_attributes(data):
             yield f"its attribute {name} is missing, or no text"
     if data.attrs.get("energy") not in ENERGIES:
         yield f"its strain energy is {data.attrs.get('energy')!r:.40}, known are {', '.join(ENERGIES)}"
+    for name, allowed in zip(ATTRIBUTES.values(), (FIBER_PLACES, WALL_MODELS, FIBERS)):
+        if (found := data.attrs.get(name, allowed[0])) not in allowed:
+            yield f"its attribute {name} is {found!r:.40}, known are {', '.join(allowed)}"
     for name, least in (("accuracy", None), ("interpolation_tolerance", 1.0)):
         number = data.attrs.get(name, least)
         if not (np.isscalar(number) and np.isreal(number) and np.isfinite(number) and number > 0.0):
@@ -110,10 +114,8 @@ def _of_variables(data):
 
 def dimensions(name, data) -> tuple:
     """The dimensions that a variable has in an atlas with those axes."""
-    absent = without(name)
-    if "fiber_radius" in data.coords:
-        absent = tuple(each for each in absent if each != "wall")  # it decides with the fibers which designs are valid
-    return tuple(each for each in ORDER if each in data.sizes and each not in absent)
+    dropped = absent(name, "fiber_radius" in data.coords or model_of(data.attrs).fiber_radius != "inner")
+    return tuple(each for each in ORDER if each in data.sizes and each not in dropped)
 
 
 def _of_measurement(data):

@@ -124,6 +124,13 @@ def without(name: str) -> tuple:
     return STATUS_OF[of][1] if of in STATUS_OF else FLAG_OF[of][1] if of in FLAG_OF else VARIABLES[of].without
 
 
+def absent(name, fibers_lie) -> tuple:
+    """The same in an atlas whose fibers do not lie at the inner radius, if ``fibers_lie`` elsewhere: then the wall decides
+    with them which designs are valid, or how large they are.
+    """
+    return tuple(each for each in without(name) if each != "wall" or not fibers_lie)
+
+
 def status_of(name) -> str:
     """The variable that says where another has numbers."""
     if name == "limit_pressure":

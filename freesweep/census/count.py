@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..status import NOT_CONVERGED, OK, STATUSES
+from ..tube_model import MODELS
 from .audit import HELD, Audit
 from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures, words
 
@@ -15,11 +16,11 @@ LISTED = 8  # states of each kind without a result for no physical reason that a
 class Census:
     """What was counted: ``counts`` maps kind -> status -> states; ``kept`` (kind, status) -> designs with pressures."""
 
-    def __init__(self, designs, seed):
+    def __init__(self, designs, seed, model=MODELS["source"]):
         self.designs, self.seed = designs, seed
         self.counts = {kind: dict.fromkeys(range(len(STATUSES)), 0) for kind in KINDS}
         self.kept = {}
-        self.audit = Audit()
+        self.audit = Audit(model)
 
     def add(self, kind, designs, status):
         """Count states (n,) and keep their designs (n, 10) where there is no plain result."""
@@ -32,7 +33,12 @@ class Census:
 
     def report(self) -> str:
         """Counts, the ranges in which failures lie, and the audit, in words."""
-        lines = [f"{self.designs:,} random designs, seed {self.seed}, {PRESSURES} pressures each, both strain energies"]
+        model = self.audit.model
+        head = f"{self.designs:,} random designs, seed {self.seed}, {PRESSURES} pressures each"
+        tubes = f"{model.wall_model} walls, {model.fibers} fibers at the {model.fiber_radius} radius"
+        lines = [
+            head + ("" if model.is_loose else ", both strain energies") + (f", {tubes}" if model.is_physical else "")
+        ]
         for kind in KINDS:
             total = sum(self.counts[kind].values())
             lines += ["", f"{kind}: {total:,} states"]
@@ -56,7 +62,7 @@ class Census:
 
     def _usual(self):
         """The same of all designs, from a few blocks."""
-        blocks = [draw(BLOCK, self.seed, block) for block in range(4)]
+        blocks = [draw(BLOCK, self.seed, block, self.audit.model) for block in range(4)]
         every = np.concatenate(
             [with_pressures(block.designs, block.pressures).reshape(-1, len(COLUMNS)) for block in blocks]
         )

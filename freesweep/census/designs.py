@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..tube_model import MODELS, SHARES
+
 BLOCK = 256  # designs that are drawn, solved and counted together
 PRESSURES = 4  # of each design, beside its locked shape
 COLUMNS = (
@@ -17,19 +19,23 @@ class Drawn(NamedTuple):
     designs: np.ndarray
     pressures: np.ndarray
 
-    def problems(self):
-        """As the kernels take them (n, 11)."""
+    def problems(self, model):
+        """As the kernels take them (n, 11), of physical tubes (n, 13); the fibers lie at the radius 1."""
         alpha, beta, length, wall, gamma, ratio, force, torque, full = self.designs.T
         ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
-        area, zero = wall * (2.0 + wall), 0.0 * alpha
+        inner = 1.0 / (1.0 + SHARES[model.fiber_radius] * wall)
+        area, zero = wall * (2.0 + wall) * inner**2, 0.0 * alpha
         columns = (0.5 * (ta + tb), 0.5 * (ta - tb), area, gamma, ratio, full, force, torque, length, zero, zero)
+        if model.is_physical:
+            columns += inner**2 * model.is_thick, zero + model.is_loose
         return np.column_stack(columns)
 
 
-def draw(count, seed, block) -> Drawn:
+def draw(count, seed, block, model=MODELS["source"]) -> Drawn:
     """Random designs of one block: angles 2..85 degrees of both signs and half a degree apart, length/radius 2..200,
     wall/radius 0.03..1, fiber extension 1 (half of them) to 1.02, C01/C10 0..2, force -1..3, torque -1.5..1.5 (each 0 in two
-    of five), both strain energies, P/C10 0.003..10.
+    of five), both strain energies where the ``model`` has them, P/C10 0.003..10. Lengths and loads count by the fibers'
+    radius, the wall by the inner one.
     """
     rng = np.random.default_rng([seed, block])
     signs = rng.choice([-1.0, 1.0], (2, BLOCK))
@@ -41,7 +47,7 @@ def draw(count, seed, block) -> Drawn:
         np.where(rng.random(BLOCK) < 0.25, 0.0, rng.uniform(0.0, 2.0, BLOCK)),
         np.where(rng.random(BLOCK) < 0.4, 0.0, rng.uniform(-1.0, 3.0, BLOCK)),
         np.where(rng.random(BLOCK) < 0.4, 0.0, rng.uniform(-1.5, 1.5, BLOCK)),
-        np.where(rng.random(BLOCK) < 0.5, 1.0, 0.0),
+        np.where(rng.random(BLOCK) < 0.5, 1.0, float(model.is_loose)),
     ]  # fmt: skip
     pressures = np.sort(_spread(rng, 0.003, 10.0, (BLOCK, PRESSURES)), axis=1)
     return Drawn(np.column_stack(columns)[:count], pressures[:count])

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from ..tube_model import DEFAULT, MODELS, word_faults
 from .audit import FINER, HELD
 from .count import Census
 from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures
@@ -12,8 +13,9 @@ HELD_EVERY = 16  # one design in that many is also held at its length and at its
 ACCURACY, AUDIT_ACCURACY = 1e-6, 1e-10
 
 
-def census(count, seed=0, *, audit=1000, threads=None, progress=True) -> Census:
-    """Draw ``count`` designs, solve them, count their statuses, and audit the bounds of about ``audit`` states.
+def census(count, seed=0, *, audit=1000, threads=None, progress=True, model=DEFAULT) -> Census:
+    """Draw ``count`` designs of tubes of a ``model``, solve them, count their statuses, and audit the bounds of about
+    ``audit`` states.
 
     Raises ValueError for numbers below what makes sense. No result depends on ``threads`` (default: one for each core).
     """
@@ -22,17 +24,19 @@ def census(count, seed=0, *, audit=1000, threads=None, progress=True) -> Census:
     faults = [f"{name}: found {n}; give 1 or more" for name, n in (("N", count), ("threads", threads or 1)) if n < 1]
     faults += [f"audit: found {audit}; give 0 or more"] if audit < 0 else []
     faults += [f"seed: found {seed}; give 0 or more"] if seed < 0 else []
+    faults += word_faults(model, None, None, "full", ("full",))
     if faults:
         raise ValueError("\n".join(faults))
     blocks = -(-count // BLOCK)
     audited = -(-audit // (blocks * (PRESSURES + 1)))  # designs of each block
-    found = Census(count, seed)
+    model = MODELS[model]
+    found = Census(count, seed, model)
 
     def run(block):
         size = min(BLOCK, count - block * BLOCK)
-        return size, *_solve(draw(size, seed, block), min(size, audited))
+        return size, *_solve(draw(size, seed, block, model), min(size, audited), model)
 
-    _solve(draw(1, seed, 0), 0)  # compiles, or loads what is compiled
+    _solve(draw(1, seed, 0, model), 0, model)  # compiles, or loads what is compiled
     with ThreadPoolExecutor(threads or cores()) as pool, _bar(count, progress) as bar:
         for first in range(0, blocks, 64):  # a few at a time: what is done is counted and let go
             for size, counted, compared in pool.map(run, range(first, min(first + 64, blocks))):
@@ -44,14 +48,14 @@ def census(count, seed=0, *, audit=1000, threads=None, progress=True) -> Census:
     return found
 
 
-def _solve(drawn, audited):
+def _solve(drawn, audited, model):
     """Of all states of a block ``(kind, designs with pressures, status)``, and of some ``(kind, designs with pressures,
     records, those of a finer mesh)``.
     """
     from ..sweep.plan import FREE, Job
     from ..sweep.solve import solve_shard
 
-    problems, count = drawn.problems(), len(drawn.designs)
+    problems, count = drawn.problems(model), len(drawn.designs)
     nothing = np.zeros(count)
     pressures = np.column_stack([drawn.pressures, np.full(count, np.inf)])
     first = np.arange(count + 1, dtype=np.int64) * pressures.shape[1]

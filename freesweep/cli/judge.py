@@ -1,5 +1,7 @@
 """The commands that judge: verify, bench, census. They parse and call."""
 
+from ..tube_model import DEFAULT, MODELS
+
 
 def add_judging(commands):
     """Add the commands of this module to the command line."""
@@ -30,6 +32,7 @@ def add_judging(commands):
     census.add_argument(
         "--audit", type=int, default=1000, metavar="M", help="states solved again on a finer mesh (default 1000)"
     )
+    census.add_argument("--model", choices=tuple(MODELS), default=DEFAULT, help=f"of the tubes (default: {DEFAULT})")
     census.add_argument("--threads", type=int, metavar="N", help="default: one for each core")
     census.add_argument("--quiet", action="store_true", help="no progress bar")
     census.set_defaults(run=_run_census)
@@ -54,11 +57,14 @@ def _run_verify(options):
 def _resolve(atlas, options):
     from ..atlas.store import AtlasError
     from ..resolve import draw, resolve, table
-    from ..restate import faults
+    from ..restate import faults, finer
 
     points = draw(atlas.data, options.resolve, options.seed)
-    comparisons, notes = resolve(points)
-    print("solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n")
+    comparisons, notes = (finer if points.model.is_physical else resolve)(points)
+    if not points.model.is_physical:
+        print(
+            "solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n"
+        )
     print(*([table(comparisons)] if comparisons else []), *notes, sep="\n")
     if broken := sum(int(compared.broken.sum()) for compared in comparisons):
         raise AtlasError(f"{broken:,} stored numbers lie farther from the second method's than both errors allow")
@@ -89,6 +95,7 @@ def _run_census(options):
     from ..census.run import census
 
     found = census(
-        options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet
-    )
+        options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet,
+        model=options.model,
+    )  # fmt: skip
     print(found.report())

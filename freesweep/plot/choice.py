@@ -7,6 +7,7 @@ from numbers import Real
 import numpy as np
 
 from ..atlas import schema
+from ..tube_model import MODELS, model_of
 from .display import USUAL, describe
 
 DESIGN = "design"  # a dimension of names, not of numbers
@@ -15,11 +16,21 @@ HELD = ("deformed_length", "rotation")  # outputs that are coordinates of a held
 
 
 class Point(dict):
-    """What is shown: name -> value [stored units]; ``missed``: name -> value asked for where it is another."""
+    """What is shown: name -> value [stored units]; ``missed``: name -> value asked for where it is another; the ``model`` of
+    its tubes.
+    """
+
+    model = MODELS["source"]
 
     def __init__(self, *values):
         super().__init__(*values)
         self.missed = dict(getattr(values[0], "missed", {})) if values else {}
+        self.model = getattr(values[0], "model", self.model) if values else self.model
+
+    def __or__(self, others):
+        point = Point(self)
+        point.update(others)
+        return point
 
     def words(self, names=None):
         """Parameters in words, the usual ones left out."""
@@ -34,6 +45,7 @@ class Point(dict):
         """The parameters for which ``keep(name)`` is true."""
         point = Point({name: value for name, value in self.items() if keep(name)})
         point.missed = {name: value for name, value in self.missed.items() if keep(name)}
+        point.model = self.model
         return point
 
 
@@ -68,6 +80,7 @@ def choose(dataset, select: dict, across) -> tuple[dict, dict]:
             raise ValueError(f"{name} must be one finite number [{schema.attributes(name)['units']}], not {value!r}")
     index = {name: _node(dataset, name, select) for name in names if name in dataset.dims}
     point = Point()
+    point.model = model_of(dataset.attrs)
     for name in names:
         coordinate = dataset[name].isel({dim: index[dim] for dim in dataset[name].dims if dim in index})
         if coordinate.ndim == 0:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from ..atlas import schema
+from ..tube_model import fiber_surface
 
 
 class Display(NamedTuple):
@@ -29,7 +30,7 @@ def _stroke(value, point):
 
 def _relative_radius(value, point):
     # mid_radius is that of the surface on which the fibers lie
-    return value / point.get("fiber_radius", point["radius"])
+    return value / fiber_surface(point, point.model)
 
 
 _SHOWN = {

@@ -37,6 +37,8 @@ class Inquiry:
         self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
         self.node = self.marks[:, 4]
         self.exact = self.node >= 0
+        if table.is_untold:
+            self.status[self.valued & ~self.exact] = NOT_INTERPOLABLE
         self.ranks = table.knots[np.arange(d), self.pieces, tensor.RANK].astype(np.int64)
         self.order = np.arange(self.size)
         if self.size > SORTED:
@@ -134,9 +136,12 @@ class Inquiry:
         """Flags (n,) by name; a point whose flags cannot be told becomes NOT_INTERPOLABLE."""
         table, found = self.table, {}
         if table.has_flag:
-            found[table.family.flag] = np.where(self.codes == MIXED, 0, self.codes >> 4)
+            found[table.family.flag] = np.where(self.codes == MIXED, 0, self.codes >> 4 & 1)
         if table.has_slack:
             slack, exchanged = self.marks[:, 2], self.marks[:, 5] == 1
+            if table.is_kinked:  # where corners differ there is no answer; at rest nothing pulls
+                at_corners = np.where(self.codes == MIXED, 0, self.codes >> 1 & 0x30)
+                slack = np.where(self.exact & (slack != MIXED), slack, at_corners)
             look = (slack == MIXED) & self.valued
             slack = np.where(slack == MIXED, 0, slack >> 4)
             if look.any():

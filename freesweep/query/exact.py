@@ -8,6 +8,7 @@ import numpy as np
 from ..actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
 from ..scaling import OUTPUTS, output_scales, problem_rows, wall_volume_inside
 from ..status import DEGENERATE, INVALID, NOT_CONVERGED, VALUED
+from ..tube_model import MODELS
 from . import reference
 from .reference import COLUMNS
 
@@ -15,8 +16,9 @@ CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
 SHARE = 512  # points that one thread solves at a time
 
 
-def solve(kind, points, energy, accuracy, largest_pressure=None):
-    """States of a kind at points (n, 15): name -> (n,) of numbers and ``_error`` bounds, ``status`` and flags.
+def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["source"], cells=CELLS):
+    """States of a kind at points (n, 15) of tubes of a ``model``: name -> (n,) of numbers and ``_error`` bounds, ``status``
+    and flags, on base meshes of so many ``cells``.
 
     With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``.
     """
@@ -31,7 +33,7 @@ def solve(kind, points, energy, accuracy, largest_pressure=None):
     status[apart == 0.0] = DEGENERATE
     good = np.flatnonzero(status == NOT_CONVERGED)
     own = {name: column[good] for name, column in design.items()}
-    rows = problem_rows(own, energy) if len(good) else np.zeros((0, 11))
+    rows = problem_rows(own, energy, model.is_thick, model.is_loose)
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
     names = ("force",) if kind == reference.LENGTH_HELD else ("torque",) if held else OUTPUTS
     found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
@@ -41,9 +43,9 @@ def solve(kind, points, energy, accuracy, largest_pressure=None):
     def part(begin):
         some = slice(begin, begin + SHARE)
         if held:
-            return _held(kind, rows[some], {name: column[some] for name, column in own.items()}, accuracy)
+            return _held(kind, rows[some], {name: column[some] for name, column in own.items()}, accuracy, cells)
         most = None if largest_pressure is None else largest_pressure / own["c10"][some]
-        return _free(rows[some], pressure[some], most, accuracy)
+        return _free(rows[some], pressure[some], most, accuracy, cells)
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         parts = list(pool.map(part, range(0, len(good), SHARE)))
@@ -78,8 +80,8 @@ def _scales(kind, own):
     return output_scales(own)
 
 
-def _free(rows, pressure, most, accuracy):
-    """Free states of rows (k, 11), each at its own pressure, and followed to ``most`` (k,) if that is given."""
+def _free(rows, pressure, most, accuracy, cells):
+    """Free states of problems (k, ...), each at its own pressure, and followed to ``most`` (k,) if that is given."""
     from ..solver.batch import uniform, walk_all
 
     count = len(rows)
@@ -87,14 +89,14 @@ def _free(rows, pressure, most, accuracy):
     pressures = pressure if most is None else np.column_stack([pressure, np.maximum(most, pressure)]).ravel()
     first = steps * np.arange(count + 1, dtype=np.int64)
     walks = walk_all(
-        np.ascontiguousarray(rows), first, np.ascontiguousarray(pressures), uniform(CELLS), accuracy, soon=True
+        np.ascontiguousarray(rows), first, np.ascontiguousarray(pressures), uniform(cells), accuracy, soon=True
     )
     own = slice(0, None, steps)
     return walks.values[own], walks.bounds[own], walks.status[own], walks.slack[own], walks.limits
 
 
-def _held(kind, rows, own, accuracy):
-    """Held states of rows (k, 11), each at its own pressure."""
+def _held(kind, rows, own, accuracy, cells):
+    """Held states of problems (k, ...), each at its own pressure."""
     from ..solver.batch import uniform
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold_batch import hold_all
@@ -105,6 +107,6 @@ def _held(kind, rows, own, accuracy):
     targets = own["held"] * rows[:, LENGTH] if length else np.radians(own["held"])
     found = hold_all(
         np.ascontiguousarray(rows), targets, HELD_LENGTH if length else HELD_ROTATION, np.arange(count + 1),
-        own["pressure"] / own["c10"], uniform(CELLS), accuracy, soon=True,
+        own["pressure"] / own["c10"], uniform(cells), accuracy, soon=True,
     )  # fmt: skip
     return found.values[:, None], found.bounds[:, None], found.status, np.zeros(count, np.int64), found.stable

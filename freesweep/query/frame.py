@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from ..tube_model import SHARES, model_of
 from .axis import make_axis
 
 DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "c20": 0.0, "c30": 0.0, "force": 0.0, "torque": 0.0}
@@ -31,6 +32,7 @@ class Frame:
         self.dims = {name: variable.dims for name, variable in data.variables.items()}
         self.sizes = dict(data.sizes)
         self.energy = data.attrs.get("energy", "full")
+        self.model = model_of(data.attrs)
         self.accuracy = float(data.attrs.get("accuracy", 1e-6))
         self.title = data.attrs.get("title", "")
         self._axes = {}
@@ -44,6 +46,11 @@ class Frame:
     def varies(self, name) -> bool:
         """Whether a name is an axis along which points are told apart."""
         return name == "design" or (name not in self.by_design and len(self.values[name]) > 1)
+
+    @property
+    def fiber_share(self) -> float:
+        """Share of the wall that lies inside the fibers; -1 where their radius is given."""
+        return -1.0 if "fiber_radius" in self.values else SHARES[self.model.fiber_radius]
 
     @property
     def asked(self) -> list:

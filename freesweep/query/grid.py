@@ -3,19 +3,19 @@
 import numpy as np
 
 from .axis import LABEL
-from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, uniform_states
+from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, WALL, uniform_states
 
 
 class GridPoints:
     """Points of a grid over ``axes``; ``columns`` (d,) says where in a point an axis goes, -1: nowhere.
 
-    ``fixed`` (designs, 15): what the grid fixes; ``inner``: whether the fibers lie at the inner radius; ``by_length``:
+    ``fixed`` (designs, 15): what the grid fixes; ``fiber_share``: see :func:`place.place`; ``by_length``:
     whether what is held is given as a length.
     """
 
-    def __init__(self, axes, columns, fixed, inner, by_length):
+    def __init__(self, axes, columns, fixed, fiber_share, by_length):
         self.axes, self.columns, self.fixed = axes, columns, fixed
-        self.inner, self.by_length = inner, by_length
+        self.fiber_share, self.by_length = fiber_share, by_length
         self.shape = tuple(len(axis.nodes) for axis in axes)
 
     def slabs(self):
@@ -27,8 +27,9 @@ class GridPoints:
                 if column >= 0:
                     along = [-1 if other == a else 1 for other in range(1, len(self.shape))]
                     points[..., column] = axis.values[k] if a == 0 else axis.values.reshape(along)
-            if self.inner:
-                points[..., FIBERS] = points[..., RADIUS]
+            if self.fiber_share >= 0.0:
+                inside = self.fiber_share * points[..., WALL] if self.fiber_share > 0.0 else 0.0
+                points[..., FIBERS] = points[..., RADIUS] + inside
             if self.by_length:
                 points[..., HELD] /= points[..., LENGTH]
             yield points.reshape(-1, len(COLUMNS))
@@ -47,7 +48,7 @@ class GridStates:
         for axis, column in zip(points.axes, points.columns):
             if column >= 0 and COLUMNS[column] in without:
                 fixed[:, column] = axis.values[0]
-        own = GridPoints(axes, columns, fixed, points.inner, points.by_length)
+        own = GridPoints(axes, columns, fixed, points.fiber_share, points.by_length)
         found = []
         for slab in own.slabs():
             found.append(np.empty((len(slab), UNIFORM)))

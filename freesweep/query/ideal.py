@@ -5,20 +5,22 @@ import numpy as np
 from ..actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
 from ..ideal import ideal_blocked
 from ..status import INVALID, OK, OUTSIDE
+from ..tube_model import fiber_surface
 from .place import NEAR
 
-USED = ("alpha", "beta", "radius", "fiber_radius", "pressure")
+USED = ("alpha", "beta", "radius", "wall", "fiber_radius", "pressure")
 IMAGES = ((1.0, False), (1.0, True), (-1.0, False), (-1.0, True))  # (sign of both angles, whether exchanged)
 
 
 def ideal_answer(frame, name, values) -> dict:
     """Name -> (n,) of one variable, its error and its status at ``values``: axis -> (n,)."""
-    own = {key: values[key] for key in USED if key in values}
-    for key in (key for key in USED if key in frame.by_design):
+    used = [key for key in USED if key != "wall" or frame.fiber_share > 0.0]
+    own = {key: values[key] for key in used if key in values}
+    for key in (key for key in used if key in frame.by_design):
         own[key] = frame.values[key][values["design"].astype(int)]
     alpha, beta, pressure = own["alpha"], own["beta"], own["pressure"]
     with np.errstate(all="ignore"):
-        value, error, status = ideal_blocked(name, alpha, beta, own.get("fiber_radius", own["radius"]), pressure)
+        value, error, status = ideal_blocked(name, alpha, beta, fiber_surface(own, frame.model), pressure)
         apart, widest = np.abs(alpha - beta), np.maximum(np.abs(alpha), np.abs(beta))
     close = (apart < SMALLEST_DIFFERENCE * (1.0 - 1e-9)) & (apart > 0.0)
     status = np.where(close | (widest >= LARGEST_ANGLE), INVALID, status)

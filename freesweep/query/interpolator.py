@@ -116,8 +116,9 @@ class Interpolator:
             for sign in (-1.0, 1.0):
                 points, states = inquiry.points.copy(), np.empty_like(inquiry.states)
                 points[:, column] += sign * steps
-                if own == "radius" and table.options[0]:
-                    points[:, reference.FIBERS] = points[:, reference.RADIUS]
+                if own in ("radius", "wall") and table.options[0] >= 0.0:
+                    share = 1.0 if own == "radius" else table.options[0]
+                    points[:, reference.FIBERS] += share * sign * steps
                 reference.uniform_states(family.kind, points, table.shear, states)
                 end = np.empty((3, inquiry.size))
                 _restore(table, name, points, states, effects + sign * steps * rate, end)

@@ -18,6 +18,7 @@ from .refine import exact_answers
 
 SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
+FEWEST = 2_000  # at least, of physical tubes, which take a thousand times as long
 HELD_SHARE = 2  # held states cost more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
@@ -42,7 +43,8 @@ def measured(data, designs=None) -> dict:
     if not reader.frame.uniform_along_x:
         return {}
     answered, variables = {}, {}
-    count = designs or int(np.clip(data["status"].size // EACH, LEAST, MOST))
+    least = FEWEST if reader.frame.model.is_physical else LEAST
+    count = designs or int(np.clip(data["status"].size // EACH, least, MOST))
     for key, family in FAMILIES.items():
         names = sorted((name for name in family.variables if name in data), key=lambda name: name != "mid_radius")
         if key == "limit" or not names or not reader.table(key).names:

@@ -12,7 +12,7 @@ from ..jit import entry_point, kernel
 from ..status import DEGENERATE, INACCURATE, INVALID, NOT_INTERPOLABLE, OK, OUTSIDE
 from .axis import LABEL
 from .holes import MIXED, corner_code
-from .reference import ALPHA, BETA, FIBERS, HELD, LENGTH, RADIUS
+from .reference import ALPHA, BETA, FIBERS, HELD, LENGTH, RADIUS, WALL
 from .tensor import BELOW, INSIDE, NO_NUMBER, PLACE, locate
 
 NEAR = 1e-12  # relative: what counts as the value that an atlas fixes, or as the end of an axis
@@ -47,13 +47,14 @@ def place(
 ):  # fmt: skip
     """Place points (n, k) in a table.
 
-    ``fixed`` (designs, 15): what the atlas fixes of a point. ``options``: whether fibers lie at the inner radius, whether
+    ``fixed`` (designs, 15): what the atlas fixes of a point. ``options``: share of the wall inside the fibers (-1: their
+    radius is given), whether
     HELD is given as a length, whether there are statuses; which of what is asked are both angles and the design (-1: none).
     ``codes`` and ``cells`` (2, nodes): codes, and those of slack fibers, of the nodes and of their cells. Out: ``points``
     (n, 15), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7): status, code, code of slack fibers, cell, node (-1: between
     nodes), 1 if exchanged, 1 if mirrored.
     """
-    inner, by_length, has_status, a, b, design = options
+    fiber_share, by_length, has_status, a, b, design = options
     d, many = len(strides), asked.shape[1]
     row = np.empty(many)
     angles = a >= 0 and b >= 0
@@ -92,8 +93,8 @@ def place(
                 least, most = least + low, most + high
             elif j == b:
                 least, most = least - high, most - low
-        if inner:
-            points[k, FIBERS] = points[k, RADIUS]
+        if fiber_share >= 0.0:
+            points[k, FIBERS] = points[k, RADIUS] + (fiber_share * points[k, WALL] if fiber_share > 0.0 else 0.0)
         if by_length:
             points[k, HELD] /= points[k, LENGTH]
         if bad:

@@ -12,6 +12,7 @@ from ..given import described
 from ..options import read_choice, read_switch
 from ..status import NOT_INTERPOLABLE, OUTSIDE, status_attributes
 from ..thick_wall import DESIGN, NOTES, attributes_of
+from ..tube_model import fiber_surface
 from . import calibration
 from .answer import CUBIC, LINEAR, Inquiry
 from .ask import read_question
@@ -194,11 +195,13 @@ def _of_thick_walls(reader, question):
     frame, values = reader.frame, reader.complete(question.values, question.size)
     for name in frame.by_design:
         values[name] = frame.values[name][values["design"].astype(int)] if "design" in values else frame.values[name]
+    if frame.model.is_thick:
+        return {}
     if not frame.uniform_along_x:
         return {key: reader.data.attrs[key] for key in NOTES if key in reader.data.attrs}
     if any(name not in values for name in DESIGN if name in frame.values):
         return {}  # what was asked for does not depend on all of them: the wall is not felt
-    values.setdefault("fiber_radius", values["radius"])
+    values["fiber_radius"] = fiber_surface(values, frame.model)
     return attributes_of(*(values[name] for name in DESIGN), frame.energy)
 
 

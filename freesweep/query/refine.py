@@ -50,7 +50,7 @@ def exact_answers(reader, key, points, names, accuracy=None) -> dict:
     accuracy = frame.accuracy if accuracy is None else accuracy
     limit = key == "limit"
     most = frame.ranges["pressure"][1] if limit else None
-    solved = solve(reference.LOADED if limit else family.kind, points, frame.energy, accuracy, most)
+    solved = solve(reference.LOADED if limit else family.kind, points, frame.energy, accuracy, most, frame.model)
     found = {}
     for name in names:
         of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
@@ -97,10 +97,9 @@ def profiles(reader, question, x):
     except ValueError as error:
         raise QueryError([f"x: {error}; ascending stations, from 0 to the undeformed length"]) from None
     arrays = {name: np.full((question.size, len(stations)), np.nan) for of in PROFILES for name in (of, f"{of}_error")}
-    energy = reader.frame.energy
     for k, point in enumerate(points):
         design = dict(zip(reference.COLUMNS, point.tolist()))
-        state = _inflated(design, stations, energy, Actuator, rubber_of)
+        state = _inflated(design, stations, reader.frame, Actuator, rubber_of)
         for name in arrays if state is not None else ():
             arrays[name][k] = state[name].values
     dims = (*question.dims, "x")
@@ -110,7 +109,7 @@ def profiles(reader, question, x):
     return xr.Dataset(data, {"x": ("x", stations, attributes("x"))})
 
 
-def _inflated(design, stations, energy, actuator, material):
+def _inflated(design, stations, frame, actuator, material):
     from ..actuator import ActuatorError
     from ..statics import inflate
 
@@ -118,7 +117,8 @@ def _inflated(design, stations, energy, actuator, material):
     design.pop("held")
     rubber = material(*(design.pop(name) for name in ("c10", "c01", "c20", "c30")))
     try:
-        tube = actuator(**design, material=rubber, energy=energy)
+        parts = {name: getattr(frame.model, name) for name in ("wall_model", "fibers")}
+        tube = actuator(**design, material=rubber, energy=frame.energy, model="source", **parts)
     except ActuatorError:
         return None  # no such tube: its status says why
     return inflate(tube, **loads, x=stations)

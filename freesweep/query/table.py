@@ -9,7 +9,7 @@ from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
 from .cells import describe
-from .family import FAMILIES
+from .family import FAMILIES, physical
 from .frame import DEFAULTS
 from .grid import GridPoints, GridStates
 from .holes import cell_codes, fill, slopes
@@ -38,7 +38,7 @@ class Table:
 
     def __init__(self, data, frame, key, box=None):
         self.data, self.frame = data, frame
-        self.family = FAMILIES[key]
+        self.family = physical(FAMILIES[key]) if frame.model.is_physical else FAMILIES[key]
         some = next(name for name in self.family.variables if name in frame.dims)
         self.names = tuple(name for name in frame.dims[some] if frame.varies(name))
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
@@ -57,7 +57,12 @@ class Table:
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
-        self.codes = np.stack([self._codes(), slack])
+        self.is_kinked = self.has_slack and frame.model.is_physical  # numbers have kinks where slack begins or ends
+        self.is_untold = (
+            frame.model.is_loose and self.family.kind in HELD_NAMES.values()
+        )  # and of held ones nothing is told
+        own = self._codes()
+        self.codes = np.stack([own | self._beyond_rest(slack) << 1 if self.is_kinked else own, slack])
         self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
         self._variables, self._stored, self._errors, self._states = {}, {}, {}, None
 
@@ -86,12 +91,11 @@ class Table:
         self.fixed[:, reference.HELD] = 1.0 if kind == reference.LENGTH_HELD else 0.0
         shear = 0.0 if frame.energy == "principal" else 1.0
         by_length = kind == reference.LENGTH_HELD and "held_length" in frame.values
-        inner = "fiber_radius" not in frame.values
         columns = self.kinds[:, 0].tolist()
         angles = [
             columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
         ]
-        self.options = (inner, by_length, self.family.status is not None, *angles)
+        self.options = (frame.fiber_share, by_length, self.family.status is not None, *angles)
         self.shear = shear
 
     def _packed(self):
@@ -126,6 +130,19 @@ class Table:
         if self.has_flag:
             codes |= self._grid(flag).astype(np.uint8) << 4
         return codes
+
+    def _beyond_rest(self, slack):
+        """Flags of slack fibers, at rest those of the least pressure: what is stored there is that nothing pulls."""
+        alone = all(not np.any(self.frame.values.get(name, 0.0)) for name in ("force", "torque"))
+        if not alone or np.any(self.frame.values.get("fiber_extension", 1.0) != 1.0) or "pressure" not in self.names:
+            return slack
+        a = self.names.index("pressure")
+        if self.axes[a].values[0] != 0.0 or len(self.axes[a].values) == 1:
+            return slack
+        grid = slack.reshape(self.shape).copy()
+        along = np.moveaxis(grid, a, 0)
+        along[0] = along[1]
+        return grid.ravel()
 
     def is_number(self, codes):
         """Where codes stand for nodes that hold numbers."""
@@ -188,6 +205,9 @@ class Table:
             here = slice(k * size, (k + 1) * size)
             args = (stored[here], errors[here], effects[here], noise[here])
             end_effects(*kinds, points, self._states.slab(k), *args)
+            if self.frame.model.is_physical and self.family.kind == reference.LOADED:
+                # of the closed form's membrane even the first bit of pressure tells something else
+                effects[here][points[:, reference.PRESSURE] == 0.0] = np.nan
         effects[~number], noise[~number] = np.nan, 0.0
         return effects, noise
 

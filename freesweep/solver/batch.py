@@ -7,8 +7,9 @@ from numba import config
 
 from ..interpret import at_once
 from .free.free_states import follow_many
+from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
-from .problem import MOONEY_RIVLIN, SECOND, THIRD, YEOH, wall_columns
+from .problem import MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, YEOH, wall_columns
 from .profile import FIELDS
 from .status import PENDING
 
@@ -49,20 +50,23 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     )  # others would be compiled for anew
     found = _nothing(len(problems), len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
-    arguments = (
-        problems, wall_columns(problems), settling_pressure(problems), first, pressures, *tube, accuracy, *found[:5],
-        stations, found.profiles,
-    )  # fmt: skip
-    done = False
-    if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
+    walls, settled, todo = wall_columns(problems), settling_pressure(problems), True
+    if lanes and len(tube[0]) == 0 and problems.shape[1] == PROBLEM_SIZE and not config.DISABLE_JIT:
         from .lanes.walk import solve_lanes
 
-        done = soon and at_once(len(pressures), solve_lanes, follow_many, *arguments)
-        if not done:
+        arguments = problems, walls, settled, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
+        todo = not (soon and at_once(len(pressures), solve_lanes, follow_many, *arguments))
+        if todo:
             _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
-    left = 0 if done else np.count_nonzero(found.status == PENDING)
-    if left and not (soon and at_once(left, follow_many, follow_many, *arguments)):
-        follow_many(*arguments)
+    for own, rows, starts, whole in one_by_one(problems, first, tube) if todo else ():
+        if not (left := np.count_nonzero(found.status[rows] == PENDING)):
+            continue
+        arguments = (
+            problems[own], walls, settled[own], starts, pressures[rows], *whole, accuracy,
+            *(array[rows] for array in found[:4]), found.limits[own], stations, found.profiles[rows],
+        )  # fmt: skip
+        if not (soon and at_once(left, follow_many, follow_many, *arguments)):
+            follow_many(*arguments)
     found.bounds[limp] += MISSED * np.abs(found.values[limp])
     return found
 

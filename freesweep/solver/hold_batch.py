@@ -14,8 +14,9 @@ from numba import config
 from ..interpret import at_once
 from .block import block_many
 from .find import HELD_LENGTH
+from .halves import one_by_one
 from .lagrangian import ROUNDING
-from .problem import FORCE, MOONEY_RIVLIN, SECOND, THIRD, TORQUE, YEOH, wall_columns
+from .problem import FORCE, MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, TORQUE, YEOH, wall_columns
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 5  # solutions of one state, at most; two do nearly always
@@ -52,26 +53,36 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
         np.ascontiguousarray, (problems, targets, pressures)
     )  # others are compiled for anew
     count, found = len(pressures), _pending(len(pressures))
-    scalar = (problems, wall_columns(problems), targets, kind, first, pressures, *tube, accuracy, *found)
-    if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
+    walls, todo = wall_columns(problems), True
+    if lanes and len(tube[0]) == 0 and problems.shape[1] == PROBLEM_SIZE and not config.DISABLE_JIT:
         from .lanes.hold import seek_lanes
 
-        if soon and at_once(count, seek_lanes, block_many, *scalar):
-            return found
-        owners = np.repeat(np.arange(len(problems)), np.diff(first))
-        yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)[owners]
-        for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
-            rows = np.flatnonzero(some & (pressures > 0.0))
-            if len(rows):
-                _hold(
-                    problems, 0.5 * targets, kind == HELD_LENGTH, owners, pressures, rows, constants, int(tube[1][-1]),
-                    accuracy, found,
-                )  # fmt: skip
-        if not np.any(found.status == PENDING):
-            return found
-    if not (soon and at_once(np.count_nonzero(found.status == PENDING), block_many, block_many, *scalar)):
-        block_many(*scalar)
+        scalar = problems, walls, targets, kind, first, pressures, *tube, accuracy, *found
+        todo = not (soon and at_once(count, seek_lanes, block_many, *scalar))
+        if todo:
+            _hold_lanes(problems, targets, kind, first, pressures, int(tube[1][-1]), accuracy, found)
+    for own, rows, starts, whole in one_by_one(problems, first, tube) if todo else ():
+        if not (left := np.count_nonzero(found.status[rows] == PENDING)):
+            continue
+        scalar = (
+            problems[own], walls, targets[own], kind, starts, pressures[rows], *whole, accuracy,
+            *(array[rows] for array in found),
+        )  # fmt: skip
+        if not (soon and at_once(left, block_many, block_many, *scalar)):
+            block_many(*scalar)
     return found
+
+
+def _hold_lanes(problems, targets, kind, first, pressures, base, accuracy, found):
+    """Hold what vectors can of tubes that do not vary."""
+    owners = np.repeat(np.arange(len(problems)), np.diff(first))
+    yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)[owners]
+    for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
+        rows = np.flatnonzero(some & (pressures > 0.0))
+        if len(rows):
+            _hold(
+                problems, 0.5 * targets, kind == HELD_LENGTH, owners, pressures, rows, constants, base, accuracy, found
+            )
 
 
 def refuse(problem, pressures, others, targets, kind, status):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import ideal, status
-from ..atlas.schema import without
+from ..atlas.schema import absent
 from ..scaling import OUTPUTS, output_scales, wall_volume_inside
 from .grid import Grid
 from .plan import FREE
@@ -42,17 +42,15 @@ def groups(sweep) -> list:
         (FREE, _locked, ["locked_strain_energy"], ["locked_status"]),
     ]
     wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
-    if not {"alpha", "beta"} & set(sweep.profiles):
+    if not {"alpha", "beta"} & set(sweep.profiles) and not sweep.model.is_loose:  # bars may push, threads do not
         wanted += [(FREE, _ideal, [name], [f"{name}_status"]) for name in ideal.NAMES]
     return [_group(sweep, *each) for each in wanted]
 
 
 def _group(sweep, kind, make, values, codes):
     variables = dict.fromkeys(values, DOUBLE) | {f"{name}_error": BOUND for name in values} | dict.fromkeys(codes, CODE)
-    absent = without([*values, *codes][0])
-    if "fiber_radius" in {*sweep.fixed, *sweep.axes, *(sweep.designs or {}).get("columns", ())}:
-        absent = tuple(name for name in absent if name != "wall")  # it decides with the fibers which designs are valid
-    return Group(kind, make, variables, Grid(sweep, absent), "pressure" in sweep.axes and "pressure" not in absent)
+    dropped = absent([*values, *codes][0], "fiber_radius" in sweep.places or sweep.model.fiber_radius != "inner")
+    return Group(kind, make, variables, Grid(sweep, dropped), "pressure" in sweep.axes and "pressure" not in dropped)
 
 
 def _codes(found, states):

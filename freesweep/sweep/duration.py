@@ -10,6 +10,7 @@ import numpy as np
 from .plan import FREE
 
 TYPICAL, HELD, VARYING = 5e-6, 3e-4, 2e-3  # [s] of a free state on one core; of a held one; of any where tubes vary
+PHYSICAL = 5e-2  # [s] of any of physical tubes
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more than a second
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
@@ -23,10 +24,11 @@ VARIED = KERNELS | {FREE: ("follow_many",)}
 
 def time_of(sweep, tables, equilibria, threads) -> str:
     """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared."""
-    each = {kind: VARYING if sweep.profiles else TYPICAL if kind == FREE else HELD for kind in equilibria}
+    alone = PHYSICAL if sweep.model.is_physical else VARYING if sweep.profiles else None
+    each = {kind: alone or (TYPICAL if kind == FREE else HELD) for kind in equilibria}
     sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and _is_compiled(equilibria, sweep)
     if sampled:
-        together = 1 if sweep.profiles else TOGETHER
+        together = 1 if sweep.one_by_one else TOGETHER
         share = {kind: each[kind] * count for kind, count in equilibria.items()}
         for kind in (kind for kind in share if share[kind] > MUCH * sum(share.values())):
             each[kind] = _sample(tables[kind], sweep.accuracy, together)
@@ -51,7 +53,7 @@ def _is_compiled(kinds, sweep):
     from ..jit import cache_folder
     from ..kernel_cache import compiled
 
-    needed = {name for kind in kinds for name in (VARIED if sweep.profiles else KERNELS)[kind]}
+    needed = {name for kind in kinds for name in (VARIED if sweep.one_by_one else KERNELS)[kind]}
     return needed <= {stem.rpartition(".")[2] for stem in compiled(cache_folder("solver"))}
 
 

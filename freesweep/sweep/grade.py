@@ -16,6 +16,7 @@ from ..query.axis import LABEL, make_axis
 from ..query.exact import solve
 from ..query.family import LOOSE
 from ..status import VALUED
+from ..tube_model import fiber_place
 
 SEED = 20260202
 DESIGNS = 400  # for each axis and round
@@ -84,17 +85,18 @@ def _failing(sweep, axes, name):
     weights = _weights(axis, piece, share)
     around = np.repeat(points, axis.window, axis=0)
     around[:, column] = axis.values[(axis.first[piece][:, None] + np.arange(axis.window)).ravel()]
-    _inner_fibers(sweep, points)
-    _inner_fibers(sweep, around)
-    exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy)
-    nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy)
+    _place_fibers(sweep, points)
+    _place_fibers(sweep, around)
+    exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy, model=sweep.model)
+    nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy, model=sweep.model)
     shear = 1.0 if sweep.energy == "full" else 0.0
     at, beside = (np.empty((len(some), reference.UNIFORM)) for some in (points, around))
     reference.uniform_states(reference.LOADED, points, shear, at)
     reference.uniform_states(reference.LOADED, around, shear, beside)
     known = np.isin(exact["status"], VALUED) & np.isin(nodes["status"], VALUED).reshape(DESIGNS, -1).all(axis=1)
     fails = np.zeros(DESIGNS, bool)
-    for variable, kind in MEASURED.items():
+    measured = MEASURED | ({"mid_radius": reference.SWELLING} if sweep.model.is_physical else {})
+    for variable, kind in measured.items():
         effects, noise = np.empty(len(around)), np.empty(len(around))
         stored, errors = nodes[variable], nodes[f"{variable}_error"]
         args = (stored, errors, effects, noise)
@@ -123,9 +125,10 @@ def _fixed(sweep):
     return point
 
 
-def _inner_fibers(sweep, points):
-    if "fiber_radius" not in sweep.fixed and "fiber_radius" not in sweep.axes:
-        points[:, reference.FIBERS] = points[:, reference.RADIUS]
+def _place_fibers(sweep, points):
+    if "fiber_radius" not in sweep.places:
+        sizes = points[:, reference.RADIUS], points[:, reference.WALL]
+        points[:, reference.FIBERS] = fiber_place(sweep.model.fiber_radius, *sizes)
 
 
 def _weights(axis, piece, share):

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..profiles import ProfileError, as_profile, follow
+from ..tube_model import fiber_place
 
 
 class Grid:
@@ -28,7 +29,11 @@ class Grid:
         if self.sweep.designs:
             full |= {name: column[places["design"]] for name, column in self.sweep.designs["columns"].items()}
         design = {name: full[name] for name in PARAMETERS if name in full and name != "pressure"}
-        design.setdefault("fiber_radius", design["radius"])
+        if "fiber_radius" not in design:
+            wall = design["wall"]
+            if "wall" in self.sweep.profiles:
+                wall = as_profile(self.sweep.profiles["wall"]).samples().min()
+            design["fiber_radius"] = fiber_place(self.sweep.model.fiber_radius, design["radius"], wall)
         return design
 
     def within(self, other, at):

@@ -46,7 +46,7 @@ def load(kinds, sweep, progress=False):
         if progress:
             print("compiling the kernels in two processes, once for each version: half a minute")
         _compile_aside(missing, rubbers)
-    jobs = ((_typical(kind, rubber, sweep.profiles), sweep.accuracy) for kind in kinds for rubber in rubbers)
+    jobs = ((_typical(kind, rubber, sweep), sweep.accuracy) for kind in kinds for rubber in rubbers)
     waiting = Timer(PATIENCE, print, ["compiling the kernels, once for each version: a minute"])
     if progress and not missing:
         waiting.start()
@@ -61,7 +61,7 @@ def _missing(kinds, sweep):
     """Which entry points of those that two processes share do not lie on disk; none where nothing can be kept there."""
     names = ["carry_lanes", "solve_lanes"] if FREE in kinds else []
     names += ["seek_lanes", "solve_lanes"] if any(kind != FREE for kind in kinds) else []
-    solver = set() if sweep.profiles else {*names} - _stored("solver")
+    solver = set() if sweep.one_by_one else {*names} - _stored("solver")
     query = is_measured(sweep) and not sweep.profiles and ANSWERS not in _stored("query")
     return solver | ({"query"} if query else set())
 
@@ -140,12 +140,15 @@ def _rubbers(sweep):
         yield {}
 
 
-def _typical(kind, constants, varies):
-    """A job of one state, held at rest if its kind is held; of a tube that ``varies``, if only in name."""
-    row = problem_rows({name: np.array([value]) for name, value in (TYPICAL | constants).items()}, "full")
+def _typical(kind, constants, sweep):
+    """A job of one state of a sweep's model, held at rest if its kind is held; of a tube that varies if the sweep's do, if
+    only in name.
+    """
+    design = {name: np.array([value]) for name, value in (TYPICAL | constants).items()}
+    row = problem_rows(design, "full", sweep.model.is_thick, sweep.model.is_loose)
     target = np.array([TYPICAL["length"] if kind == "blocked_force" else 0.0])
     courses = []
-    if varies:
+    if sweep.profiles:
         halves = np.zeros((2, 1, 3, 4))
         halves[:, 0, :, 0] = row[0, :3]
         courses = [((halves, np.arange(3) * BASE_CELLS, np.linspace(0.0, TYPICAL["length"], 3)), 0.0)]

@@ -13,7 +13,7 @@ import numpy as np
 from ..atlas.schema import HELD, VARIABLES
 from ..status import OK
 from .grid import Grid, tubes
-from .reduce import BLOCK, COLUMNS, TARGET, Reduced, reduced, significant
+from .reduce import BLOCK, COLUMNS, PHYSICAL, TARGET, Reduced, reduced, significant
 
 FREE = "free"
 CHUNK = 1 << 15  # designs read at once
@@ -27,7 +27,8 @@ class PlanError(RuntimeError):
 
 
 class Job(NamedTuple):
-    """Problems (k, TARGET) of one kind, what each holds, where each one's pressures begin, and the pressures.
+    """Problems of one kind, as :func:`scaling.problem_rows` makes them, what each holds, where each one's pressures begin,
+    and the pressures.
 
     ``courses`` are ((course, edges, places), its error) of tubes that vary, None where a profile cannot be followed;
     ``course`` says which is each problem's.
@@ -79,9 +80,10 @@ class Table:
     def job(self, a, b) -> Job:
         """What a solver has to know of problems a to b."""
         rows = significant(self.reduced(self.source[a:b]).rows)
+        size = TARGET if self.grid.sweep.model.is_physical else PHYSICAL
         lists = [self.lists[k] for k in self.pattern[a:b]]
         return Job(
-            self.kind, rows[:, :TARGET].copy(), rows[:, TARGET].copy(), self.first[a : b + 1] - self.first[a],
+            self.kind, rows[:, :size].copy(), rows[:, TARGET].copy(), self.first[a : b + 1] - self.first[a],
             np.concatenate(lists) if lists else np.zeros(0), *tubes(self.grid, self.source[a:b]),
         )  # fmt: skip
 

@@ -5,10 +5,12 @@ import platform
 import numpy as np
 
 from ..thick_wall import grid_attributes
+from ..tube_model import ATTRIBUTES, attributes_of
 from .grid import coordinates
 from .rubber import rubber_attributes
 
-FOLLOWING = ("interpolation_tolerance", "material", "material_source", "largest_stretch")  # only of some specifications
+# only of some specifications
+FOLLOWING = ("interpolation_tolerance", "material", "material_source", "largest_stretch", *ATTRIBUTES.values())
 
 
 def specified(sweep) -> dict:
@@ -21,6 +23,7 @@ def specified(sweep) -> dict:
         "energy": sweep.energy,
         "accuracy": sweep.accuracy,
         **{f"profile_{name}": np.ravel(pairs) for name, pairs in sweep.profiles.items()},
+        **attributes_of(sweep.model),
         **({} if tolerance is None else {"interpolation_tolerance": tolerance}),
         **rubber_attributes(sweep),
     }

@@ -1,7 +1,7 @@
 """From designs to dimensionless problems that are the same wherever the physics is.
 
-Length, radius, pressure and material enter only through ratios; swapping the fiber families changes nothing, and negating
-both angles mirrors rotation and torque. A tube that varies is solved as it is.
+Length, radius, pressure and material enter only through ratios, of a thick wall both its radii; swapping the fiber families
+changes nothing, and negating both angles mirrors rotation and torque. A tube that varies is solved as it is.
 """
 
 from typing import NamedTuple
@@ -14,7 +14,14 @@ from ..scaling import problem_rows
 from ..status import DEGENERATE, INVALID, OK
 
 H, D, FORCE, TORQUE = 0, 1, 6, 7  # columns of a problem
-TARGET, SIZE, BLOCK, COLUMNS = 11, 12, 13, 14  # after them: what is held; radius if the wall varies; block of materials
+PHYSICAL, TARGET, SIZE, BLOCK, COLUMNS = (
+    11,
+    13,
+    14,
+    15,
+    16,
+)  # after them: two of physical tubes, 0 of others; what is held;
+# radius if the wall varies; block of materials
 KEPT_BITS = 43  # of 52: rounding differs by the way units were given (13 digits)
 
 
@@ -36,7 +43,8 @@ def reduced(design, sweep, kind) -> Reduced:
     elif kind == "blocked_torque":
         design["torque"] = zeros
     rows = np.zeros((len(zeros), COLUMNS))
-    rows[:, :TARGET] = problem_rows(design, sweep.energy)
+    problems = problem_rows(design, sweep.energy, sweep.model.is_thick, sweep.model.is_loose)
+    rows[:, : problems.shape[1]] = problems
     rows[:, TARGET] = _target(design, kind)
     if sweep.profiles:
         rows[:, SIZE] = design["fiber_radius"] if "wall" in sweep.profiles else 0.0

@@ -9,6 +9,7 @@ from ..elastomer import convex_to
 from ..faults import ActuatorError
 from ..material_library import material
 from ..strain import first_invariant, largest_stretch
+from ..tube_model import fiber_surface, model_of
 
 CONSTANTS = ("c10", "c01", "c20", "c30")
 SYNONYMS = {f"c{k}": f"Yeoh's C{k} is c{k}0 here, as in other reduced polynomials" for k in (1, 2, 3)}
@@ -98,7 +99,7 @@ def _slices(dataset):
 
 def _strained(part, measure):
     """A ``measure`` of the strain at half length, NaN where there is no state."""
-    fibers = part["fiber_radius" if "fiber_radius" in part else "radius"]
+    fibers = fiber_surface(part, model_of(part.attrs))
     arrays = _broadcast(part["mid_radius"] / fibers, part["alpha"], part["beta"], part["fiber_extension"])
     stretch, alpha, beta, extension = (array.values for array in arrays)
     with np.errstate(invalid="ignore"):

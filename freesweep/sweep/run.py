@@ -32,7 +32,12 @@ from .solve import solve_shard
 from .spec import Sweep, read_file
 
 SHARD_EQUILIBRIA = 8192  # a second of work or less: what an interruption can cost, for each thread
-HELD_COST, VARYING_COST = 32, 8  # of a held state, of a tube that varies: in those of a free state of one that does not
+HELD_COST, VARYING_COST, PHYSICAL_COST = (
+    32,
+    8,
+    64,
+)  # of a held state, of tubes that vary, of physical ones: in those of a
+# free state of others
 
 
 def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrite=False) -> Atlas:
@@ -137,7 +142,8 @@ def _complete(out, identity, text, overwrite, progress):
 
 def split(table, sweep):
     """Shards of whole problems: a list of (first, last + 1)."""
-    cost = (1 if table.kind == "free" else HELD_COST) * (VARYING_COST if sweep.profiles else 1)
+    cost = PHYSICAL_COST if sweep.model.is_physical else VARYING_COST if sweep.profiles else 1
+    cost *= 1 if table.kind == "free" else HELD_COST
     size = max(1, SHARD_EQUILIBRIA // cost)
     found, a = [], 0
     while a < table.count:

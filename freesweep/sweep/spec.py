@@ -6,7 +6,8 @@
                                 # pairs of x/l and value; a repeated x/l is a jump
     c10 = "0.17 MPa"            # and c01, or c20 and c30 of a Yeoh rubber; or material = "dragon-skin-30"
     energy = "full"             # or "principal"
-    model = "source"            # of its parts wall_model and fibers, too, sweeps know the source's only so far
+    model = "source"            # or "physical": thick wall, loose fibers outside; or part by part: wall_model, fibers and
+    fiber_radius = "middle"     # "inner", "middle", "outer", or a radius, which may vary as other numbers do
     [load]                      # fixed force, torque, pressure, held_length or held_length_ratio, held_rotation
     [axes]                      # what varies: all combinations are solved
     alpha = {start = "0 deg", stop = "85 deg", step = "2.5 deg"}
@@ -35,7 +36,7 @@ import numpy as np
 from ..actuator import ENERGIES, SMALLEST_DIFFERENCE
 from ..atlas.schema import HELD, PARAMETERS, YEOH
 from ..profiles import as_profile, together
-from ..tube_model import DEFAULT, MODELS
+from ..tube_model import DEFAULT, FIBER_PLACES, MODELS, TubeModel, word_faults
 from ..units import shown
 from . import axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
@@ -57,7 +58,7 @@ class Sweep:
     ``fixed`` holds single values; ``axes`` strictly increasing arrays, shape (n,), in the order of schema.PARAMETERS.
     ``designs`` is None, or {"names": tuple of texts, "columns": {parameter: array, shape (designs,)}}. Every parameter
     stands in one of the three, or in ``profiles``: name -> pairs (x/l, value). Only ``fiber_radius`` may be in none, then
-    the fibers lie at the inner radius, and ``c20`` and ``c30``: then the rubber is no Yeoh rubber.
+    the fibers lie where the ``model`` says, and ``c20`` and ``c30``: then the rubber is no Yeoh rubber.
     """
 
     title: str
@@ -72,6 +73,7 @@ class Sweep:
     interpolation_tolerance: float | None = None
     budget: int = BUDGET  # points to which axes may grow for the tolerance
     material: str = ""  # name of its rubber, if it came from the library
+    model: TubeModel = MODELS["source"]
 
     @property
     def sha256(self) -> str:
@@ -87,6 +89,16 @@ class Sweep:
     def shape(self) -> tuple[int, ...]:
         """Sizes of the dimensions."""
         return _shape(self.axes, self.designs)
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Names of the parameters that have numbers."""
+        return (*self.fixed, *self.axes, *(self.designs or {}).get("columns", ()))
+
+    @property
+    def one_by_one(self) -> bool:
+        """Whether its tubes are solved by the scalar kernels: those that vary, and physical ones."""
+        return bool(self.profiles) or self.model.is_physical
 
     @property
     def points(self) -> int:
@@ -109,7 +121,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
     tables = {key: _table(faults, document, key) for key in ("actuator", "load", "axes", "solver")}
     title = faults.line("title", document.get("title", ""))
     energy = _energy(faults, tables["actuator"])
-    _check_model(faults, tables["actuator"])
+    model = _model(faults, tables["actuator"], energy)
     accuracy = read_accuracy(faults, tables["solver"])
     tolerance, budget = read_tolerance(faults, tables["solver"])
     given = {}  # parameter: where it is given, faulty or not
@@ -138,7 +150,11 @@ def parse(text: str, name: str = "specification") -> Sweep:
         )
     faults.check()
     rubber = tables["actuator"].get("material", "")
-    return Sweep(title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget, rubber)
+    if "fiber_radius" in values:
+        model = model._replace(fiber_radius="inner")  # it is not asked for
+    return Sweep(
+        title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget, rubber, model
+    )
 
 
 def _shape(axes, designs):
@@ -160,16 +176,22 @@ def _energy(faults, actuator):
     return energy
 
 
-def _check_model(faults, actuator):
-    """Refuses words for tubes that sweeps do not solve."""
-    source = MODELS["source"]
-    for name, known in (("model", "source"), ("wall_model", source.wall_model), ("fibers", source.fibers)):
-        found = actuator.get(name, DEFAULT if name == "model" else known)
-        if found != known:
-            faults.add(
-                f"actuator.{name}",
-                f"found {shown(found)}, allowed: {known}; physical tubes are solved one by one, by inflate, lock and block",
-            )
+def _is_place(found):
+    return isinstance(found, str) and found in FIBER_PLACES
+
+
+def _model(faults, actuator, energy):
+    """The model of the tubes, of which each part may be given by itself."""
+    words = {"model": DEFAULT} | {
+        name: actuator[name] for name in ("model", "wall_model", "fibers") if name in actuator
+    }
+    wrong = word_faults(words["model"], words.get("wall_model"), words.get("fibers"), energy, (energy,))
+    for fault in wrong:
+        faults.add(*f"actuator.{fault}".split(": ", 1))
+    if wrong:
+        return MODELS["source"]
+    place = {"fiber_radius": actuator["fiber_radius"]} if _is_place(actuator.get("fiber_radius")) else {}
+    return MODELS[words.pop("model")]._replace(**words, **place)
 
 
 def _fixed(faults, tables, given):
@@ -180,7 +202,7 @@ def _fixed(faults, tables, given):
         elsewhere = SYNONYMS | {name: f"it belongs in [{HOME[name]}]" for name in PARAMETERS}
         faults.unknown_keys(table, [*own, *WORDS, "material"] if section == "actuator" else own, section, elsewhere)
         for name in own:
-            if name in table:
+            if name in table and not (name == "fiber_radius" and _is_place(table[name])):
                 given[name] = f"{section}.{name}"
                 if name in VARYING and isinstance(table[name], list):
                     profiles[name] = axis.profile(faults, given[name], name, table[name])

@@ -1,0 +1,28 @@
+"""Physical tubes that are the same all along: their halves are no mirror images of each other to the kernels, which know a
+first integral for membranes with bonded fibers only. Each is solved whole, with a node in the middle, by itself.
+"""
+
+import numpy as np
+
+from .problem import LENGTH, PROBLEM_SIZE
+
+
+def in_two_halves(problem, cells):
+    """``(course, edges, places)`` of the tube of one problem, of so many cells in each half."""
+    course = np.zeros((2, 1, 3, 4))
+    course[:, 0, :, 0] = problem[:3]
+    return course, np.arange(3) * cells, np.arange(3) * 0.5 * problem[LENGTH]
+
+
+def one_by_one(problems, first, tube):
+    """``(problems, rows, first, tube)`` as kernels take them, two slices among them: of all problems together, or of each.
+
+    ``tube`` is their (course, edges, places), without a course where they do not vary.
+    """
+    course, edges, _ = tube
+    if len(course) or problems.shape[1] == PROBLEM_SIZE:
+        yield slice(None), slice(None), first, tube
+        return
+    for k, (begin, end) in enumerate(zip(first[:-1].tolist(), first[1:].tolist())):
+        own = in_two_halves(problems[k], int(edges[-1]))
+        yield slice(k, k + 1), slice(begin, end), np.array([0, end - begin]), own
