@@ -8,6 +8,7 @@ from ...jit import kernel
 from .. import lagrangian
 from ..guide import FAR_FROM, STRAY
 from ..uniform import BENDS, FAR, ITERATIONS, LARGEST_CHANGE, PROBE, SCAN, between
+from ..wall import is_loose
 from .vector import HUGE, get, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
@@ -22,7 +23,11 @@ def scan(u, change, samples, cell, start, end, half, asked):
     risen, least, most = asked, spread(HUGE), spread(0.0)
     first, second = spread(0.0), spread(0.0)
     drawn = lagrangian.drawn_in(cell, end)
-    bent = asked & (abs(end[0] - start[0]) > 0.0)  # the fibers' extension is no linear load
+    bent = asked & (
+        abs(end[0] - start[0]) > 0.0
+    )  # the fibers' extension is no linear load, and loose ones bear none so
+    if is_loose(end[2]):
+        bent = asked
     ahead = select(change > 0.0, spread(1.0), spread(-1.0))
     i = 0
     while True:
