@@ -15,7 +15,7 @@ from math import sqrt
 from ..jit import kernel
 from .either import isnt, select, some
 from .relaxed import both_reach, multipliers, settle, taut_twist
-from .wall import energy, least_square, lies_inside
+from .wall import least_square, lies_inside, slopes, stored
 
 NO_ROOM = 1e-30  # as in :mod:`membrane`
 LEAST = 1e-6  # of G: where a state is refused, its numbers stay finite
@@ -50,7 +50,7 @@ def state(y, v, cell, load):
     p, m = load[3], load[5]
     T, T_y = p * y * y + load[4], 2.0 * p * y
     room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
-    _, W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     i = 1.0 / s
     i3 = i * i * i
@@ -107,7 +107,7 @@ def uniform_tube(y, cell, load):
     _, G_1, psi, _, _ = place(y, 0.0, T, cell, load)
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     pull = T * s
-    return s, pull, pull - energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])[0] + load[5] * psi
+    return s, pull, pull - stored(y, G_1, psi, load[6] * cell[2], load[1], load[2]) + load[5] * psi
 
 
 @kernel
@@ -115,7 +115,7 @@ def integrands(y, v, cell, load):
     """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut."""
     _, G_1, psi, taut_alpha, taut_beta = place(y, v, load[3] * y * y + load[4], cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    return s, y * y * s, psi, energy(y, G_1, psi, cell[2], load[1], load[2])[0], kind_of(taut_alpha, taut_beta)
+    return s, y * y * s, psi, stored(y, G_1, psi, cell[2], load[1], load[2]), kind_of(taut_alpha, taut_beta)
 
 
 @kernel
@@ -141,7 +141,7 @@ def at_slope(y, v, cell, load):
     """``(G - v^2, tau alpha, tau beta)``: the room of the slope, and the multipliers of both families."""
     T = load[3] * y * y + load[4]
     room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
-    _, _, W_G, W_p, _, _, _, _, _, _ = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], T, load[5], W_G, W_p)
     return room, a, b
@@ -155,7 +155,7 @@ def at_flux(y, flux, cell, load):
     T = load[3] * y * y + load[4]
     pull = sqrt(T * T + flux * flux)
     _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, pull, cell, load)
-    _, _, W_G, W_p, _, _, _, _, _, _ = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load[5], W_G, W_p)
     return psi, G_1, a, b

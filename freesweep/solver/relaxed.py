@@ -19,11 +19,14 @@ from math import sqrt
 
 from ..jit import kernel
 from .either import isnt, select, some
-from .wall import energy, narrowest
+from .wall import narrowest, slopes
 
 ITERATIONS = 60  # five do nearly always
-CLOSE = 1e-7  # of the unit of what is sought: the next step of Newton's method is its square
-SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves
+CLOSE = 1e-8  # of the unit of what is sought: the next step of Newton's method is its square
+SHORT = (
+    0.1  # share of the way to the edge of the domain that a step in G leaves, which is no longer in the other direction
+)
+LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
 
@@ -53,22 +56,22 @@ def axial(G, v):
 
 
 @kernel
-def free_stretch(y, psi, G_1, low, v, T, area, rubber, wall, todo):
-    """G - 1 that nothing holds, between ``low`` and ``G_1``, at which T/(2 s) < W_G; and dG/dpsi there. Only where it is to
-    do.
-    """
-    slope = 0.0 * G_1
+def free_point(y, G_1, psi, low, v, T, m, area, rubber, wall, todo):
+    """``(G - 1, psi)`` that nothing holds, from a first guess above ``low``. Only where it is to do."""
     for _ in range(ITERATIONS):
-        _, _, W_G, _, _, _, _, W_GG, W_Gp, _ = energy(y, G_1, psi, area, rubber, wall)
+        _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, area, rubber, wall)
         s = axial(1.0 + G_1, v)
-        bend = 0.25 * T / (s * s * s) + W_GG
-        change = (0.5 * T / s - W_G) / bend
-        slope = select(todo, -W_Gp / bend, slope)
-        G_1 = select(todo, max(G_1 + change, low + SHORT * (G_1 - low)), G_1)
-        todo = todo & (abs(change) >= CLOSE * (1.0 + G_1))
+        rise, turn, bend = 0.5 * T / s - W_G, m - W_p, 0.25 * T / (s * s * s) + W_GG
+        cross = select(bend * W_pp > W_Gp * W_Gp, W_Gp, 0.0)  # far off the step is one along G, and one along psi
+        det = bend * W_pp - cross * cross
+        wider, further = (W_pp * rise - cross * turn) / det, (bend * turn - cross * rise) / det
+        most = (1.0 - SHORT) * (G_1 - low)
+        share = min(min(most / max(abs(wider), NO_ROOM), LONG / max(y * abs(further), NO_ROOM)), 1.0)
+        G_1, psi = select(todo, G_1 + share * wider, G_1), select(todo, psi + share * further, psi)
+        todo = todo & (max(abs(wider), y * abs(further)) >= CLOSE * (1.0 + G_1))
         if not some(todo):
             break
-    return G_1, slope
+    return G_1, psi
 
 
 @kernel
@@ -82,19 +85,13 @@ def pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp):
 
 
 @kernel
-def along_twist(y, psi, t, stretch, low, v, T, m, area, rubber, wall, todo):
+def along_twist(y, psi, t, stretch, v, T, m, area, rubber, wall):
     """On the side of one family: ``(F, F_psi, taut)``, the first two of the same positive factor."""
     G_1 = reach(y, psi, t, stretch)
-    _, _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = energy(y, G_1, psi, area, rubber, wall)
+    _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, area, rubber, wall)
     s = axial(1.0 + G_1, v)
-    taut = 0.5 * T / s >= W_G
     F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
-    limp = todo & isnt(taut)
-    if some(limp):
-        free, slope = free_stretch(y, psi, G_1, low, v, T, area, rubber, wall, limp)
-        _, _, _, W_p, _, _, _, _, W_Gp, W_pp = energy(y, free, psi, area, rubber, wall)
-        F, F_p = select(limp, m - W_p, F), select(limp, -(W_pp + W_Gp * slope), F_p)
-    return F, F_p, taut
+    return F, F_p, 0.5 * T / s >= W_G
 
 
 @kernel
@@ -124,24 +121,23 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
 
     reached, roomy = G_1 > low, G_1 - low > CRAMPED * room
     here = select(reached, G_1, widest)
-    _, _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = energy(y, here, psi, area, rubber, wall)
+    _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, here, psi, area, rubber, wall)
     s = axial(1.0 + here, v)
     mu = 0.5 * T / s - W_G
     held = reached & (mu >= 0.0)
     twice = 2.0 * y * y * mu
     beyond, short = m - W_p - twice * (right + psi) > 0.0, m - W_p - twice * (left + psi) < 0.0
-    limp = inside & reached & isnt(held)
     side = select(held, select(beyond, 1.0, -1.0), select(best > psi, 1.0, -1.0))
-    todo = inside & (isnt(held) | beyond | short)
-    both = isnt(todo)
-    if some(limp):
-        free, _ = free_stretch(y, psi, here, low, v, T, area, rubber, wall, limp)
-        turning = m - energy(y, free, psi, area, rubber, wall)[3]
-        still = limp & (turning == 0.0)
-        G_1, todo = select(still, free, G_1), todo & isnt(still)
-        side = select(limp, select(turning > 0.0, 1.0, -1.0), side)
-    if not some(todo):
-        return room, G_1, psi, both, both
+    both = isnt(inside & (isnt(held) | beyond | short))
+    free_1, free_psi, known = here, psi, inside & reached & isnt(held)
+    none = known & both
+    if some(known):
+        free_1, free_psi = free_point(y, here, psi, low, v, T, m, area, rubber, wall, known)
+        none = known & (free_1 <= min(reach(y, free_psi, right, stretch), reach(y, free_psi, left, stretch)))
+        side = select(known, select(free_psi > psi, 1.0, -1.0), side)
+    going = isnt(both | none)
+    if not some(going):
+        return room, select(none, free_1, G_1), select(none, free_psi, psi), both, both
 
     t = select(side > 0.0, right, left)
     width = sqrt(max(stretch * (1.0 + t * t) + t * t - low, 0.0)) / y
@@ -152,12 +148,18 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
     F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
     ahead = psi - F / F_p
     at = select(held & (F_p < 0.0) & is_between(ahead, near, far, side), ahead, select(roomy, psi, best))
+    at = select(known, free_psi, at)
     at = select(is_between(at, near, far, side), at, 0.5 * (near + far))
-    going, taut = todo, todo
     for _ in range(ITERATIONS):
-        F, F_p, taut_here = along_twist(y, at, t, stretch, low, v, T, m, area, rubber, wall, going)
-        taut = (going & taut_here) | (isnt(going) & taut)
-        before = F * side > 0.0
+        F, F_p, taut = along_twist(y, at, t, stretch, v, T, m, area, rubber, wall)
+        limp = going & isnt(taut)
+        fresh = limp & isnt(known)
+        if some(fresh):
+            freed, turned = free_point(y, reach(y, at, t, stretch), at, low, v, T, m, area, rubber, wall, fresh)
+            free_1, free_psi, known = select(fresh, freed, free_1), select(fresh, turned, free_psi), known | fresh
+            none = none | fresh & (free_1 <= min(reach(y, free_psi, right, stretch), reach(y, free_psi, left, stretch)))
+            going = going & isnt(none)
+        before = select(taut, F, free_psi - at) * side > 0.0  # where the family is slack, that point tells the side
         near, far = select(going & before, at, near), select(going & isnt(before), at, far)
         new = at - F / F_p
         new = select((F_p < 0.0) & is_between(new, near, far, side), new, 0.5 * (near + far))
@@ -166,12 +168,10 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
         going = going & (change > CLOSE * unit)
         if not some(going):
             break
-    G_1, psi = select(todo, reach(y, at, t, stretch), G_1), select(todo, at, psi)
-    limp = todo & isnt(taut)
-    if some(limp):
-        G_1, _ = free_stretch(y, psi, G_1, low, v, T, area, rubber, wall, limp)
+    one = isnt(both | none)
+    G_1 = select(one, reach(y, at, t, stretch), select(none, free_1, G_1))
     first = (side > 0.0) & (D > 0.0) | (side < 0.0) & isnt(D > 0.0)
-    return room, G_1, psi, both | todo & taut & first, both | todo & taut & isnt(first)
+    return room, G_1, select(one, at, select(none, free_psi, psi)), both | one & first, both | one & isnt(first)
 
 
 @kernel

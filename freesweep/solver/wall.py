@@ -21,6 +21,7 @@ from math import sqrt
 import numpy as np
 
 from ..jit import kernel
+from . import mooney_wall
 from .either import select, some
 from .membrane import excess, yeoh_slope
 
@@ -131,6 +132,36 @@ def layer(square, y, G_1, psi, rubber, k):
 @kernel
 def energy(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)`` of the whole wall; ``G_1`` is G - 1."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)
+    return (stored(y, G_1, psi, area, rubber, wall), *slopes(y, G_1, psi, area, rubber, wall))
+
+
+@kernel
+def stored(y, G_1, psi, area, rubber, wall):
+    """W alone."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)[0]
+    count = layers(area, wall)
+    return mooney_wall.stored(
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count)
+    )
+
+
+@kernel
+def slopes(y, G_1, psi, area, rubber, wall):
+    """The derivatives of :func:`energy`, without W."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)[1:]
+    count = layers(area, wall)
+    return mooney_wall.slopes(
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count)
+    )
+
+
+@kernel
+def of_any(y, G_1, psi, area, rubber, wall):
+    """:func:`energy`, layer by layer."""
     k, inner = wall[0], wall[1]
     square, one, count, at = 1.0 + 0.0 * area, area, 0, 0
     W = W_y = W_G = W_p = W_yy = W_yG = W_yp = W_GG = W_Gp = W_pp = 0.0 * area
