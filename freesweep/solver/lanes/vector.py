@@ -112,7 +112,8 @@ def _extreme(comparison):
 
 
 for _function, _name in (
-    (operator.add, "fadd"), (operator.iadd, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"), (operator.truediv, "fdiv"),
+    (operator.add, "fadd"), (operator.iadd, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"),
+    (operator.truediv, "fdiv"),
 ):  # fmt: skip
     _operation(_function, 2, lane, lambda builder, a, b, name=_name: getattr(builder, name)(a, b, flags=FLAGS))
 for _function, _sign in (
