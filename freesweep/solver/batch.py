@@ -9,7 +9,7 @@ from ..interpret import at_once
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
-from .problem import MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, YEOH, wall_columns
+from .problem import LOOSE, MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, YEOH, wall_columns
 from .profile import FIELDS
 from .status import PENDING
 
@@ -50,25 +50,29 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     )  # others would be compiled for anew
     found = _nothing(len(problems), len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
-    walls, settled, todo = wall_columns(problems), settling_pressure(problems), True
-    if lanes and len(tube[0]) == 0 and problems.shape[1] == PROBLEM_SIZE and not config.DISABLE_JIT:
+    drawn = len(stations) > 0 and wall_columns(problems) == PHYSICAL  # vectors draw no profiles of such tubes
+    if lanes and len(tube[0]) == 0 and not drawn and not config.DISABLE_JIT:
         from .lanes.walk import solve_lanes
 
-        arguments = problems, walls, settled, first, pressures, *tube, accuracy, *found[:5], stations, found.profiles
-        todo = not (soon and at_once(len(pressures), solve_lanes, follow_many, *arguments))
-        if todo:
+        calls = _scalar_calls(problems, first, pressures, tube, accuracy, stations, found)
+        if not (soon and all(at_once(len(call[4]), solve_lanes, follow_many, *call) for call in calls)):
             _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
-    for own, rows, starts, whole in one_by_one(problems, first, tube) if todo else ():
-        if not (left := np.count_nonzero(found.status[rows] == PENDING)):
-            continue
-        arguments = (
+    for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
+        left = np.count_nonzero(call[11] == PENDING)
+        if left and not (soon and at_once(left, follow_many, follow_many, *call)):
+            follow_many(*call)
+    found.bounds[limp] += MISSED * np.abs(found.values[limp])
+    return found
+
+
+def _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
+    """Arguments of :func:`follow_many`: of all problems at once, or of each that has to be solved whole."""
+    walls, settled = wall_columns(problems), settling_pressure(problems)
+    for own, rows, starts, whole in one_by_one(problems, first, tube):
+        yield (
             problems[own], walls, settled[own], starts, pressures[rows], *whole, accuracy,
             *(array[rows] for array in found[:4]), found.limits[own], stations, found.profiles[rows],
         )  # fmt: skip
-        if not (soon and at_once(left, follow_many, follow_many, *arguments)):
-            follow_many(*arguments)
-    found.bounds[limp] += MISSED * np.abs(found.values[limp])
-    return found
 
 
 def _walk_lanes(problems, first, pressures, base, accuracy, stations, found):
@@ -96,24 +100,40 @@ def _nothing(problems, states, stations):
 
 def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, found):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
-    from .lanes.walk import carry_lanes, solve_lanes
-
     # what shares a vector should need much the same work: as many pressures, as steep ends
-    steps, yeoh = np.diff(first), np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
+    steps = np.diff(first)
     owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
     stretches, cosines = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
     drawn = (stations, found.profiles) if len(stations) else (None, None)
-    for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
-        if not np.any(some):
-            continue
-        carry_lanes(problems, first, pressures, order[some[order]], constants, *found[:3], stretches, cosines)
+    for carry, solve, kind, some in _kinds(problems):
+        carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, cosines)
         carried = some[owners] & asked & np.isfinite(stretches)
         for cells in (base, FINER * base):
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_steepness(cosines[rows]), kind="stable")
-            solve_lanes(
-                problems, owners, pressures, stretches, rows[alike], constants, cells, accuracy, *found[:4], *drawn
-            )
+            solve(
+                problems, owners, pressures, stretches, rows[alike], *kind, cells, accuracy, *found[:4],
+                *(drawn if len(kind) == 1 else ()),
+            )  # fmt: skip
+
+
+def _kinds(problems):
+    """``(carry, solve, kind, which problems)``: the kernels of vectors, and what is the same for all that share one."""
+    from .lanes import walk
+    from .lanes.seat import count_layers
+
+    yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
+    kinds = yeoh[:, None].astype(np.int64)
+    if wall_columns(problems) == PHYSICAL:
+        count = np.empty(len(problems), np.int64)
+        count_layers(problems, PHYSICAL, count)
+        kinds = np.column_stack([kinds, count, problems[:, LOOSE] > 0.0])
+    for kind in np.unique(kinds, axis=0):
+        some, constants = np.all(kinds == kind, axis=1), (YEOH if kind[0] else MOONEY_RIVLIN)
+        if len(kind) == 1:
+            yield walk.carry_lanes, walk.solve_lanes, (constants,), some
+        else:
+            yield walk.carry_physical, walk.solve_physical, (constants, int(kind[1])), some
 
 
 def _steepness(cosines):

@@ -13,8 +13,9 @@ Functions and arguments as in :mod:`membrane`; ``wall`` = load[2] is (k, inner, 
 from math import sqrt
 
 from ..jit import kernel
+from .either import isnt, select, some
 from .relaxed import both_reach, multipliers, settle, taut_twist
-from .wall import energy, least_square
+from .wall import least_square, lies_inside, slopes, stored
 
 NO_ROOM = 1e-30  # as in :mod:`membrane`
 LEAST = 1e-6  # of G: where a state is refused, its numbers stay finite
@@ -24,7 +25,7 @@ NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
 @kernel
 def kind_of(taut_alpha, taut_beta):
     """Which families are taut, as one number."""
-    return (ALPHA_TAUT if taut_alpha else NONE_TAUT) + (BETA_TAUT if taut_beta else NONE_TAUT)
+    return select(taut_alpha, ALPHA_TAUT, NONE_TAUT) + select(taut_beta, BETA_TAUT, NONE_TAUT)
 
 
 @kernel
@@ -35,10 +36,9 @@ def place(y, v, T, cell, load):
         room, G_1, psi, alpha, beta = settle(y, v, H, D, gg, max(T, NO_ROOM), load[5], load[6] * cell[2], load[1], wall)
         return min(room, T), max(G_1, LEAST - 1.0), psi, alpha, beta
     psi, G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, gg - 1.0)
-    room = min(1.0 + G_1 - v * v, T)
-    if 0.0 < wall[1] < 1.0:
-        room = min(room, least_square(y, max(1.0 + G_1, NO_ROOM), wall))
-    return room, max(G_1, LEAST - 1.0), psi, True, True
+    room, least = min(1.0 + G_1 - v * v, T), least_square(y, max(1.0 + G_1, NO_ROOM), wall)
+    bonded = y == y
+    return select(lies_inside(wall), min(room, least), room), max(G_1, LEAST - 1.0), psi, bonded, bonded
 
 
 @kernel
@@ -50,7 +50,7 @@ def state(y, v, cell, load):
     p, m = load[3], load[5]
     T, T_y = p * y * y + load[4], 2.0 * p * y
     room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
-    _, W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     i = 1.0 / s
     i3 = i * i * i
@@ -66,21 +66,25 @@ def state(y, v, cell, load):
     K_GG = -0.25 * T * i3 - W_GG
     K_Gp = -W_Gp
     K_pp = -W_pp - 2.0 * y * y * (a + b)
-    if taut_alpha and taut_beta:
-        t = gg / (y * y)
-        psi_y, G_y = -2.0 * H * t / y, -2.0 * D * D * y + 2.0 * gg * H * H * t / y
-        psi_v = G_v = 0.0
-    elif taut_alpha or taut_beta:
-        t = ta if taut_alpha else tb
+    t, both = gg / (y * y), taut_alpha & taut_beta
+    psi_y, G_y = -2.0 * H * t / y, -2.0 * D * D * y + 2.0 * gg * H * H * t / y
+    psi_v = G_v = 0.0 * y
+    if some(isnt(both)):
+        t = select(taut_alpha, ta, tb)
         c, k = 2.0 * y * y * t, 2.0 * y * t * t  # dG = -c dpsi - k dy
         bend = c * c * K_GG - 2.0 * c * K_Gp + K_pp
-        psi_y = -(K_yp - c * K_yG - k * K_Gp + k * c * K_GG) / bend
-        psi_v = c * K_vG / bend
-        G_y, G_v = -k - c * psi_y, -c * psi_v
-    else:
-        det = K_GG * K_pp - K_Gp * K_Gp
-        G_y, psi_y = (K_Gp * K_yp - K_pp * K_yG) / det, (K_Gp * K_yG - K_GG * K_yp) / det
-        G_v, psi_v = -K_pp * K_vG / det, K_Gp * K_vG / det
+        turn_y, turn_v = -(K_yp - c * K_yG - k * K_Gp + k * c * K_GG) / bend, c * K_vG / bend
+        wide_y, wide_v = -k - c * turn_y, -c * turn_v
+        none = isnt(taut_alpha | taut_beta)
+        if some(none):
+            det = K_GG * K_pp - K_Gp * K_Gp
+            wide_y, turn_y = (
+                select(none, (K_Gp * K_yp - K_pp * K_yG) / det, wide_y),
+                select(none, (K_Gp * K_yG - K_GG * K_yp) / det, turn_y),
+            )
+            wide_v, turn_v = select(none, -K_pp * K_vG / det, wide_v), select(none, K_Gp * K_vG / det, turn_v)
+        psi_y, G_y = select(both, psi_y, turn_y), select(both, G_y, wide_y)
+        psi_v, G_v = select(both, 0.0, turn_v), select(both, 0.0, wide_v)
     return room, s, G_1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind
 
 
@@ -98,11 +102,12 @@ def density(y, v, cell, load):
 @kernel
 def uniform_tube(y, cell, load):
     """``(sqrt(G), T sqrt(G), L)`` at slope 0."""
+    y = y + 0.0 * cell[0]  # a number beside a vector stands for all of it
     T = load[3] * y * y + load[4]
     _, G_1, psi, _, _ = place(y, 0.0, T, cell, load)
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     pull = T * s
-    return s, pull, pull - energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])[0] + load[5] * psi
+    return s, pull, pull - stored(y, G_1, psi, load[6] * cell[2], load[1], load[2]) + load[5] * psi
 
 
 @kernel
@@ -110,7 +115,7 @@ def integrands(y, v, cell, load):
     """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut."""
     _, G_1, psi, taut_alpha, taut_beta = place(y, v, load[3] * y * y + load[4], cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    return s, y * y * s, psi, energy(y, G_1, psi, cell[2], load[1], load[2])[0], kind_of(taut_alpha, taut_beta)
+    return s, y * y * s, psi, stored(y, G_1, psi, cell[2], load[1], load[2]), kind_of(taut_alpha, taut_beta)
 
 
 @kernel
@@ -136,7 +141,7 @@ def at_slope(y, v, cell, load):
     """``(G - v^2, tau alpha, tau beta)``: the room of the slope, and the multipliers of both families."""
     T = load[3] * y * y + load[4]
     room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
-    _, _, W_G, W_p, _, _, _, _, _, _ = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], T, load[5], W_G, W_p)
     return room, a, b
@@ -150,7 +155,7 @@ def at_flux(y, flux, cell, load):
     T = load[3] * y * y + load[4]
     pull = sqrt(T * T + flux * flux)
     _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, pull, cell, load)
-    _, _, W_G, W_p, _, _, _, _, _, _ = energy(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load[5], W_G, W_p)
     return psi, G_1, a, b

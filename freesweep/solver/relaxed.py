@@ -18,11 +18,15 @@ falls all along: Newton's method between bounds finds its root. Where ``mu`` is 
 from math import sqrt
 
 from ..jit import kernel
-from .wall import energy, narrowest
+from .either import isnt, select, some
+from .wall import narrowest, slopes
 
 ITERATIONS = 60  # five do nearly always
-CLOSE = 1e-9  # of the unit of what is sought: the next step of Newton's method is its square
-SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves
+CLOSE = 1e-8  # of the unit of what is sought: the next step of Newton's method is its square
+SHORT = (
+    0.1  # share of the way to the edge of the domain that a step in G leaves, which is no longer in the other direction
+)
+LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
 
@@ -52,36 +56,48 @@ def axial(G, v):
 
 
 @kernel
-def free_stretch(y, psi, G_1, low, v, T, area, rubber, wall):
-    """G - 1 that nothing holds, between ``low`` and ``G_1``, at which T/(2 s) < W_G; and dG/dpsi there."""
-    change, slope = 1.0, 0.0
+def free_point(y, G_1, psi, low, v, T, m, area, rubber, wall, todo):
+    """``(G - 1, psi)`` that nothing holds, from a first guess above ``low``. Only where it is to do."""
     for _ in range(ITERATIONS):
-        _, _, W_G, _, _, _, _, W_GG, W_Gp, _ = energy(y, G_1, psi, area, rubber, wall)
+        _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, area, rubber, wall)
         s = axial(1.0 + G_1, v)
-        bend = 0.25 * T / (s * s * s) + W_GG
-        slope = -W_Gp / bend
-        change = (0.5 * T / s - W_G) / bend
-        G_1 = max(G_1 + change, low + SHORT * (G_1 - low))
-        if abs(change) < CLOSE * (1.0 + G_1):
+        rise, turn, bend = 0.5 * T / s - W_G, m - W_p, 0.25 * T / (s * s * s) + W_GG
+        cross = select(bend * W_pp > W_Gp * W_Gp, W_Gp, 0.0)  # far off the step is one along G, and one along psi
+        det = bend * W_pp - cross * cross
+        wider, further = (W_pp * rise - cross * turn) / det, (bend * turn - cross * rise) / det
+        most = (1.0 - SHORT) * (G_1 - low)
+        share = min(min(most / max(abs(wider), NO_ROOM), LONG / max(y * abs(further), NO_ROOM)), 1.0)
+        G_1, psi = select(todo, G_1 + share * wider, G_1), select(todo, psi + share * further, psi)
+        todo = todo & (max(abs(wider), y * abs(further)) >= CLOSE * (1.0 + G_1))
+        if not some(todo):
             break
-    return G_1, slope
+    return G_1, psi
 
 
 @kernel
-def along_twist(y, psi, t, stretch, low, v, T, m, area, rubber, wall):
-    """On the side of one family: ``(F, F_psi, taut, G - 1)``, both of the same positive factor."""
+def pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp):
+    """``(F, F_psi)`` where the family is taut, both times s."""
+    b = 2.0 * y * y * (t + psi)  # -dG/dpsi
+    b_p = 2.0 * y * y
+    rest = m - W_p + b * W_G
+    rest_p = -(W_pp - b * W_Gp) + b_p * W_G + b * (W_Gp - b * W_GG)
+    return s * rest - 0.5 * T * b, -0.5 * b / s * rest + s * rest_p - 0.5 * T * b_p
+
+
+@kernel
+def along_twist(y, psi, t, stretch, v, T, m, area, rubber, wall):
+    """On the side of one family: ``(F, F_psi, taut)``, the first two of the same positive factor."""
     G_1 = reach(y, psi, t, stretch)
-    _, _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = energy(y, G_1, psi, area, rubber, wall)
+    _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, area, rubber, wall)
     s = axial(1.0 + G_1, v)
-    if 0.5 * T / s >= W_G:
-        b = 2.0 * y * y * (t + psi)  # -dG/dpsi
-        b_p = 2.0 * y * y
-        rest = m - W_p + b * W_G
-        rest_p = -(W_pp - b * W_Gp) + b_p * W_G + b * (W_Gp - b * W_GG)
-        return s * rest - 0.5 * T * b, -0.5 * b / s * rest + s * rest_p - 0.5 * T * b_p, True, G_1
-    G_1, slope = free_stretch(y, psi, G_1, low, v, T, area, rubber, wall)
-    _, _, _, W_p, _, _, _, _, W_Gp, W_pp = energy(y, G_1, psi, area, rubber, wall)
-    return m - W_p, -(W_pp + W_Gp * slope), False, G_1
+    F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
+    return F, F_p, 0.5 * T / s >= W_G
+
+
+@kernel
+def is_between(at, near, far, side):
+    """Whether ``at`` lies on the way from ``near`` to ``far``."""
+    return ((at - near) * side >= 0.0) & ((far - at) * side >= 0.0)
 
 
 @kernel
@@ -94,71 +110,77 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
     psi, G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, stretch)
     low = max(v * v, narrowest(y, wall)) - 1.0
     # beyond the twist of both taut (to the right) alpha is the nearer if D > 0; its reach is widest at psi = -t
-    right, left = (H + D, H - D) if D > 0.0 else (H - D, H + D)
-    widest, best = G_1, psi
-    if psi < -right:
-        widest, best = reach(y, -right, right, stretch), -right
-    elif psi > -left:
-        widest, best = reach(y, -left, left, stretch), -left
+    right, left = H + abs(D), H - abs(D)
+    best = min(max(psi, -right), -left)
+    apart = (psi < -right) | (psi > -left)
+    widest = select(apart, reach(y, best, select(psi < -right, right, left), stretch), G_1)
     room = widest - low
-    if not (room > 0.0 and y > 0.0):
-        return room, G_1, psi, True, True
-    side, roomy = 0.0, G_1 - low > CRAMPED * room
-    if G_1 > low:
-        _, _, W_G, W_p, _, _, _, _, _, _ = energy(y, G_1, psi, area, rubber, wall)
-        s = axial(1.0 + G_1, v)
-        mu = 0.5 * T / s - W_G
-        if mu >= 0.0:
-            twice = 2.0 * y * y * mu
-            if m - W_p - twice * (right + psi) > 0.0:
-                side = 1.0
-            elif m - W_p - twice * (left + psi) < 0.0:
-                side = -1.0
-            else:
-                return room, G_1, psi, True, True
-        else:
-            free, _ = free_stretch(y, psi, G_1, low, v, T, area, rubber, wall)
-            _, _, _, W_p, _, _, _, _, _, _ = energy(y, free, psi, area, rubber, wall)
-            if m == W_p:
-                return room, free, psi, False, False
-            side = 1.0 if m > W_p else -1.0
-    else:
-        side = 1.0 if best > psi else -1.0
-    t = right if side > 0.0 else left
-    width = sqrt(stretch * (1.0 + t * t) + t * t - low) / y
-    near, far = psi, -t + side * width  # F has the sign of the side here, the other there
-    if (-t - side * width - near) * side > 0.0:
-        near = -t - side * width
+    inside = (room > 0.0) & (y > 0.0)
+    if not some(inside):
+        return room, G_1, psi, isnt(inside), isnt(inside)
+
+    reached, roomy = G_1 > low, G_1 - low > CRAMPED * room
+    here = select(reached, G_1, widest)
+    _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, here, psi, area, rubber, wall)
+    s = axial(1.0 + here, v)
+    mu = 0.5 * T / s - W_G
+    held = reached & (mu >= 0.0)
+    twice = 2.0 * y * y * mu
+    beyond, short = m - W_p - twice * (right + psi) > 0.0, m - W_p - twice * (left + psi) < 0.0
+    side = select(held, select(beyond, 1.0, -1.0), select(best > psi, 1.0, -1.0))
+    both = isnt(inside & (isnt(held) | beyond | short))
+    free_1, free_psi, known = here, psi, inside & reached & isnt(held)
+    none = known & both
+    if some(known):
+        free_1, free_psi = free_point(y, here, psi, low, v, T, m, area, rubber, wall, known)
+        none = known & (free_1 <= min(reach(y, free_psi, right, stretch), reach(y, free_psi, left, stretch)))
+        side = select(known, select(free_psi > psi, 1.0, -1.0), side)
+    going = isnt(both | none)
+    if not some(going):
+        return room, select(none, free_1, G_1), select(none, free_psi, psi), both, both
+
+    t = select(side > 0.0, right, left)
+    width = sqrt(max(stretch * (1.0 + t * t) + t * t - low, 0.0)) / y
+    far = -t + side * width  # F has the sign of the side near both taut, the other there
+    edge = -t - side * width
+    near = select((edge - psi) * side > 0.0, edge, psi)
     unit = abs(far - near)
-    at = psi if roomy else best
-    if (at - near) * side < 0.0 or (far - at) * side < 0.0:
-        at = 0.5 * (near + far)
-    taut = True
+    F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
+    ahead = psi - F / F_p
+    at = select(held & (F_p < 0.0) & is_between(ahead, near, far, side), ahead, select(roomy, psi, best))
+    at = select(known, free_psi, at)
+    at = select(is_between(at, near, far, side), at, 0.5 * (near + far))
     for _ in range(ITERATIONS):
-        F, F_p, taut, G_1 = along_twist(y, at, t, stretch, low, v, T, m, area, rubber, wall)
-        if F * side > 0.0:
-            near = at
-        else:
-            far = at
+        F, F_p, taut = along_twist(y, at, t, stretch, v, T, m, area, rubber, wall)
+        limp = going & isnt(taut)
+        fresh = limp & isnt(known)
+        if some(fresh):
+            freed, turned = free_point(y, reach(y, at, t, stretch), at, low, v, T, m, area, rubber, wall, fresh)
+            free_1, free_psi, known = select(fresh, freed, free_1), select(fresh, turned, free_psi), known | fresh
+            none = none | fresh & (free_1 <= min(reach(y, free_psi, right, stretch), reach(y, free_psi, left, stretch)))
+            going = going & isnt(none)
+        before = select(taut, F, free_psi - at) * side > 0.0  # where the family is slack, that point tells the side
+        near, far = select(going & before, at, near), select(going & isnt(before), at, far)
         new = at - F / F_p
-        if not (F_p < 0.0 and (new - near) * side >= 0.0 and (far - new) * side >= 0.0):
-            new = 0.5 * (near + far)
+        new = select((F_p < 0.0) & is_between(new, near, far, side), new, 0.5 * (near + far))
         change = abs(new - at)
-        at = new
-        if change <= CLOSE * unit:
+        at = select(going, new, at)
+        going = going & (change > CLOSE * unit)
+        if not some(going):
             break
-    G_1 = reach(y, at, t, stretch)
-    if not taut:
-        G_1, _ = free_stretch(y, at, G_1, low, v, T, area, rubber, wall)
-    alpha = taut and ((side > 0.0) == (D > 0.0))
-    return room, G_1, at, alpha, taut and not alpha
+    one = isnt(both | none)
+    G_1 = select(one, reach(y, at, t, stretch), select(none, free_1, G_1))
+    first = (side > 0.0) & (D > 0.0) | (side < 0.0) & isnt(D > 0.0)
+    return room, G_1, select(one, at, select(none, free_psi, psi)), both | one & first, both | one & isnt(first)
 
 
 @kernel
 def multipliers(y, s, psi, taut_alpha, taut_beta, H, D, T, m, W_G, W_p):
     """Multipliers of both families, 0 of a slack one."""
     total = 0.5 * T / s - W_G
-    if taut_alpha and taut_beta:
-        difference = ((m - W_p) / (2.0 * y * y) - total * (H + psi)) / D
-        return 0.5 * (total + difference), 0.5 * (total - difference)
-    return (total if taut_alpha else 0.0), (total if taut_beta else 0.0)
+    difference = ((m - W_p) / (2.0 * y * y) - total * (H + psi)) / D
+    both = taut_alpha & taut_beta
+    return (
+        select(both, 0.5 * (total + difference), select(taut_alpha, total, 0.0)),
+        select(both, 0.5 * (total - difference), select(taut_beta, total, 0.0)),
+    )

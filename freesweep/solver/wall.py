@@ -12,7 +12,8 @@ has, exactly in a uniform tube and as a layered membrane elsewhere (theory, sect
 A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick wall is summed at Gauss points in rho^2, as
 many as its integrand, a rational function of rho^2 with poles at 0 and where q vanishes, asks for.
 
-``wall`` is (k, inner, loose): ``inner`` = rho_i^2, or 0 for a membrane; ``loose`` is :mod:`relaxed`'s.
+``wall`` is (k, inner, loose): ``inner`` = rho_i^2, or 0 for a membrane; ``loose`` is :mod:`relaxed`'s. In vectors of designs
+it is (k, inner, loose, layers), the last two the same for all of them.
 """
 
 from math import sqrt
@@ -20,9 +21,11 @@ from math import sqrt
 import numpy as np
 
 from ..jit import kernel
+from . import mooney_wall
+from .either import select, some
 from .membrane import excess, yeoh_slope
 
-FEWEST, MOST = 2, 10  # Gauss points
+MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
 MISSED = 1e-8  # of the energy: what a pole at the axis may leave
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
 PLACES = np.concatenate([0.5 + 0.5 * rule[0] for rule in _RULES])  # shares of rho_o^2 - rho_i^2, all rules in a row
@@ -50,26 +53,36 @@ def points(inner, area):
 
 
 @kernel
+def layers(area, wall):
+    """As how many layers a wall counts; walls in vectors know that of themselves."""
+    if len(wall) > 3:
+        return wall[3]
+    return points(wall[1], area) if wall[1] > 0.0 else MEMBRANE
+
+
+@kernel
 def first_place(n):
     """Where the rule of n points begins in PLACES."""
     return (n * (n - 1) - FEWEST * (FEWEST - 1)) // 2
 
 
 @kernel
+def lies_inside(wall):
+    """Whether there is wall inside the surface of the fibers."""
+    return (wall[1] > 0.0) & (wall[1] < 1.0)
+
+
+@kernel
 def least_square(y, G, wall):
     """r^2 of the innermost layer, which has to be positive; where the fibers lie inside, that is their own."""
-    inner = wall[1]
-    return y * y + (inner - 1.0) / sqrt(G) if 0.0 < inner < 1.0 else y * y
+    return y * y + select(lies_inside(wall), wall[1] - 1.0, 0.0) / sqrt(G)
 
 
 @kernel
 def narrowest(y, wall):
     """G below which the innermost layer would reach the axis."""
-    inner = wall[1]
-    if 0.0 < inner < 1.0:
-        root = (1.0 - inner) / (y * y)
-        return root * root
-    return 0.0
+    root = select(lies_inside(wall), 1.0 - wall[1], 0.0) / (y * y)
+    return root * root
 
 
 @kernel
@@ -119,17 +132,44 @@ def layer(square, y, G_1, psi, rubber, k):
 @kernel
 def energy(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)`` of the whole wall; ``G_1`` is G - 1."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)
+    return (stored(y, G_1, psi, area, rubber, wall), *slopes(y, G_1, psi, area, rubber, wall))
+
+
+@kernel
+def stored(y, G_1, psi, area, rubber, wall):
+    """W alone."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)[0]
+    count = layers(area, wall)
+    return mooney_wall.stored(
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count)
+    )
+
+
+@kernel
+def slopes(y, G_1, psi, area, rubber, wall):
+    """The derivatives of :func:`energy`, without W."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)[1:]
+    count = layers(area, wall)
+    return mooney_wall.slopes(
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count)
+    )
+
+
+@kernel
+def of_any(y, G_1, psi, area, rubber, wall):
+    """:func:`energy`, layer by layer."""
     k, inner = wall[0], wall[1]
-    one, count, at = area, 1, 0
-    W = W_y = W_G = W_p = W_yy = W_yG = W_yp = W_GG = W_Gp = W_pp = 0.0
-    if not area > 0.0:  # locked: the wall does not count
-        count = 0
-    elif inner > 0.0:
-        count = points(inner, area)
+    square, one, count, at = 1.0 + 0.0 * area, area, 0, 0
+    W = W_y = W_G = W_p = W_yy = W_yG = W_yp = W_GG = W_Gp = W_pp = 0.0 * area
+    if some(area > 0.0):  # locked, the wall does not count
+        count = layers(area, wall)
         at = first_place(count)
     for j in range(count):
-        square = 1.0
-        if inner > 0.0:
+        if count > 1:
             square, one = inner + area * PLACES[at + j], area * WEIGHTS[at + j]
         w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
         W += one * w

@@ -18,7 +18,7 @@ from ...jit import entry_point, kernel
 from .. import lagrangian
 from ..find import RAISES
 from ..lagrangian import ROUNDING
-from ..problem import FORCE, TORQUE
+from ..problem import FORCE, SOURCE, TORQUE
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, OK
 from . import guide, layer
 from .seat import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads
@@ -197,7 +197,7 @@ def seek_lanes(
             found[0, lane] = targets[owners[row]]
             if lane < count and is_clamped(problem):
                 valid |= 1 << lane
-        cell, _, load = loads(columns, constants)
+        cell, _, load = loads(columns, constants, SOURCE, 1)
         half, target, one = get(columns, LENGTH), get(found, 0), spread(1.0)
         c, c_y, _, _ = lagrangian.conjugate(one, 0.0, cell, load, unit)
         first = c * half

@@ -2,7 +2,7 @@
 
 Three meshes suffice where bounds that are more generous by EARLY meet the accuracy. A lane whose bounds meet the accuracy
 keeps its numbers; the others go on to finer meshes. A lane that needs more than ``LANE_DOUBLINGS``, or fails, is left to
-the scalar kernels.
+the scalar kernels, and so is one of loose fibers whose active set changes along the tube: its errors know no order.
 """
 
 from ...jit import kernel
@@ -22,14 +22,28 @@ STILL = 1e-3  # radii: if the last node moves more, the layer is not resolved th
 
 
 @kernel
+def differ(kind, other, wall):
+    """Where two cells are not of one kind, of which the source's tubes have one."""
+    if len(wall) == 1:
+        return mask_of(0)
+    return abs(kind - other) > 0.5
+
+
+@kernel
 def integrate(x, y, n, cell, load, row):
-    """Integrals over the tube on one mesh, and the stretch in the middle."""
+    """Integrals over the tube on one mesh, and the stretch in the middle; where the kind of cell, in which the density is
+    smooth, changes along it.
+    """
+    broken, before = mask_of(0), 0.0
     length, volume, twist, energy = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     x_left, y_left = get(x, 0), get(y, 0)
     for j in range(n):
         x_right, y_right = get(x, j + 1), get(y, j + 1)
         h = x_right - x_left
-        s, v, t, w, _ = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
+        s, v, t, w, kind = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
+        if j > 0:
+            broken = broken | differ(kind, before, load[2])
+        before = kind
         length = length + h * s
         volume = volume + h * v
         twist = twist + h * t
@@ -40,6 +54,7 @@ def integrate(x, y, n, cell, load, row):
     put(row, 2, twist)
     put(row, 3, energy)
     put(row, 4, y_left)
+    return broken
 
 
 @kernel
@@ -136,7 +151,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
     todo = active
     converged, error = newton.solve(density, x, y, n, True, cell, load, todo, y, True, SMALL_STEP, tolerance, work)
     todo = todo & converged
-    integrate(x, y, n, cell, load, table[1])
+    todo = todo & ~integrate(x, y, n, cell, load, table[1])
     room = sizes[OUTPUTS:]
     long, share, missed, resolved = middle.node(x, y, n, u, cell, load, accuracy, room)
     put(table[1], MIDDLE, middle.stretch(y, n, n, u, long, share, room))
@@ -160,7 +175,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
         )
         converged = converged | again
     todo = todo & converged
-    integrate(half_x, half_y, n // 2, cell, load, table[0])
+    todo = todo & ~integrate(half_x, half_y, n // 2, cell, load, table[0])
     put(table[0], MIDDLE, middle.stretch(half_y, n // 2, n, u, long, share, room))
     met, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
     level, count = 1, n
@@ -184,7 +199,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
             )
             converged, error = converged | again, select(again, last, error)
         todo = todo & converged
-        integrate(here_x, here_y, count, cell, load, table[level])
+        todo = todo & ~integrate(here_x, here_y, count, cell, load, table[level])
         put(table[level], MIDDLE, middle.stretch(here_y, count, n, u, long, share, room))
         if kept is not None:
             if level == 2:
@@ -197,7 +212,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
         if some(ready):
-            alpha_here, beta_here = pushing(here_y, count, cell, load)
+            alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
             alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
             if kept is not None:
                 put(sizes, 0, max(error, coarser))

@@ -2,17 +2,34 @@
 
 import numpy as np
 
-from ...jit import kernel
+from ...jit import entry_point, kernel
 from .. import lagrangian
-from ..problem import AREA, FORCE, GAMMA, LENGTH, PROBLEM_SIZE, RATIO, SECOND, SHEAR, THIRD, TORQUE, D, H, rubber_of
+from ..problem import (
+    AREA,
+    FORCE,
+    GAMMA,
+    INNER,
+    LENGTH,
+    LOOSE,
+    RATIO,
+    SECOND,
+    SHEAR,
+    THIRD,
+    TORQUE,
+    D,
+    H,
+    rubber_of,
+    wall_of,
+)
 from ..profile import at_stations
 from ..status import COMPRESSED, INVALID, OK
+from ..wall import layers
 from .nested import OUTPUTS
 from .vector import WIDTH, get
 
-# H, D, area, gamma, c, shear, f, m, half length, c2, c3; pressure, pressure before, weight of the energy
-COLUMNS = PROBLEM_SIZE + 3
-PRESSURE, BEFORE, WEIGHT = range(PROBLEM_SIZE, COLUMNS)
+# H, D, area, gamma, c, shear, f, m, half length, c2, c3, inner, loose; pressure, pressure before, weight of the energy
+COLUMNS = LOOSE + 4
+PRESSURE, BEFORE, WEIGHT = range(LOOSE + 1, COLUMNS)
 LINE = 64  # bytes: arrays of lanes begin on a cache line
 
 
@@ -34,10 +51,27 @@ def rubber_in(columns, constants):
 
 
 @kernel
-def loads(columns, constants):
+def wall_in(columns, walls, count):
+    """The walls in the lanes, of the columns SOURCE or PHYSICAL; those have ``count`` layers, and all of them loose fibers,
+    or none.
+    """
+    if len(walls) == 1:
+        return (get(columns, SHEAR),)
+    return get(columns, SHEAR), get(columns, INNER), columns[LOOSE, 0], count
+
+
+@entry_point
+def count_layers(problems, walls, out):
+    """How many layers the wall of each of the physical tubes has."""
+    for k in range(len(problems)):
+        out[k] = layers(problems[k, AREA], wall_of(problems[k], walls))
+
+
+@kernel
+def loads(columns, constants, walls, count):
     """What the density takes: ``(cell, load before, load now)``."""
     cell = (get(columns, H), get(columns, D), get(columns, AREA))
-    gamma, wall = get(columns, GAMMA), (get(columns, SHEAR),)
+    gamma, wall = get(columns, GAMMA), wall_in(columns, walls, count)
     rubber = rubber_in(columns, constants)
     f, m, e = get(columns, FORCE), get(columns, TORQUE), get(columns, WEIGHT)
     now = (gamma, rubber, wall, get(columns, PRESSURE), f, m, e)
@@ -47,7 +81,7 @@ def loads(columns, constants):
 @kernel
 def enter(lane, problem, columns):
     """Put a design into a lane, without load."""
-    for i in range(PROBLEM_SIZE):
+    for i in range(len(problem)):
         columns[i, lane] = problem[i]
     columns[LENGTH, lane] = 0.5 * problem[LENGTH]
     columns[PRESSURE, lane], columns[BEFORE, lane], columns[WEIGHT, lane] = 1.0, 0.0, 1.0

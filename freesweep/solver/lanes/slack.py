@@ -1,15 +1,23 @@
-"""Fibers that would have to push, of :mod:`freesweep.solver.slack`, for a vector of designs."""
+"""Fibers that would have to push, or are slack, of :mod:`freesweep.solver.slack`, for a vector of designs."""
 
 from ...jit import kernel
 from .. import lagrangian
 from ..axial import axial_stretch
-from ..slack import TENSIONLESS
+from ..slack import NOTHING, TENSIONLESS, TENSIONLESS_END
+from ..wall import is_loose
 from .vector import get, mask_of
 
 
 @kernel
-def pushing(y, n, cell, load):
-    """Masks: where the alpha, and where the beta family would have to push somewhere along half a tube."""
+def pushing(x, y, n, cell, load):
+    """Masks: where the alpha, and where the beta family would have to push, or is slack, somewhere along half a tube."""
+    return _pushing(x, y, n, cell, load, load[2])
+
+
+@kernel
+def _pushing(x, y, n, cell, load, wall):
+    if len(wall) > 1:
+        return of_physical(x, y, n, cell, load)
     allowed = -TENSIONLESS * (load[3] + abs(load[4]))
     alpha, beta = mask_of(0), mask_of(0)
     _, _, constant = lagrangian.uniform_tube(get(y, n), cell, load)
@@ -18,4 +26,23 @@ def pushing(y, n, cell, load):
         s = axial_stretch(here, constant, cell, load)
         tension_alpha, tension_beta = lagrangian.fiber_multipliers(here, s, cell, load)
         alpha, beta = alpha | (tension_alpha < allowed), beta | (tension_beta < allowed)
+    return alpha, beta
+
+
+@kernel
+def of_physical(x, y, n, cell, load):
+    """:func:`pushing` of physical tubes: in each cell, and at the clamped end."""
+    least, at_end = -TENSIONLESS * (load[3] + abs(load[4])), -TENSIONLESS_END * (load[3] + abs(load[4]))
+    if is_loose(load[2]):
+        least = at_end = NOTHING + 0.0 * least
+    alpha, beta = mask_of(0), mask_of(0)
+    for j in range(n):
+        h, rise = get(x, j + 1) - get(x, j), get(y, j + 1) - get(y, j)
+        middle, v = 0.5 * (get(y, j) + get(y, j + 1)), rise / h
+        _, tension_alpha, tension_beta = lagrangian.at_slope(middle, v, cell, load)
+        alpha, beta = alpha | (tension_alpha < least), beta | (tension_beta < least)
+        if j == 0:
+            _, L_y, L_v, _, _, _ = lagrangian.density(middle, v, cell, load)
+            _, _, tension_alpha, tension_beta = lagrangian.at_flux(get(y, 0), 0.5 * h * L_y - L_v, cell, load)
+            alpha, beta = alpha | (tension_alpha < at_end), beta | (tension_beta < at_end)
     return alpha, beta

@@ -3,7 +3,7 @@
 ``Lane`` is LLVM's ``<WIDTH x double>``. Its ``+ - * /``, unary minus, comparisons, ``sqrt``, ``abs``, ``min`` and ``max``
 are LLVM's own vector operations, lane by lane, so no design can see its neighbours; a float beside a lane stands for all
 of them. Comparisons give a ``Mask``, joined by ``& | ~``; where a
-condition is asked for, a mask is true if any lane is. Only compiled code knows these types.
+condition is asked for, a mask is true if any lane is. :mod:`..either` chooses. Only compiled code knows these types.
 
 Arrays of lanes are plain arrays of shape (n, WIDTH): :func:`get`, :func:`put`.
 """
@@ -17,6 +17,8 @@ from numba.core.codegen import get_host_cpu_features
 from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
+
+from ..either import isnt, select, some
 
 
 def _width() -> int:
@@ -110,7 +112,8 @@ def _extreme(comparison):
 
 
 for _function, _name in (
-    (operator.add, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"), (operator.truediv, "fdiv"),
+    (operator.add, "fadd"), (operator.iadd, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"),
+    (operator.truediv, "fdiv"),
 ):  # fmt: skip
     _operation(_function, 2, lane, lambda builder, a, b, name=_name: getattr(builder, name)(a, b, flags=FLAGS))
 for _function, _sign in (
@@ -137,6 +140,7 @@ def _mask_operation(function, count, build):
 _mask_operation(operator.and_, 2, lambda builder, a, b: builder.and_(a, b))
 _mask_operation(operator.or_, 2, lambda builder, a, b: builder.or_(a, b))
 _mask_operation(operator.invert, 1, lambda builder, a: builder.not_(a))
+_mask_operation(isnt, 1, lambda builder, a: builder.not_(a))
 
 
 @infer_global(bool)
@@ -151,6 +155,23 @@ def _any_lane(builder, where):
 
 
 lower_builtin(bool, _Mask)(lambda context, builder, sig, args: _any_lane(builder, args[0]))
+
+
+@infer_global(some)
+class _Some(AbstractTemplate):
+    def generic(self, args, kws):
+        return signature(types.boolean, *args) if isinstance(args[0], _Mask) else None
+
+
+@infer_global(select)
+class _Select(AbstractTemplate):
+    def generic(self, args, kws):
+        numbers = all(isinstance(kind, _Lane | types.Float | types.Integer) for kind in args[1:])
+        return signature(lane, mask, lane, lane) if isinstance(args[0], _Mask) and numbers else None
+
+
+lower_builtin(some, _Mask)(lambda context, builder, sig, args: _any_lane(builder, args[0]))
+lower_builtin(select, _Mask, _Lane, _Lane)(lambda context, builder, sig, args: builder.select(*args))
 
 
 def _row(context, builder, kind, array, index):
@@ -185,26 +206,9 @@ def put(typingctx, array, index, value):
 
 
 @intrinsic
-def select(typingctx, where, yes, no):
-    """``yes`` in the lanes where the mask is true, ``no`` elsewhere."""
-
-    def build(context, builder, sig, args):
-        yes, no = (context.cast(builder, value, kind, lane) for value, kind in zip(args[1:], sig.args[1:], strict=True))
-        return builder.select(args[0], yes, no)
-
-    return lane(where, yes, no), build
-
-
-@intrinsic
 def spread(typingctx, value):
     """A number in all lanes."""
     return lane(value), lambda context, builder, sig, args: context.cast(builder, args[0], sig.args[0], lane)
-
-
-@intrinsic
-def some(typingctx, where):
-    """Whether the mask is true anywhere."""
-    return types.boolean(where), lambda context, builder, sig, args: _any_lane(builder, args[0])
 
 
 @intrinsic

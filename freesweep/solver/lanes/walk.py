@@ -9,7 +9,7 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from .. import lagrangian
-from ..problem import AREA, GAMMA, D, H, rubber_of
+from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
 from . import guide, layer, nested
 from .seat import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
 from .seat import LENGTH as HALF
@@ -32,12 +32,13 @@ def locked(problem):
     return u, layer.end_cosine(u, cell, (gamma, rubber_of(problem), (0.0,), 1.0, 0.0, 0.0, 0.0))
 
 
-@entry_point
-def carry_lanes(problems, first, pressures, order, constants, values, bounds, status, stretches, cosines):
+@kernel
+def carry(problems, first, pressures, order, constants, walls, layers, values, bounds, status, stretches, cosines):
     """Uniform ``stretches`` (pressures,) of the problems, taken in the given ``order``, WIDTH at a time: NaN from where no
     quick way leads on; and ``cosines`` (pressures,) of the meridian's angle at an end, which tell states that are alike.
     What needs no solving at all is written to ``values``, ``bounds`` and ``status``. ``constants`` are the columns of the
-    rubbers' constants, branch.MOONEY_RIVLIN or branch.YEOH: each has machine code of its own.
+    rubbers' constants, MOONEY_RIVLIN or YEOH, and ``walls`` those of the walls, SOURCE or PHYSICAL, whose ``layers`` and
+    loose fibers are the same for all: each has machine code of its own.
     """
     columns, found = aligned(1, COLUMNS)[0], aligned(1, 2)[0]
     members, rows = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
@@ -69,7 +70,7 @@ def carry_lanes(problems, first, pressures, order, constants, values, bounds, st
                         active |= 1 << lane
             if active == 0:
                 continue
-            cell, before, now = loads(columns, constants)
+            cell, before, now = loads(columns, constants, walls, layers)
             ahead, arrived = guide.follow(
                 u, cell, first_leg(before, mask_of(active & ~started)), now, get(columns, HALF), mask_of(active)
             )
@@ -84,9 +85,9 @@ def carry_lanes(problems, first, pressures, order, constants, values, bounds, st
             going &= ~(active & ~bits(arrived))
 
 
-@entry_point
-def solve_lanes(
-    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack,
+@kernel
+def solve(
+    problems, owners, pressures, stretches, order, constants, walls, layers, base, accuracy, values, bounds, status, slack,
     stations, profiles,
 ):  # fmt: skip
     """Solve the rows in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]`` and has the uniform
@@ -117,7 +118,7 @@ def solve_lanes(
                 lock(lane, columns)
             else:
                 columns[PRESSURE, lane] = pressures[row]
-        cell, _, load = loads(columns, constants)
+        cell, _, load = loads(columns, constants, walls, layers)
         u, half = get(start, 0), get(columns, HALF)
         layer.begin(u, cell, load, half, base, work, meshes, x, y)
         met, alpha, beta = nested.solve(
@@ -129,3 +130,38 @@ def solve_lanes(
         if stations is not None:
             done = draw_profiles(done, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles)
         record(done, bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
+
+
+@entry_point
+def carry_lanes(problems, first, pressures, order, constants, values, bounds, status, stretches, cosines):
+    """:func:`carry` the source's tubes."""
+    carry(problems, first, pressures, order, constants, SOURCE, 1, values, bounds, status, stretches, cosines)
+
+
+@entry_point
+def carry_physical(problems, first, pressures, order, constants, layers, values, bounds, status, stretches, cosines):
+    """:func:`carry` physical tubes."""
+    carry(problems, first, pressures, order, constants, PHYSICAL, layers, values, bounds, status, stretches, cosines)
+
+
+@entry_point
+def solve_lanes(
+    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack,
+    stations, profiles,
+):  # fmt: skip
+    """:func:`solve` the source's tubes."""
+    solve(
+        problems, owners, pressures, stretches, order, constants, SOURCE, 1, base, accuracy, values, bounds, status, slack,
+        stations, profiles,
+    )  # fmt: skip
+
+
+@entry_point
+def solve_physical(
+    problems, owners, pressures, stretches, order, constants, layers, base, accuracy, values, bounds, status, slack,
+):  # fmt: skip
+    """:func:`solve` physical tubes."""
+    solve(
+        problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, base, accuracy, values, bounds, status,
+        slack, None, None,
+    )  # fmt: skip
