@@ -9,7 +9,7 @@ from ...jit import kernel
 from .. import finest, lagrangian
 from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..newton import SMALL_STEP
-from . import mesh, middle, newton
+from . import kinks, mesh, middle, newton
 from .slack import pushing
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
@@ -205,7 +205,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
             if level == 2:
                 continue  # profiles want more of the nodes than the integrals do
         largest = extrapolate(table, level, cell, load, length, max(error, coarser), missed, sizes, found[0], found[1])
-        ready = todo & (largest <= accuracy)
+        ready = todo & (largest <= accuracy) & ~kinks.hidden(here_x, here_y, cell, load)
         if level == 2:
             ready = ready & resolved & (abs(get(here_y, count) - get(half_y, count // 2)) < STILL)
         for k in range(OUTPUTS):
