@@ -250,6 +250,13 @@ ARGUMENTS = {
     fs.Yeoh: {"c1": 1e5, "c2": 0.0, "c3": 0.0},
     fs.NeoHookean: {"c10": 1e5},
     fs.material: {"name": "dragon-skin-30"},
+    fs.Goal: {"output": "rotation", "value": 90, "pressure": 1e5, "tolerance": 1.0},
+    fs.Limit: {"output": "force", "between": (1, 2), "pressure": 1e5, "deformed_length": 0.19, "torque": 0.0},
+    fs.Profile: {"knots": 3, "between": (0, 85)},
+    fs.design: {"template": TUBE, "free": {"length": (0.1, 0.3)}, "goals": [fs.Goal("length", 0.2)], "count": 1, "seed": 0},
+    fs.tolerance: {
+        "tube": TUBE, "pressure": 1e5, "force": 0.0, "torque": 0.0, "accuracy": 1e-6, "alpha": 1.0, "wall": 5e-5,
+    },
     fs.lock: {"tube": TUBE, "x": 0.0, "accuracy": 1e-6},
     fs.inflate: {"tube": TUBE, "pressure": 1e4, "force": 0.0, "torque": 0.0, "x": 0.0, "accuracy": 1e-6},
     fs.blocked_force: {"tube": TUBE, "pressure": 1e4, "deformed_length": None, "torque": 0.0, "rotation": None, "x": 0.0},

@@ -19,7 +19,7 @@ class Drawn(NamedTuple):
     designs: np.ndarray
     pressures: np.ndarray
 
-    def problems(self, model):
+    def problems(self, model=MODELS["source"]):
         """As the kernels take them (n, 11), of physical tubes (n, 13); the fibers lie at the radius 1."""
         alpha, beta, length, wall, gamma, ratio, force, torque, full = self.designs.T
         ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))

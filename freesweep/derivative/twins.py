@@ -30,7 +30,23 @@ def _twin(function, instead, made):
             if name in instead:
                 names[name] = instead[name]
             elif name in function.__globals__:
-                known = function.__globals__[name]
-                inner = _function(known)
-                names[name] = known if inner is None else _twin(inner, instead, made)
+                names[name] = _plain(function.__globals__[name], instead, made)
     return made[function]
+
+
+def _plain(thing, instead, made):
+    """What stands for a name of a kernel's."""
+    if isinstance(thing, types.ModuleType) and thing.__name__.startswith("freesweep.solver"):
+        return _Twins(thing, instead, made)
+    inner = _function(thing)
+    return thing if inner is None else _twin(inner, instead, made)
+
+
+class _Twins:
+    """A module of kernels, each made dual when it is asked for."""
+
+    def __init__(self, module, instead, made):
+        self._module, self._instead, self._made = module, instead, made
+
+    def __getattr__(self, name):
+        return _plain(getattr(self._module, name), self._instead, self._made)

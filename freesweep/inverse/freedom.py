@@ -146,11 +146,12 @@ def read(template, free, faults):
     before = len(faults)
     names, low, high, ties, lists, knots = [], [], [], {}, [], {}
     for key, given in free.items():
-        parts = [part.strip() for part in str(key).split(",")]
+        parts = [part.strip() for part in key.split(",")] if isinstance(key, str) else [key]
         unknown = [part for part in parts if part not in (*DESIGN, *LOADS, "material")]
         if unknown:
             can = ", ".join((*DESIGN, "material", *LOADS))
-            faults.append(f"free: found {unknown[0]!r}; what may be free is {can}")
+            found = repr(unknown[0])[:60] if isinstance(key, str) else described(key)
+            faults.append(f"free: found {found}; what may be free is {can}")
         elif isinstance(given, Profile):
             _read_profile(key, given, (names, low, high, knots), faults)
         elif isinstance(given, str):

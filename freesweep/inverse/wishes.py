@@ -12,8 +12,7 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..faults import ActuatorError
-from ..given import numbers, read_number
-from ..units import shown
+from ..given import described, numbers, read_number
 
 UNITS = {
     "deformed_length": "m", "rotation": "degree", "volume": "m3", "mid_radius": "m", "strain_energy": "J",
@@ -89,7 +88,7 @@ class _Asked:
         """The single wishes; faults are noted."""
         units = UNITS | {name: PARAMETERS[name].units for name in (*DESIGN, "pressure")}
         if not isinstance(self.output, str) or self.output not in units:
-            faults.append(f"{where}: output: found {shown(str(self.output))}; choose one of {', '.join(units)}")
+            faults.append(f"{where}: output: found {described(self.output)}; choose one of {', '.join(units)}")
             return []
         before = len(faults)
         unit = units[self.output]
@@ -188,7 +187,7 @@ def read(name, given, kind, faults) -> list:
     """The single wishes of a list of goals or limits."""
     given = [given] if isinstance(given, _Asked) else given
     if not isinstance(given, (list, tuple)) or not all(isinstance(one, kind) for one in given):
-        faults.append(f"{name}: found {shown(str(given))}; give a list of freesweep.{kind.__name__}")
+        faults.append(f"{name}: found {described(given)}; give a list of freesweep.{kind.__name__}")
         return []
     return [wish for k, one in enumerate(given) for wish in one.wishes(faults, f"{name}[{k}]")]
 
