@@ -111,7 +111,6 @@ def blocked_torque(
 def _hold(
     tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False, derivatives=None, tied=False
 ):  # fmt: skip
-    from .derivative.attach import Asked, attach, shapes_of
     from .interpret import at_once
     from .solver.find import HELD_LENGTH, HELD_ROTATION
     from .solver.hold import hold_many
@@ -202,6 +201,8 @@ def _hold(
         )
     if not names:
         return result
+    from .derivative.attach import Asked, attach, shapes_of
+
     asked = Asked(
         tube,
         names,

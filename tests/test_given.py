@@ -253,7 +253,10 @@ ARGUMENTS = {
     fs.Goal: {"output": "rotation", "value": 90, "pressure": 1e5, "tolerance": 1.0},
     fs.Limit: {"output": "force", "between": (1, 2), "pressure": 1e5, "deformed_length": 0.19, "torque": 0.0},
     fs.Profile: {"knots": 3, "between": (0, 85)},
-    fs.design: {"template": TUBE, "free": {"length": (0.1, 0.3)}, "goals": [fs.Goal("length", 0.2)], "count": 1, "seed": 0},
+    fs.design: {
+        "template": TUBE, "free": {"length": (0.1, 0.3)}, "goals": [fs.Goal("length", 0.2)], "limits": (),
+        "minimize": None, "count": 1, "seed": 0,
+    },
     fs.tolerance: {
         "tube": TUBE, "pressure": 1e5, "force": 0.0, "torque": 0.0, "accuracy": 1e-6, "alpha": 1.0, "wall": 5e-5,
     },

@@ -20,13 +20,13 @@ def _run(options):
 
     from ..atlas.files import write_whole
     from ..inverse import wish_file
-    from ..inverse.designing import design
+    from ..inverse.designing import find
     from ..inverse.report import csv, lines, table
 
     if options.out and Path(options.out).suffix not in (".csv", ".nc"):
         raise ValueError(f"--out: found {options.out!r}; candidates are kept as .csv or .nc")
     asked = wish_file.read(options.wishes)
-    found = design(**asked)
+    found, tubes = find(**asked)
     print(table(found))
     print(found.attrs["summary"])
     print(lines(found))
@@ -39,5 +39,5 @@ def _run(options):
         from ..plot.candidates import draw
         from ..plot.style import save
 
-        save(draw(found, *shown(found, asked["goals"])), options.picture)
+        save(draw(found, *shown(found, tubes, asked["goals"])), options.picture)
         print(options.picture)

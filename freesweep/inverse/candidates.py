@@ -1,6 +1,6 @@
 """What was found, solved at full accuracy, as a Dataset; and in one sentence."""
 
-import warnings
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,11 +16,19 @@ NOTHING = 1e-6  # tolerances that a goal changes over all that is free: it canno
 FIELDS = (*DESIGN, "pressure", "force", "torque")
 
 
-def dataset(misfit: Misfit, u, choice, slopes, objectives=0):
-    """A Dataset along ``candidate``, in the order given."""
+class Found(NamedTuple):
+    """Candidates: a Dataset along ``candidate``, and the actuator of each."""
+
+    data: object
+    tubes: list
+
+
+def gather(misfit: Misfit, u, choice, slopes, objectives=0) -> Found:
+    """The candidates at points u (n, p), in the order given."""
     import xarray as xr
 
     space, wishes = misfit.space, misfit.wishes
+    tubes = [space.actuator(one, k) for one, k in zip(u, choice)]
     found = predict(space, wishes, u, choice, ACCURACY)
     residuals = misfit.residuals(found.values)
     columns = space.columns(u, choice)
@@ -49,7 +57,7 @@ def dataset(misfit: Misfit, u, choice, slopes, objectives=0):
         "status": (("candidate",), _worst(found.status[:, :last])),
         "met": (("candidate",), np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)),
         "misfit": (("candidate",), np.sqrt(np.sum(residuals[:, :last] ** 2, axis=1))),
-        "python": (("candidate",), _lines(space, u, choice)),
+        "python": (("candidate",), [f"fs.{tube!r}".replace("material=", "material=fs.") for tube in tubes]),
     }
     if last > asked:
         data |= {
@@ -78,33 +86,18 @@ def dataset(misfit: Misfit, u, choice, slopes, objectives=0):
         "flag_values": [status.value for status in STATUSES], "flag_meanings": " ".join(s.meaning for s in STATUSES)
     }  # fmt: skip
     result.attrs = {"title": f"designs from {space.template!r}", "summary": sentence(misfit, result, u, slopes)}
-    return result
+    return Found(result, tubes)
 
 
 def _worst(status):
-    """The first status of a candidate's states that says there is no value, else the largest."""
-    bad = ~np.isin(status, VALUED)
-    return np.where(np.any(bad, axis=1), np.take_along_axis(status, np.argmax(bad, axis=1)[:, None], 1)[:, 0], 0)
+    """The largest status of a candidate's states that says there is no value, else 0."""
+    return np.max(np.where(np.isin(status, VALUED), 0, status), axis=1, initial=0)
 
 
 def _slopes(misfit, slopes):
     """From tolerances along the unit box to units of output per unit of parameter."""
     space = misfit.space
     return slopes * misfit.tolerances[:, None] / np.where(space.high > space.low, space.high - space.low, 1.0)
-
-
-def actuators(result) -> list:
-    """The actuators of candidates, made from their Python lines."""
-    import freesweep
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # said where they were found
-        return [eval(line, {"fs": freesweep}) for line in result["python"].values]  # lines of our own
-
-
-def _lines(space, u, choice):
-    """The Python line that makes each candidate."""
-    return [f"fs.{space.actuator(one, k)!r}".replace("material=", "material=fs.") for one, k in zip(u, choice)]
 
 
 def sentence(misfit: Misfit, result, u, slopes) -> str:

@@ -8,7 +8,7 @@ from ..faults import ActuatorError
 from ..given import described
 from ..options import read_count
 from . import freedom, wishes
-from .candidates import dataset
+from .candidates import Found, gather
 from .least import front, least, multipliers
 from .look import look, spread
 from .misfit import make
@@ -42,9 +42,15 @@ def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, 
     goal's output by what is free), ``status``, ``met``, ``python`` (the line that makes it); ``attrs["summary"]`` says in a
     sentence whether it can be done and, if not, what stands against it. Raises :class:`ActuatorError` for invalid input.
     """
+    return find(template, free, goals, limits, minimize, count, atlas, seed).data
+
+
+def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, seed=0) -> Found:
+    """The same, with the actuators of the candidates."""
     faults = []
     space = freedom.read(template, free, faults)
-    asked, kept = wishes.read("goals", goals, Goal, faults), wishes.read("limits", list(limits or ()), Limit, faults)
+    asked = wishes.read("goals", goals, Goal, faults)
+    kept = wishes.read("limits", () if limits is None else limits, Limit, faults)
     if isinstance(goals, (list, tuple)) and not goals and minimize is None:
         faults.append("goals: none; give what the tube shall do, or something to minimize")
     objectives = _objectives(minimize, faults)
@@ -61,13 +67,16 @@ def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, 
     misfit = make(space, asked, kept)
     u, choice = look(misfit, STARTS * count, seed, atlas)
     if len(u) == 0:
-        raise ActuatorError([f"goals: no design that is allowed has a state in which {asked[0].title} could be asked"])
+        titles = ", ".join(wish.title for wish in misfit.wishes)
+        raise ActuatorError(
+            [f"goals, limits: no design that is allowed has all the states in which they count: {titles}"]
+        )
     u, _, residuals, slopes = polish(misfit, u, choice)
     if objectives:
         return _with_least(misfit, objectives, u, choice, residuals, count)
     cost = np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf)
     best = spread(space, u, choice, _order(cost), count, DIFFERENT)
-    return dataset(misfit, u[best], choice[best], slopes[best])
+    return gather(misfit, u[best], choice[best], slopes[best])
 
 
 def _order(cost):
@@ -106,7 +115,7 @@ def _with_least(misfit, objectives, u, choice, residuals, count):
     if not np.any(good):
         best = _order(np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf))[:count]
         _, _, _, slopes = polish(misfit, u[best], choice[best])
-        return dataset(misfit, u[best], choice[best], slopes)
+        return gather(misfit, u[best], choice[best], slopes)
     u, choice = u[good][:count], choice[good][:count]
     whole = misfit._replace(
         wishes=[*misfit.wishes, *objectives], tolerances=np.append(misfit.tolerances, [1.0] * number)
@@ -122,7 +131,8 @@ def _with_least(misfit, objectives, u, choice, residuals, count):
     missed = np.any(np.abs(residuals[:, :-number]) > MISSED, axis=1)
     order = np.lexsort((found.values[:, -number], missed))
     best = spread(misfit.space, u, choice, order, count, DIFFERENT)
-    result = dataset(whole, u[best], choice[best], slopes[best], number)
+    made = gather(whole, u[best], choice[best], slopes[best], number)
+    result = made.data
     if number == 1:
         prices = [multipliers(whole, u[i], slopes[i], found.values[i], number) for i in best]
         span = misfit.space.high - misfit.space.low
@@ -134,4 +144,4 @@ def _with_least(misfit, objectives, u, choice, residuals, count):
         for name in ("goal_price", "limit_price", "bound_price"):
             if name in result:
                 result[name].attrs["long_name"] = "change of what is minimized by one unit of what holds it"
-    return result
+    return made

@@ -112,7 +112,7 @@ def _best(misfit, scale, starts, level):
     return min(found, key=lambda one: one[:2])[2:]
 
 
-def multipliers(misfit: Misfit, u, slopes, residuals_at, objectives):
+def multipliers(misfit: Misfit, u, slopes, values, objectives):
     """What each wish (w,) and each bound (p,) costs where one objective is least: its change by one unit of theirs.
 
     Stationarity: the objective's gradient is a sum of those of what is active, none of them pulling the wrong way.
@@ -123,7 +123,7 @@ def multipliers(misfit: Misfit, u, slopes, residuals_at, objectives):
     gradient = slopes[last] * misfit.tolerances[last]
     columns, names = [], []
     for j in range(last):
-        value, unit, wish = residuals_at[j], misfit.tolerances[j], wishes[j]
+        value, unit, wish = values[j], misfit.tolerances[j], wishes[j]
         near = max(ACTIVE * max(abs(value), unit), 2.0 * unit)
         own = slopes[j] * unit
         if np.isfinite(wish.low) and value < wish.low + near:

@@ -33,8 +33,8 @@ def look(misfit: Misfit, count, seed, atlas=None):
     else:
         _, residuals = misfit.at(draws, choice, LOOKING)
     goals = np.abs(residuals)
-    scale = np.nanmedian(np.where(np.isfinite(goals), goals, np.nan), axis=0)
-    scale = np.where(np.nan_to_num(scale) > 0.0, scale, 1.0)
+    middles = np.array([np.median(some[np.isfinite(some)]) if np.any(np.isfinite(some)) else 0.0 for some in goals.T])
+    scale = np.where(middles > 0.0, middles, 1.0)
     cost = np.sum(np.minimum(goals / scale, BOUNDED) ** 2, axis=1)
     known = np.flatnonzero(np.isfinite(cost))
     order = known[np.argsort(cost[known], kind="stable")]

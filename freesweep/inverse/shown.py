@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..statics import inflate
-from .candidates import actuators
 from .predict import state_of
 from .singles import solve_single
 from .wishes import UNITS
@@ -38,9 +37,9 @@ class Shape(NamedTuple):
     rest: tuple
 
 
-def shown(found, goals):
-    """``(curves, shapes)`` of the first candidates in ``found``, for :func:`freesweep.plot.candidates.draw`."""
-    tubes = actuators(found.isel(candidate=slice(CANDIDATES)))
+def shown(found, tubes, goals):
+    """``(curves, shapes)`` of the first of the ``tubes`` in ``found``, for :func:`freesweep.plot.candidates.draw`."""
+    tubes = tubes[:CANDIDATES]
     loads = [
         {name: float(found[name].values[k]) if name in found else 0.0 for name in LOADS} for k in range(len(tubes))
     ]

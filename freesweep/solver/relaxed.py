@@ -23,9 +23,7 @@ from .wall import narrowest, slopes
 
 ITERATIONS = 60  # five do nearly always
 CLOSE = 1e-8  # of the unit of what is sought: the next step of Newton's method is its square
-SHORT = (
-    0.1  # share of the way to the edge of the domain that a step in G leaves, which is no longer in the other direction
-)
+SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves; none is longer in the other direction
 LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
