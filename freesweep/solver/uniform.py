@@ -5,14 +5,13 @@ the tube with clamped ends, and its stretch lies between 1 and the uniform one. 
 """
 
 from ..jit import kernel
-from .wall import is_loose
 
 FIRST_STEP = 0.25  # of the way from one load to the other
 SMALLEST_STEP = 1e-7  # below it the path is taken to end in a turning point
 LARGEST_CHANGE = 0.15  # relative change of the stretch in one step; a jump to another branch is larger
-ITERATIONS = 12
+ITERATIONS = 30  # five do nearly always
 SCAN = 0.015  # relative change of the stretch between two looks at the slope
-BENDS, PROBE = 3, 1e-3  # of Newton's method on a way that is not linear; share of the way to see its slope
+SECANTS, CLOSE = 12, 1e-3  # for the load of a stretch; share of L_y at the bounds that is as good as nothing
 FAR = 8.0  # end layers per half tube, up to which clamped ends may turn back a tube that is drawn in
 
 
@@ -45,35 +44,39 @@ def may_let_go(u, L_yy, L_vv, half, drawn):
 
 
 @kernel
-def slope_at(density, u, ahead, cell, start, end):
-    """Slope dt/du, ``ahead`` (1 or -1) times, of the share t of the way at which the stretch ``u`` is an equilibrium, and
-    L_yy and L_vv there: explicit where L_y is linear along the way, as it is in pressure, force and torque.
+def curvature_at(density, u, cell, start, end, low, high):
+    """``(L_yy, L_vv)`` at the load, between the shares ``low`` and ``high`` of the way, at which the stretch ``u`` is an
+    equilibrium; L_yy is positive where there is none. By the secant between bounds: at once where L_y is linear along the
+    way, as it is in pressure, force and torque, but not in the fibers' extension, nor where fibers are loose.
     """
-    before = density(u, 0.0, cell, start)[1]
-    drive = density(u, 0.0, cell, end)[1] - before
-    t = -before / drive
-    if start[0] != end[0] or is_loose(end[2]):  # the fibers' extension is no linear load, and loose ones bear none so
-        for _ in range(BENDS):
-            here = density(u, 0.0, cell, between(start, end, t))[1]
-            drive = (density(u, 0.0, cell, between(start, end, t + PROBE))[1] - here) / PROBE
-            t -= here / drive
-    _, _, _, L_yy, _, L_vv = density(u, 0.0, cell, between(start, end, t))
-    return -L_yy / drive * ahead, L_yy, L_vv
+    first, last = density(u, 0.0, cell, between(start, end, low))[1], density(u, 0.0, cell, between(start, end, high))[1]
+    close, side = CLOSE * max(abs(first), abs(last)), 0
+    for _ in range(SECANTS):
+        t = min(max(low - first * (high - low) / (last - first), low), high)
+        _, here, _, L_yy, _, L_vv = density(u, 0.0, cell, between(start, end, t))
+        if abs(here) <= close:
+            return L_yy, L_vv
+        if here * last > 0.0:
+            high, last, first, side = t, here, (0.5 * first if side > 0 else first), 1
+        else:
+            low, first, last, side = t, here, (0.5 * last if side < 0 else last), -1
+    return 1.0, -1.0
 
 
 @kernel
-def dips(density, u, trial, cell, start, end, half, drawn):
-    """Whether the load falls somewhere on the way from ``u`` to ``trial``: a small snap would be passed over. Where half a
-    tube of length ``half`` is drawn in, below ``drawn``, its clamped end, which is not, may let go before: there the end has
-    to be far.
+def dips(density, u, trial, cell, start, end, low, high, half, drawn):
+    """Whether the load falls somewhere on the way from ``u``, at the share ``low``, to ``trial`` at ``high``: a small snap
+    would be passed over. Where half a tube of length ``half`` is drawn in, below ``drawn``, its clamped end, which is not,
+    may let go before: there the end has to be far.
 
-    A dip of the slope below zero between samples shows in the parabola through three of them.
+    The load falls where -L_yy is negative; a dip of it between samples shows in the parabola through three of them.
     """
     count = 2 + int(abs(trial - u) / (SCAN * min(u, trial)))
-    ahead, first, second = 1.0 if trial > u else -1.0, 0.0, 0.0
+    first, second = 0.0, 0.0
     for i in range(count + 1):
         here = u + (trial - u) * i / count
-        slope, L_yy, L_vv = slope_at(density, here, ahead, cell, start, end)
+        L_yy, L_vv = curvature_at(density, here, cell, start, end, low, high)
+        slope = -L_yy
         if not slope > 0.0 or may_let_go(here, L_yy, L_vv, half, drawn):
             return True
         if i >= 2 and second < first and second < slope:
@@ -85,9 +88,9 @@ def dips(density, u, trial, cell, start, end, half, drawn):
 
 
 @kernel
-def rising(density, u, trial, cell, start, end, half, drawn):
-    """Whether the load rises all the way from ``u`` to ``trial``, as far as that can be told."""
-    return abs(trial - u) < 1e-9 * u or not dips(density, u, trial, cell, start, end, half, drawn)
+def rising(density, u, trial, cell, start, end, low, high, half, drawn):
+    """Whether the load rises all the way from ``u`` to ``trial``, as far as that can be told: see :func:`dips`."""
+    return abs(trial - u) < 1e-9 * u or not dips(density, u, trial, cell, start, end, low, high, half, drawn)
 
 
 @kernel
@@ -98,22 +101,25 @@ def follow(density, u, cell, start, end, half, drawn):
     while t < 1.0:
         ahead = min(1.0, t + step)
         load = between(start, end, ahead)
-        trial, before, arrived = u, 1e300, False
+        trial, before, arrived, least, most = u, 1e300, False, 0.0, 1e300
         for _ in range(ITERATIONS):
             room, L_y, _, L_yy, _, L_vv = density(trial, 0.0, cell, load)
             if not (room > 0.0 and L_yy < 0.0):
                 break
-            change = -L_y / L_yy
-            trial += change
+            least, most = (trial, most) if L_y > 0.0 else (least, trial)  # L is concave
+            new = trial - L_y / L_yy
+            if not least <= new <= most:  # where L_yy jumps: fibers go slack
+                new = 0.5 * (least + most)
+            change, trial = abs(new - trial), new
             if not abs(trial - u) < LARGEST_CHANGE * u:
                 break
-            if abs(change) < 1e-13 * u or (abs(change) < 1e-10 * u and abs(change) >= 0.5 * before):
+            if change < 1e-13 * u or (change < 1e-10 * u and change >= 0.5 * before):
                 arrived = True
                 break
-            before = abs(change)
+            before = change
         if by_load and arrived and ahead - t < FIRST_STEP and may_let_go(trial, L_yy, L_vv, half, drawn):
             break  # a smaller step would only creep on to here
-        if arrived and rising(density, u, trial, cell, start, end, half, drawn):
+        if arrived and rising(density, u, trial, cell, start, end, t, ahead, half, drawn):
             t, u, step = ahead, trial, 2.0 * step
         else:
             step *= 0.5

@@ -1,13 +1,13 @@
 """The uniform tube of :mod:`freesweep.solver.uniform` as a guide, for a vector of designs.
 
 L_y and L_yy are linear in pressure, force and torque: their values at the two ends of a path give them all along it. Where
-the fibers' extension changes, Newton's method finds the place on it.
+the fibers' extension changes, or fibers are loose, the secant finds the place on it.
 """
 
 from ...jit import kernel
 from .. import lagrangian
 from ..guide import FAR_FROM, STRAY
-from ..uniform import BENDS, FAR, ITERATIONS, LARGEST_CHANGE, PROBE, SCAN, between
+from ..uniform import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
 from ..wall import is_loose
 from .vector import HUGE, get, mask_of, select, some, spread
 
@@ -19,43 +19,56 @@ SMALLEST_LOOSE = 0.04  # of tubes with loose fibers, whose density is dear: smal
 
 
 @kernel
-def scan(u, change, samples, cell, start, end, half, asked):
-    """Where the load rises at all so many ``samples`` of the way, and between them; its smallest and largest slope."""
+def seek(here, cell, start, end, low, high, first, last, todo):
+    """``(L_yy, L_vv)`` where the stretches ``here`` are equilibria on a way along which L_y, ``first`` at its share ``low``
+    and ``last`` at ``high``, is not linear: see :func:`uniform.curvature_at`.
+    """
+    close, side = CLOSE * max(abs(first), abs(last)), spread(0.0)
+    L_yy, L_vv = spread(1.0), spread(-1.0)
+    for _ in range(SECANTS):
+        t = min(max(low - first * (high - low) / (last - first), low), high)
+        _, L_y, _, now_yy, _, now_vv = lagrangian.density(here, 0.0, cell, between(start, end, t))
+        there = todo & (abs(L_y) <= close)
+        L_yy, L_vv = select(there, now_yy, L_yy), select(there, now_vv, L_vv)
+        todo = todo & ~there
+        if not some(todo):
+            break
+        above = L_y * last > 0.0
+        first = select(above, select(side > 0.0, 0.5 * first, first), L_y)
+        last = select(above, L_y, select(side < 0.0, 0.5 * last, last))
+        low, high = select(above, low, t), select(above, t, high)
+        side = select(above, spread(1.0), spread(-1.0))
+    return L_yy, L_vv
+
+
+@kernel
+def scan(u, change, samples, cell, start, end, low, high, half, asked):
+    """Where the load rises at all so many ``samples`` of the way, and between them; smallest and largest -L_yy."""
     risen, least, most = asked, spread(HUGE), spread(0.0)
     first, second = spread(0.0), spread(0.0)
-    drawn = lagrangian.drawn_in(cell, end)
-    bent = asked & (
-        abs(end[0] - start[0]) > 0.0
-    )  # the fibers' extension is no linear load, and loose ones bear none so
-    if is_loose(end[2]):
-        bent = asked
-    ahead = select(change > 0.0, spread(1.0), spread(-1.0))
+    drawn, before, after = lagrangian.drawn_in(cell, end), between(start, end, low), between(start, end, high)
+    bent = asked if is_loose(end[2]) else asked & (abs(end[0] - start[0]) > 0.0)
     i = 0
     while True:
         within = asked & (samples + 1.0 > i)
         if not some(within):
             break
         here = u + change * min(i / samples, 1.0)
-        _, L_y, _, L_yy, _, L_vv = lagrangian.density(here, 0.0, cell, start)
-        _, end_y, _, end_yy, _, end_vv = lagrangian.density(here, 0.0, cell, end)
-        drive = end_y - L_y
-        t = -L_y / drive
-        L_yy, L_vv = L_yy + t * (end_yy - L_yy), L_vv + t * (end_vv - L_vv)
+        _, low_y, _, low_yy, _, low_vv = lagrangian.density(here, 0.0, cell, before)
+        _, high_y, _, high_yy, _, high_vv = lagrangian.density(here, 0.0, cell, after)
+        share = low_y / (low_y - high_y)
+        L_yy, L_vv = low_yy + share * (high_yy - low_yy), low_vv + share * (high_vv - low_vv)
         if some(bent):
-            for _ in range(BENDS):
-                _, here_y, _, here_yy, _, here_vv = lagrangian.density(here, 0.0, cell, between(start, end, t))
-                there_y = lagrangian.density(here, 0.0, cell, between(start, end, t + PROBE))[1]
-                drive = select(bent, (there_y - here_y) / PROBE, drive)
-                L_yy, L_vv = select(bent, here_yy, L_yy), select(bent, here_vv, L_vv)
-                t = select(bent, t - here_y / drive, t)
+            bent_yy, bent_vv = seek(here, cell, start, end, low, high, low_y, high_y, bent & within)
+            L_yy, L_vv = select(bent, bent_yy, L_yy), select(bent, bent_vv, L_vv)
         far = L_yy * half * half < FAR * FAR * L_vv
-        slope = -L_yy / drive * ahead
+        slope = -L_yy
         risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
         if i >= 2:
             dips = within & (second < first) & (second < slope)
             bend = first - 2.0 * second + slope
-            low = second - (slope - first) * (slope - first) / (8.0 * bend)
-            risen = risen & (~dips | (low > 0.0))
+            lowest = second - (slope - first) * (slope - first) / (8.0 * bend)
+            risen = risen & (~dips | (lowest > 0.0))
         least, most = select(within, min(least, slope), least), select(within, max(most, slope), most)
         first, second = second, slope
         i += 1
@@ -63,18 +76,19 @@ def scan(u, change, samples, cell, start, end, half, asked):
 
 
 @kernel
-def rising(u, trial, cell, start, end, half, asked):
-    """Where the load rises all the way from ``u`` to ``trial``: see :func:`uniform.rising`. A few looks tell it where the
-    slope hardly changes, which leaves no room for a dip, and the tube is not drawn in.
+def rising(u, trial, cell, start, end, low, high, half, asked):
+    """Where the load rises all the way from ``u``, at the share ``low``, to ``trial`` at ``high``: see
+    :func:`uniform.rising`. A few looks tell it where L_yy hardly changes, which leaves no room for a dip, and the tube is
+    not drawn in.
     """
     change = trial - u
     still = abs(change) < 1e-9 * u
     asked = asked & ~still
     size = abs(change) / min(u, trial)
-    risen, least, most = scan(u, change, max(1.0 + size / GLANCE, 2.0), cell, start, end, half, asked)
+    risen, least, most = scan(u, change, max(1.0 + size / GLANCE, 2.0), cell, start, end, low, high, half, asked)
     unsure = risen & ((least < EVEN * most) | (min(u, trial) < lagrangian.drawn_in(cell, end)))
     if some(unsure):
-        risen_all, _, _ = scan(u, change, 2.0 + size / SCAN, cell, start, end, half, unsure)
+        risen_all, _, _ = scan(u, change, 2.0 + size / SCAN, cell, start, end, low, high, half, unsure)
         risen = risen & (~unsure | risen_all)
     return still | risen
 
@@ -87,20 +101,22 @@ def follow(u, cell, start, end, half, asked):
     todo, done = asked, mask_of(0)
     while some(todo):
         ahead = min(t + step, 1.0)
-        trial, before = u, spread(HUGE)
+        trial, before, least, most = u, spread(HUGE), spread(0.0), spread(HUGE)
         going, arrived = todo, mask_of(0)
         for _ in range(ITERATIONS):
             room, L_y, _, L_yy, _, _ = lagrangian.density(trial, 0.0, cell, between(start, end, ahead))
             going = going & (room > 0.0) & (L_yy < 0.0)
-            change = -L_y / L_yy
-            trial = select(going, trial + change, trial)
+            least, most = select(L_y > 0.0, trial, least), select(L_y > 0.0, most, trial)
+            new = trial - L_y / L_yy
+            new = select((least <= new) & (new <= most), new, 0.5 * (least + most))
+            size = abs(new - trial)
+            trial = select(going, new, trial)
             going = going & (abs(trial - u) < LARGEST_CHANGE * u)
-            size = abs(change)
             there = going & ((size < 1e-13 * u) | ((size < 1e-10 * u) & (size >= 0.5 * before)))
             arrived, going, before = arrived | there, going & ~there, size
             if not some(going):
                 break
-        arrived = rising(u, trial, cell, start, end, half, arrived) & arrived
+        arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived
         t, u = select(arrived, ahead, t), select(arrived, trial, u)
         step = select(arrived, 2.0 * step, 0.5 * step)
         done = done | (todo & (t >= 1.0))
