@@ -12,7 +12,7 @@ A tube that is the same all along needs none: its first integral ``L - v L_v`` g
 
 from ..jit import kernel
 from . import lagrangian
-from .mesh import cell_at
+from .mesh import cell_at, of_length
 
 
 @kernel
@@ -33,5 +33,6 @@ def flux_at(x, y, j, n, cells, load):
     """The flux at node j of a mesh of n cells: the reaction of the cell behind it; at the last node, of the one before."""
     i = min(j, n - 1)
     h = x[i + 1] - x[i]
-    _, L_y, L_v, _, _, _ = lagrangian.density(0.5 * (y[i] + y[i + 1]), (y[i + 1] - y[i]) / h, cell_at(cells, i), load)
+    cell = of_length(cell_at(cells, i), h)
+    _, L_y, L_v, _, _, _ = lagrangian.density(0.5 * (y[i] + y[i + 1]), (y[i + 1] - y[i]) / h, cell, load)
     return (0.5 if j < n else -0.5) * h * L_y - L_v

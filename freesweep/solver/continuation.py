@@ -20,7 +20,7 @@ import numpy as np
 
 from ..jit import kernel
 from .held import loaded
-from .mesh import cell_at
+from .mesh import cell_at, of_length
 from .newton import assemble, factor, substitute
 
 LOAD_SHARE = 0.1  # weight of a relative change of the load against one of y: its steps may be that much longer
@@ -83,7 +83,7 @@ def load_slope(density, x, y, n, cells, path, mu, b):
     for j in range(n):
         h = x[j + 1] - x[j]
         middle, v = 0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h
-        cell = cell_at(cells, j)
+        cell = of_length(cell_at(cells, j), h)
         _, below_y, below_v, _, _, _ = density(middle, v, cell, low)
         _, above_y, above_v, _, _, _ = density(middle, v, cell, high)
         half, turn = 0.5 * h * (above_y - below_y), above_v - below_v

@@ -10,7 +10,7 @@ is stable under given loads; through a turning point of mu, 1/sigma falls smooth
 """
 
 from ..jit import kernel
-from .mesh import cell_at
+from .mesh import cell_at, of_length
 from .newton import (
     CONVERGED,
     INFEASIBLE,
@@ -47,7 +47,7 @@ def hold(conjugate, x, y, n, cells, load, direction, b):
     for j in range(n):
         h = x[j + 1] - x[j]
         c, c_y, c_v, c_mu = conjugate(
-            0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell_at(cells, j), load, direction
+            0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, of_length(cell_at(cells, j), h), load, direction
         )
         total += h * c
         k += h * c_mu

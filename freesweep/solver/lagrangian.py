@@ -4,11 +4,12 @@
 
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
 wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
-``wall`` is (k,), or (k, inner, loose). The length of a tuple is known when code is made: none is for the other one.
+``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point; with the length h of a cell of a mesh behind, the
+density is that of the cell (:mod:`over_cell`). The length of a tuple is known when code is made: none is for the others.
 """
 
 from ..jit import kernel
-from . import membrane, physical
+from . import membrane, over_cell, physical
 from .membrane import (  # noqa: F401
     DRAWN_IN,
     ENERGY_ROUNDING,
@@ -35,7 +36,9 @@ def density(y, v, cell, load):
 @kernel
 def _density(y, v, cell, load, wall):
     if len(wall) == 1:
-        return membrane.density(y, v, cell, load)
+        return membrane.density(y, v, (cell[0], cell[1], cell[2]), load)
+    if len(cell) > 3:
+        return over_cell.density(y, v, cell, load)
     return physical.density(y, v, cell, load)
 
 
@@ -61,7 +64,9 @@ def integrands(y, v, cell, load):
 @kernel
 def _integrands(y, v, cell, load, wall):
     if len(wall) == 1:
-        return membrane.integrands(y, v, cell, load)
+        return membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load)
+    if len(cell) > 3:
+        return over_cell.integrands(y, v, cell, load)
     return physical.integrands(y, v, cell, load)
 
 
@@ -74,7 +79,9 @@ def conjugate(y, v, cell, load, direction):
 @kernel
 def _conjugate(y, v, cell, load, direction, wall):
     if len(wall) == 1:
-        return membrane.conjugate(y, v, cell, load, direction)
+        return membrane.conjugate(y, v, (cell[0], cell[1], cell[2]), load, direction)
+    if len(cell) > 3:
+        return over_cell.conjugate(y, v, cell, load, direction)
     return physical.conjugate(y, v, cell, load, direction)
 
 

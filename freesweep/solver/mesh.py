@@ -27,6 +27,12 @@ def cell_at(cells, j):
 
 
 @kernel
+def of_length(cell, h):
+    """The cell, with its length behind."""
+    return cell[0], cell[1], cell[2], h
+
+
+@kernel
 def largest(cells):
     """The largest sizes of what varies along the tube."""
     a, b, c = abs(cells[0, 0]), abs(cells[0, 1]), abs(cells[0, 2])

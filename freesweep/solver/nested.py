@@ -11,7 +11,7 @@ middle, and the multiplier of a held integral.
 """
 
 from ..jit import kernel
-from . import finest, held, kinks, mesh, middle, newton
+from . import finest, held, mesh, middle, newton
 from .course import fill
 from .held import loaded
 
@@ -21,7 +21,6 @@ MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or mor
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.3
-RESOLVED, ACROSS = 8, 3.0  # cells of a kind, of which two meshes coarser still see two; sum of kinds that never touch
 FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
 TINY = 1e-300
 
@@ -31,38 +30,33 @@ UNREACHED = 3  # the accuracy was not met on the finest mesh
 
 @kernel
 def integrate(integrands, x, y, n, cells, load, row):
-    """Integrals over the tube on one mesh; whether the kind of cell, in which the density is smooth, changes along it, and
-    whether each kind lasts RESOLVED cells at least. Of four kinds 0 and 3, or 1 and 2, have another one between them.
-    """
+    """Integrals over the tube on one mesh; whether the kind of cell, in which the density is smooth, changes along it."""
     length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
-    broken, before, run, shortest = False, -1.0, 0, RESOLVED
+    broken, before = False, -1.0
     varying = len(cells) > 1
     cell = mesh.cell_at(cells, 0)
     for j in range(n):
         if varying:
             cell = mesh.cell_at(cells, j)
         h = x[j + 1] - x[j]
-        s, v, t, w, kind = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, cell, load)
-        if kind != before and j > 0:
-            broken = True
-            shortest = 0 if kind + before == ACROSS else min(shortest, run)
-            run = 0
-        before, run = kind, run + 1
+        s, v, t, w, kind = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, mesh.of_length(cell, h), load)
+        broken = broken or (kind != before and j > 0)
+        before = kind
         length += h * s
         volume += h * v
         twist += h * t
         energy += h * w
     row[0], row[1], row[2], row[3] = length, volume, twist, energy
-    return broken, not broken or min(shortest, run) >= RESOLVED
+    return broken
 
 
 @kernel
 def extrapolate(table, level, scales, floors, missed, broken, values, bounds):
     """Fourth-order values and bounds from the last four rows; returns the largest scaled bound. ``missed`` is the error of
     the stretch in the middle that no mesh shows. On a ``broken`` mesh a cell somewhere holds a change of smoothness: it errs
-    by up to the third power of its size, now by more, now by less, and no difference is divided by what an order allows.
+    now by more, now by less, and no difference is divided by what an order allows.
     """
-    order, before = (1.0, 8.0) if broken else (15.0, 225.0)
+    order, before = (1.0, 4.0) if broken else (15.0, 225.0)
     largest, share, change = 0.0, 0.0, TINY
     for k in range(OUTPUTS):
         change += FAINT / OUTPUTS * abs(table[level, k] - table[level - 1, k]) / scales[k]
@@ -79,36 +73,6 @@ def extrapolate(table, level, scales, floors, missed, broken, values, bounds):
         largest = max(largest, bounds[k] / scales[k])
         bounds[k] += floors[k]
     return largest
-
-
-@kernel
-def mend(density, integrands, x, y, n, tube, cells, load, direction, mu, target, sigma, row, work):
-    """Add to a row of outputs what a change of kind inside cells makes them lack (:mod:`kinks`), move the solution by it;
-    with ``sigma`` not 0 the conjugate integral is held at the ``target``, and the multiplier ``mu`` moves, too.
-    """
-    edges, free, center = tube[1], tube[3], tube[4]
-    e, inverse, change, moved, force, response = work[2], work[3], work[4], work[5], work[8], work[9]
-    now = loaded(load, direction, mu)
-    lacks = kinks.missed(density, integrands, x, y, n, edges, cells, now, force)
-    newton.substitute(inverse, e, 1, n if free else n - 1, force, change)
-    change[0] = 0.0
-    change[n] = change[n] if free else 0.0
-    for i in range(n + 1):
-        moved[i] = y[i] + change[i]
-    for again in range(2 if sigma != 0.0 else 1):
-        if again > 0:
-            held_now = direction[3] * row[1] + direction[4] * row[0] + direction[5] * row[2]
-            step = (target - held_now) / sigma
-            mu += step
-            now = loaded(load, direction, mu)
-            for i in range(n + 1):
-                moved[i] += step * response[i]
-        integrate(integrands, x, moved, n, cells, now, row)
-        for k in range(4):
-            row[k] += lacks[k]
-    for i in range(n + 1):
-        y[i] = moved[i]
-    row[MIDDLE], row[MULTIPLIER] = moved[center * n // edges[len(edges) - 1]], mu
 
 
 @kernel
@@ -259,13 +223,8 @@ def solve(
             continue
 
         row = table[level]
-        broken, resolved = integrate(integrands, xs, ys, count, own, now, row)
+        broken = integrate(integrands, xs, ys, count, own, now, row)
         row[MIDDLE], row[MULTIPLIER], missed = ys[center * count // n], mu, 0.0
-        if broken:
-            mend(
-                density, integrands, xs, ys, count, tube, own, load, direction, mu, target,
-                sigma if goal == HELD else 0.0, row, work,
-            )  # fmt: skip
         if free:
             if level == 1:
                 where, far = middle.node(density, xs, ys, n, mesh.cell_at(own, 0), now, accuracy)
@@ -279,7 +238,7 @@ def solve(
                 out[2, MULTIPLIER] /= max(unit, 1.0)
                 out[3, MULTIPLIER] /= unit
             met = extrapolate(table, level, out[2], out[3], missed, broken, out[0], out[1]) <= accuracy
-            if (met and resolved) or level == MAX_DOUBLINGS + 1:
+            if met or level == MAX_DOUBLINGS + 1:
                 finest.leave_loads(
                     table[:, MULTIPLIER], level, out[0, MULTIPLIER], direction, max(error, coarser), fine
                 )

@@ -9,7 +9,7 @@ and y > 0. ``y[0]`` is held; so is ``y[n]`` unless ``free`` (a plane of symmetry
 """
 
 from ..jit import kernel
-from .mesh import cell_at
+from .mesh import cell_at, of_length
 
 MAX_ITERATIONS = 60  # a warm start takes 1 to 3, a bad first guess at a small angle 25
 MAX_HALVINGS = 30  # of one step: below 1e-9 of it nothing is gained
@@ -39,7 +39,7 @@ def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
         per_h = 1.0 / h
         v = (y[j + 1] - y[j]) * per_h
         middle = 0.5 * (y[j] + y[j + 1])
-        space, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cell, load)
+        space, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, of_length(cell, h), load)
         fits = fits and space > MIN_ROOM * least[j] and middle > 0.0  # a NaN counts as no room
         room[j] = space
         if convex:
@@ -60,8 +60,8 @@ def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
 def admissible(density, x, y, n, cells, load):
     """Whether every cell has room."""
     for j in range(n):
-        middle = 0.5 * (y[j] + y[j + 1])
-        room = density(middle, (y[j + 1] - y[j]) / (x[j + 1] - x[j]), cell_at(cells, j), load)[0]
+        middle, h = 0.5 * (y[j] + y[j + 1]), x[j + 1] - x[j]
+        room = density(middle, (y[j + 1] - y[j]) / h, of_length(cell_at(cells, j), h), load)[0]
         if not (room > 0.0 and middle > 0.0):
             return False
     return True

@@ -9,12 +9,12 @@ from math import atan, sqrt
 import numpy as np
 
 from ..jit import kernel
-from . import kinks, lagrangian
+from . import lagrangian
 from .axial import axial_stretch, flux_at, is_alike
 from .course import at_point, fill
 from .finest import LEFT, MESHES, load_of, mesh_of
 from .lagrangian import LAST_STEP, ROUNDING
-from .mesh import cell_at
+from .mesh import cell_at, of_length
 
 VALUES = 7  # stretch, axial position, twist, angles after deformation, fiber multipliers
 FIELDS = 2 * VALUES  # and a bound for each
@@ -56,14 +56,8 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
             if j < count:
                 cell = cell_at(own, j)
                 h, middle = x[j + 1] - x[j], 0.5 * (y[j] + y[j + 1])
-                s, _, turn, _, kind = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, cell, now)
-                if kind != before and j > 0:
-                    broken = True
-                    lacks = kinks.lacking(
-                        lagrangian.density, lagrangian.integrands, x, y, count, edges, j, before, own, now
-                    )
-                    z += lacks[2]
-                    twist += lacks[4]
+                s, _, turn, _, kind = lagrangian.integrands(middle, (y[j + 1] - y[j]) / h, of_length(cell, h), now)
+                broken = broken or (kind != before and j > 0)
                 before = kind
                 z += h * (axial_stretch(middle, constant, cell, now) if alike else s)
                 twist += h * turn

@@ -122,7 +122,7 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     least = SMALL * abs(third)  # where rounding counts, nothing need fall
     estimate = max(abs(third - second), abs(second - first))
     if changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least:
-        order, before = (1.0, 8.0) if is_loose(path.origin[2]) else (15.0, 225.0)  # as in :func:`nested.extrapolate`
+        order, before = (1.0, 4.0) if is_loose(path.origin[2]) else (15.0, 225.0)  # as in :func:`nested.extrapolate`
         estimate = max(abs(third - second) / order, abs(second - first) / before)
     if not estimate < AGREED * abs(third):
         return np.nan, 0.0

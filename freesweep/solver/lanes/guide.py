@@ -15,7 +15,6 @@ FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
 GLANCE = 0.06  # relative change of the stretch between two looks at the slope, where that is even:
 EVEN = 0.5  # its smallest value is more than this share of the largest
 SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernels
-SMALLEST_LOOSE = 0.04  # of tubes with loose fibers, whose density is dear: smaller steps hardly ever arrive
 
 
 @kernel
@@ -97,7 +96,6 @@ def rising(u, trial, cell, start, end, low, high, half, asked):
 def follow(u, cell, start, end, half, asked):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the lanes that arrived."""
     t, step = spread(0.0), spread(FIRST_STEP)
-    smallest = SMALLEST_LOOSE if is_loose(end[2]) else SMALLEST_STEP
     todo, done = asked, mask_of(0)
     while some(todo):
         ahead = min(t + step, 1.0)
@@ -120,7 +118,7 @@ def follow(u, cell, start, end, half, asked):
         t, u = select(arrived, ahead, t), select(arrived, trial, u)
         step = select(arrived, 2.0 * step, 0.5 * step)
         done = done | (todo & (t >= 1.0))
-        todo = todo & (t < 1.0) & (step > smallest)
+        todo = todo & (t < 1.0) & (step > SMALLEST_STEP)
     return u, done
 
 

@@ -2,14 +2,15 @@
 
 Three meshes suffice where bounds that are more generous by EARLY meet the accuracy. A lane whose bounds meet the accuracy
 keeps its numbers; the others go on to finer meshes. A lane that needs more than ``LANE_DOUBLINGS``, or fails, is left to
-the scalar kernels, and so is one of loose fibers whose active set changes along the tube: its errors know no order.
+the scalar kernels.
 """
 
 from ...jit import kernel
 from .. import finest, lagrangian
 from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
+from ..mesh import of_length
 from ..newton import SMALL_STEP
-from . import kinks, mesh, middle, newton
+from . import mesh, middle, newton
 from .slack import pushing
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
@@ -40,7 +41,9 @@ def integrate(x, y, n, cell, load, row):
     for j in range(n):
         x_right, y_right = get(x, j + 1), get(y, j + 1)
         h = x_right - x_left
-        s, v, t, w, kind = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
+        s, v, t, w, kind = lagrangian.integrands(
+            0.5 * (y_left + y_right), (y_right - y_left) / h, of_length(cell, h), load
+        )
         if j > 0:
             broken = broken | differ(kind, before, load[2])
         before = kind
@@ -58,7 +61,7 @@ def integrate(x, y, n, cell, load, row):
 
 
 @kernel
-def extrapolate(table, level, cell, load, length, error, missed, sizes, values, bounds):
+def extrapolate(table, level, cell, load, length, error, missed, broken, sizes, values, bounds):
     """Fourth-order values and bounds from the last four rows, or the first three; returns the largest scaled bound,
     rounding left out.
     """
@@ -70,16 +73,17 @@ def extrapolate(table, level, cell, load, length, error, missed, sizes, values, 
     put(sizes, 2, scale[2])
     put(sizes, 3, scale[3])
     put(sizes, 4, scale[4])
+    order, before = select(broken, spread(1.0), spread(15.0)), select(broken, spread(4.0), spread(225.0))
     change, share, largest = spread(TINY), spread(0.0), spread(0.0)
     for k in range(OUTPUTS):
         change = change + FAINT / OUTPUTS * abs(get(row, k) - get(table[level - 1], k)) / get(sizes, k)
     for k in range(OUTPUTS):
         b, c, d = get(table[level - 2], k), get(table[level - 1], k), get(row, k)
         second, third = (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-        estimate = abs(third - second) / 15.0
+        estimate = abs(third - second) / order
         if level > 2:
             first = (4.0 * b - get(table[level - 3], k)) / 3.0
-            estimate = max(estimate, abs(second - first) / 225.0)
+            estimate = max(estimate, abs(second - first) / before)
         put(values, k, third)
         put(bounds, k, estimate)
         share = max(share, estimate / (abs(d - c) + get(sizes, k) * change))
@@ -151,7 +155,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
     todo = active
     converged, error = newton.solve(density, x, y, n, True, cell, load, todo, y, True, SMALL_STEP, tolerance, work)
     todo = todo & converged
-    todo = todo & ~integrate(x, y, n, cell, load, table[1])
+    integrate(x, y, n, cell, load, table[1])
     room = sizes[OUTPUTS:]
     long, share, missed, resolved = middle.node(x, y, n, u, cell, load, accuracy, room)
     put(table[1], MIDDLE, middle.stretch(y, n, n, u, long, share, room))
@@ -175,7 +179,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
         )
         converged = converged | again
     todo = todo & converged
-    todo = todo & ~integrate(half_x, half_y, n // 2, cell, load, table[0])
+    integrate(half_x, half_y, n // 2, cell, load, table[0])
     put(table[0], MIDDLE, middle.stretch(half_y, n // 2, n, u, long, share, room))
     met, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
     level, count = 1, n
@@ -199,15 +203,17 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
             )
             converged, error = converged | again, select(again, last, error)
         todo = todo & converged
-        todo = todo & ~integrate(here_x, here_y, count, cell, load, table[level])
+        broken = integrate(here_x, here_y, count, cell, load, table[level])
         put(table[level], MIDDLE, middle.stretch(here_y, count, n, u, long, share, room))
         if kept is not None:
             if level == 2:
                 continue  # profiles want more of the nodes than the integrals do
-        largest = extrapolate(table, level, cell, load, length, max(error, coarser), missed, sizes, found[0], found[1])
-        ready = todo & (largest <= accuracy) & ~kinks.hidden(here_x, here_y, cell, load)
+        largest = extrapolate(
+            table, level, cell, load, length, max(error, coarser), missed, broken, sizes, found[0], found[1]
+        )
+        ready = todo & (largest <= accuracy)
         if level == 2:
-            ready = ready & resolved & (abs(get(here_y, count) - get(half_y, count // 2)) < STILL)
+            ready = ready & ~broken & resolved & (abs(get(here_y, count) - get(half_y, count // 2)) < STILL)
         for k in range(OUTPUTS):
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))

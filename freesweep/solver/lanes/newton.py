@@ -6,6 +6,7 @@ others need.
 """
 
 from ...jit import kernel
+from ..mesh import of_length
 from ..newton import SMALL_STEP
 from .vector import HUGE, get, mask_of, put, select, some, spread
 
@@ -37,7 +38,7 @@ def eliminate(density, x, y, step, fraction, convex, n, free, cell, load, ratio,
         per_h = 1.0 / h
         v = (y_right - y_left) * per_h
         middle = 0.5 * (y_left + y_right)
-        room, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cell, load)
+        room, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, of_length(cell, h), load)
         fits = fits & (min(room, middle) > 0.0)  # a NaN counts as no room
         put(steepness, j, 2.0 * v * per_h / room)
         if bent:

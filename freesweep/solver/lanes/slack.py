@@ -3,6 +3,7 @@
 from ...jit import kernel
 from .. import lagrangian
 from ..axial import axial_stretch
+from ..mesh import of_length
 from ..slack import NOTHING, TENSIONLESS, TENSIONLESS_END
 from ..wall import is_loose
 from .vector import get, mask_of
@@ -42,7 +43,7 @@ def of_physical(x, y, n, cell, load):
         _, tension_alpha, tension_beta = lagrangian.at_slope(middle, v, cell, load)
         alpha, beta = alpha | (tension_alpha < least), beta | (tension_beta < least)
         if j == 0:
-            _, L_y, L_v, _, _, _ = lagrangian.density(middle, v, cell, load)
+            _, L_y, L_v, _, _, _ = lagrangian.density(middle, v, of_length(cell, h), load)
             _, _, tension_alpha, tension_beta = lagrangian.at_flux(get(y, 0), 0.5 * h * L_y - L_v, cell, load)
             alpha, beta = alpha | (tension_alpha < at_end), beta | (tension_beta < at_end)
     return alpha, beta
