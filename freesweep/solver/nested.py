@@ -192,7 +192,7 @@ def solve(
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     error, coarser, where, far = tolerance, tolerance, middle.NOT_LONG, 1.0
     passes, level, count, on_base = 0, 1, n, mu
-    unstable, rate, shrunk, sigma = 0, newton.UNKNOWN, False, 0.0
+    unstable, rate, shrunk = 0, newton.UNKNOWN, False
     xs, ys = x, y
     while True:
         own = fill(course, edges, xs, count, n, cells)
@@ -200,7 +200,7 @@ def solve(
         if goal == PLAIN:
             status, unstable, rate, error = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
         else:
-            status, unstable, mu, sigma = held.solve_held(
+            status, unstable, mu, _ = held.solve_held(
                 density, conjugate, xs, ys, count, free, own, load, direction, mu, target, tolerance, newton.MAX_ITERATIONS,
                 work,
             )  # fmt: skip

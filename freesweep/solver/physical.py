@@ -91,7 +91,9 @@ def state(y, v, cell, load):
 @kernel
 def partials(y, v, cell, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv, which families are taut)``."""
-    room, s, G_1, _, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, _, kind = state(y, v, cell, load)
+    room, s, G_1, _, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, _, kind = state(
+        y, v, cell, load
+    )
     T = load[3] * y * y + load[4]
     L_yy = K_yy + 2.0 * (K_yG * G_y + K_yp * psi_y) + (K_GG * G_y + 2.0 * K_Gp * psi_y) * G_y + K_pp * psi_y * psi_y
     L_yv = -2.0 * load[3] * y * v / s + K_vG * G_y

@@ -5,13 +5,14 @@ the tube with clamped ends, and its stretch lies between 1 and the uniform one. 
 """
 
 from ..jit import kernel
+from .wall import is_loose
 
 FIRST_STEP = 0.25  # of the way from one load to the other
 SMALLEST_STEP = 1e-7  # below it the path is taken to end in a turning point
 LARGEST_CHANGE = 0.15  # relative change of the stretch in one step; a jump to another branch is larger
 ITERATIONS = 30  # five do nearly always
 SCAN = 0.015  # relative change of the stretch between two looks at the slope
-SECANTS, CLOSE = 12, 1e-3  # for the load of a stretch; share of L_y at the bounds that is as good as nothing
+SECANTS, CLOSE = 24, 1e-3  # for the load of a stretch; share of L_y at the bounds that is as good as nothing
 FAR = 8.0  # end layers per half tube, up to which clamped ends may turn back a tube that is drawn in
 
 
@@ -46,20 +47,24 @@ def may_let_go(u, L_yy, L_vv, half, drawn):
 @kernel
 def curvature_at(density, u, cell, start, end, low, high):
     """``(L_yy, L_vv)`` at the load, between the shares ``low`` and ``high`` of the way, at which the stretch ``u`` is an
-    equilibrium; L_yy is positive where there is none. By the secant between bounds: at once where L_y is linear along the
-    way, as it is in pressure, force and torque, but not in the fibers' extension, nor where fibers are loose.
+    equilibrium; L_yy is positive where there is none. By the secant between bounds, in turn with their middle: at once where
+    L_y is linear along the way, as it is in pressure, force and torque, but not in the fibers' extension, nor where fibers
+    are loose: there it has corners.
     """
-    first, last = density(u, 0.0, cell, between(start, end, low))[1], density(u, 0.0, cell, between(start, end, high))[1]
-    close, side = CLOSE * max(abs(first), abs(last)), 0
-    for _ in range(SECANTS):
-        t = min(max(low - first * (high - low) / (last - first), low), high)
+    first, last = (
+        density(u, 0.0, cell, between(start, end, low))[1],
+        density(u, 0.0, cell, between(start, end, high))[1],
+    )
+    close = CLOSE * max(abs(first), abs(last))
+    for i in range(SECANTS):
+        t = min(max(low - first * (high - low) / (last - first), low), high) if i % 2 == 0 else 0.5 * (low + high)
         _, here, _, L_yy, _, L_vv = density(u, 0.0, cell, between(start, end, t))
         if abs(here) <= close:
             return L_yy, L_vv
         if here * last > 0.0:
-            high, last, first, side = t, here, (0.5 * first if side > 0 else first), 1
+            high, last = t, here
         else:
-            low, first, last, side = t, here, (0.5 * last if side < 0 else last), -1
+            low, first = t, here
     return 1.0, -1.0
 
 
@@ -69,7 +74,8 @@ def dips(density, u, trial, cell, start, end, low, high, half, drawn):
     would be passed over. Where half a tube of length ``half`` is drawn in, below ``drawn``, its clamped end, which is not,
     may let go before: there the end has to be far.
 
-    The load falls where -L_yy is negative; a dip of it between samples shows in the parabola through three of them.
+    The load falls where -L_yy is negative; a dip of it between samples shows in the parabola through three of them, unless
+    fibers go slack: then it jumps.
     """
     count = 2 + int(abs(trial - u) / (SCAN * min(u, trial)))
     first, second = 0.0, 0.0
@@ -79,7 +85,7 @@ def dips(density, u, trial, cell, start, end, low, high, half, drawn):
         slope = -L_yy
         if not slope > 0.0 or may_let_go(here, L_yy, L_vv, half, drawn):
             return True
-        if i >= 2 and second < first and second < slope:
+        if i >= 2 and second < first and second < slope and not is_loose(end[2]):
             bend = first - 2.0 * second + slope
             if second - (slope - first) * (slope - first) / (8.0 * bend) <= 0.0:
                 return True

@@ -22,10 +22,10 @@ def seek(here, cell, start, end, low, high, first, last, todo):
     """``(L_yy, L_vv)`` where the stretches ``here`` are equilibria on a way along which L_y, ``first`` at its share ``low``
     and ``last`` at ``high``, is not linear: see :func:`uniform.curvature_at`.
     """
-    close, side = CLOSE * max(abs(first), abs(last)), spread(0.0)
+    close = CLOSE * max(abs(first), abs(last))
     L_yy, L_vv = spread(1.0), spread(-1.0)
-    for _ in range(SECANTS):
-        t = min(max(low - first * (high - low) / (last - first), low), high)
+    for i in range(SECANTS):
+        t = min(max(low - first * (high - low) / (last - first), low), high) if i % 2 == 0 else 0.5 * (low + high)
         _, L_y, _, now_yy, _, now_vv = lagrangian.density(here, 0.0, cell, between(start, end, t))
         there = todo & (abs(L_y) <= close)
         L_yy, L_vv = select(there, now_yy, L_yy), select(there, now_vv, L_vv)
@@ -33,10 +33,8 @@ def seek(here, cell, start, end, low, high, first, last, todo):
         if not some(todo):
             break
         above = L_y * last > 0.0
-        first = select(above, select(side > 0.0, 0.5 * first, first), L_y)
-        last = select(above, L_y, select(side < 0.0, 0.5 * last, last))
+        first, last = select(above, first, L_y), select(above, L_y, last)
         low, high = select(above, low, t), select(above, t, high)
-        side = select(above, spread(1.0), spread(-1.0))
     return L_yy, L_vv
 
 
@@ -63,7 +61,7 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
         far = L_yy * half * half < FAR * FAR * L_vv
         slope = -L_yy
         risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
-        if i >= 2:
+        if i >= 2 and not is_loose(end[2]):
             dips = within & (second < first) & (second < slope)
             bend = first - 2.0 * second + slope
             lowest = second - (slope - first) * (slope - first) / (8.0 * bend)

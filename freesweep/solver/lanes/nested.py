@@ -7,8 +7,8 @@ the scalar kernels.
 
 from ...jit import kernel
 from .. import finest, lagrangian
-from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..mesh import of_length
+from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..newton import SMALL_STEP
 from . import mesh, middle, newton
 from .slack import pushing
