@@ -354,6 +354,7 @@ def test_every_public_callable_is_tried():
         "UnsealedWarning",
         "Calibration",
         "run_sweep",
+        "sweep",
         "open_atlas",
         "Atlas",
         "closed_form",
