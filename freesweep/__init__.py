@@ -35,6 +35,7 @@ _HOMES = {
     "Limit": "inverse.wishes",
     "Profile": "inverse.freedom",
     "run_sweep": "sweep.run",
+    "to_dataframe": "export.frame",
     "open_atlas": "atlas.store",
     "Atlas": "atlas.store",
     "UnsealedWarning": "atlas.store",

@@ -355,6 +355,7 @@ def test_every_public_callable_is_tried():
         "Calibration",
         "run_sweep",
         "sweep",
+        "to_dataframe",
         "open_atlas",
         "Atlas",
         "closed_form",

@@ -125,6 +125,25 @@ class Atlas:
 
         return Interpolator(self, names)
 
+    def export(self, path, to=None, variables=None, derivatives=False, **axes):
+        """Write a slice as a table for another program, with unit, error and status of each number.
+
+        Parameters
+        ----------
+        path : the file to make
+        to : "csv", "npz", "mat", "c" (a header), "json", "mujoco" (a small model), "simulink" (a MATLAB script); default: by
+            the suffix of ``path`` (.csv, .npz, .mat, .h, .json, .xml, .m)
+        variables : names of stored variables; default: all
+        derivatives : those of each variable by each axis, too (of the interpolant)
+        axes : where: a number, or ascending numbers along which the table runs; ``design`` by its name. Axes left out run
+            over their own nodes. Numbers at nodes are the stored ones, others those of :meth:`query`
+
+        Returns the path. Raises QueryError, ExportError, EnvironmentFault.
+        """
+        from ..export.write import export
+
+        return export(self, path, to, variables, derivatives, axes)
+
     def close(self):
         """Let go of the file."""
         self.data.close()

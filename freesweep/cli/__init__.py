@@ -10,6 +10,7 @@ import sys
 from .calibrate import add_calibrate
 from .design import add_design
 from .draw import add_plot, check_map, draw_map
+from .export import add_export
 from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
 from .judge import add_judging
 from .query import add_query
@@ -85,6 +86,7 @@ def parser() -> argparse.ArgumentParser:
     add_plot(commands)
     _info(commands)
     add_query(commands)
+    add_export(commands)
     add_single(commands)
     add_judging(commands)
     add_calibrate(commands)
