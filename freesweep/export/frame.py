@@ -1,10 +1,16 @@
 """Results as a table of pandas: a row for each state, whatever the stations along the tube."""
 
+from typing import TYPE_CHECKING
+
 from ..faults import ActuatorError
 from ..given import described
 
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
-def to_dataframe(results):
+
+def to_dataframe(results: "xr.Dataset") -> "pd.DataFrame":
     """The scalar outputs of a Dataset, or of an atlas' ``data``, as a pandas DataFrame with a row for each state.
 
     Profiles along ``x`` are left out (``results.to_dataframe()`` of xarray repeats each state for every station), a single

@@ -1,42 +1,55 @@
 """``freesweep.sweep``: a grid of designs from Python's arguments, without a file of its own."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from ..quantities import Along, Path, Quantities
+
+if TYPE_CHECKING:
+    from ..atlas.store import Atlas
+    from ..elastomer import MooneyRivlin, Yeoh
+
+Axis: TypeAlias = "Quantities | Mapping[str, Any]"  # a number, values, a range
+
 
 def sweep(
     *,
-    out,
-    alpha=None,
-    beta=None,
-    length=None,
-    radius=None,
-    wall=None,
-    pressure=None,
-    material=None,
-    c10=None,
-    c01=None,
-    c20=None,
-    c30=None,
-    fiber_extension=None,
-    fiber_radius=None,
-    force=None,
-    torque=None,
-    held_length=None,
-    held_length_ratio=None,
-    held_rotation=None,
-    designs=None,
-    title=None,
-    energy=None,
-    model=None,
-    wall_model=None,
-    fibers=None,
-    accuracy=None,
-    blocked=None,
-    interpolation_tolerance=None,
-    budget=None,
-    threads=None,
-    executor=None,
-    progress=True,
-    overwrite=False,
-):
+    out: Path,
+    alpha: Axis | Along | None = None,
+    beta: Axis | Along | None = None,
+    length: Axis | None = None,
+    radius: Axis | None = None,
+    wall: Axis | Along | None = None,
+    pressure: Axis | None = None,
+    material: MooneyRivlin | Yeoh | str | None = None,
+    c10: Axis | None = None,
+    c01: Axis | None = None,
+    c20: Axis | None = None,
+    c30: Axis | None = None,
+    fiber_extension: Axis | None = None,
+    fiber_radius: Axis | None = None,
+    force: Axis | None = None,
+    torque: Axis | None = None,
+    held_length: Axis | None = None,
+    held_length_ratio: Axis | None = None,
+    held_rotation: Axis | None = None,
+    designs: Sequence[Mapping[str, Any]] | None = None,
+    title: str | None = None,
+    energy: str | None = None,
+    model: str | None = None,
+    wall_model: str | None = None,
+    fibers: str | None = None,
+    accuracy: float | None = None,
+    blocked: bool | None = None,
+    interpolation_tolerance: float | None = None,
+    budget: int | None = None,
+    threads: int | None = None,
+    executor: Any = None,
+    progress: bool = True,
+    overwrite: bool = False,
+) -> Atlas:
     """Solve a grid of designs and store its atlas, as :func:`freesweep.run_sweep` does with a TOML specification.
 
     Parameters

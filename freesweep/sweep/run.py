@@ -4,6 +4,7 @@ import contextlib
 import os
 import time
 import warnings
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
 from ..given import described
 from ..options import read_count, read_path, read_switch
+from ..quantities import Path
 from ..status import STATUSES
 from ..unit_warnings import warn_of
 from . import estimate, kernels
@@ -40,7 +42,15 @@ HELD_COST, VARYING_COST, PHYSICAL_COST = (
 # free state of others
 
 
-def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrite=False) -> Atlas:
+def run_sweep(
+    spec: Path | Sweep,
+    out: Path,
+    *,
+    threads: int | None = None,
+    executor: Any = None,
+    progress: bool = True,
+    overwrite: bool = False,
+) -> Atlas:
     """Solve a sweep and store its atlas.
 
     Parameters
