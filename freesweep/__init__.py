@@ -36,6 +36,7 @@ _HOMES = {
     "Profile": "inverse.freedom",
     "run_sweep": "sweep.run",
     "to_dataframe": "export.frame",
+    "example_atlas": "example",
     "open_atlas": "atlas.store",
     "Atlas": "atlas.store",
     "UnsealedWarning": "atlas.store",

@@ -136,6 +136,11 @@ class Actuator:
         varying = tuple(tuple(self.profile(name).at(HASHED).tolist()) for name in VARYING)
         return hash((*fields, varying))
 
+    def _repr_html_(self):
+        from .notebook import of_actuator
+
+        return of_actuator(self)
+
     def _impossible(self):
         """Faults of numbers that are each fine alone."""
         alpha, beta = together(self.profile("alpha"), self.profile("beta"))

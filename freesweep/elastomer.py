@@ -42,6 +42,11 @@ class MooneyRivlin:
     def __post_init__(self):
         _read(self, c10={"positive": True}, c01={"least": 0.0})
 
+    def _repr_html_(self):
+        from .notebook import of_rubber
+
+        return of_rubber(self)
+
 
 @dataclass(frozen=True)
 class NeoHookean(MooneyRivlin):
@@ -96,6 +101,11 @@ class Yeoh:
                 " beyond it the stress would fall as the strain grows; take these constants below that only",
                 stacklevel=3,
             )
+
+    def _repr_html_(self):
+        from .notebook import of_rubber
+
+        return of_rubber(self)
 
     @property
     def c10(self) -> float:

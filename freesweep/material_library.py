@@ -40,6 +40,16 @@ class Library(Mapping[str, MooneyRivlin | Yeoh]):
     def __len__(self):
         return len(self._rubbers)
 
+    def __repr__(self):
+        from .notebook import library_text
+
+        return library_text(self)
+
+    def _repr_html_(self):
+        from .notebook import of_library
+
+        return of_library(self)
+
 
 materials = Library(
     {

@@ -357,6 +357,7 @@ def test_every_public_callable_is_tried():
         "sweep",
         "to_dataframe",
         "open_atlas",
+        "example_atlas",
         "Atlas",
         "closed_form",
     }

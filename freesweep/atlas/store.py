@@ -72,6 +72,11 @@ class Atlas:
         counts = "; ".join(f"{meaning} {count:,}" for meaning, count in self.status_counts().items())
         return f"<Atlas {self.path.name}: {self.data.attrs.get('title', '')}\n  {axes}\n  {counts}>"
 
+    def _repr_html_(self):
+        from ..notebook import of_atlas
+
+        return of_atlas(self)
+
     def status_counts(self, name: str = "status") -> dict[str, int]:
         """How many points of the grid have which status, of the equilibrium or of another state: meaning -> count.
 

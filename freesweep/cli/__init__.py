@@ -105,7 +105,10 @@ class _Version(argparse.Action):
 
 def _sweep(commands):
     command = commands.add_parser("sweep", help="solve a grid of designs into an atlas")
-    command.add_argument("spec", help="TOML specification, such as sweeps/quick.toml")
+    command.add_argument("spec", nargs="?", help="TOML specification, such as sweeps/quick.toml")
+    command.add_argument(
+        "--example", metavar="NAME", help="instead of SPEC: one that comes with freesweep, such as quick"
+    )
     command.add_argument("-o", "--out", metavar="FILE.nc", help="the atlas to make (default: named after SPEC, here)")
     command.add_argument("--map", metavar="FILE", help="draw the design-space map too (.png, .svg, .pdf)")
     command.add_argument("--threads", type=int, metavar="N", help="default: one for each core")
@@ -135,6 +138,12 @@ def _run_sweep(options):
 
     from ..sweep.spec import read_file
 
+    if (options.spec is None) == (options.example is None):
+        raise ValueError("give SPEC, the path of a TOML specification, or --example NAME, such as quick")
+    if options.example is not None:
+        from ..example import specification
+
+        options.spec = str(specification(options.example))
     sweep = read_file(options.spec)
     out = Path(options.out or Path(options.spec).with_suffix(".nc").name)
     if options.threads is not None and options.threads < 1:
