@@ -82,7 +82,7 @@ def label_ends(ax: Axes, lines, texts) -> list:
     for place, (x, y, text, colour) in zip(places, ends):
         far = abs(place - y) > 0.4 * step or x < right - 1e-6 * abs(right)
         joint = {"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 0.0}
-        how = {"color": style.legible(colour), "fontsize": style.NORMAL, "va": "center", "gid": "end"}
+        how = {"color": style.legible(colour), "fontsize": style.points(style.NORMAL), "va": "center", "gid": "end"}
         labels.append(ax.annotate(
             text, (x, y), xytext=(BESIDE, place), textcoords=ax.get_yaxis_transform(), annotation_clip=False,
             arrowprops={**joint, "relpos": (0.0, 0.5)} if far else None, **how,
@@ -190,7 +190,8 @@ def _name_choice(ax, point, marks):
     if words:
         width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
         below = textwrap.wrap(", ".join(words), max(int(width / LETTER), 30))
-        ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + 9.0 * len(below), fontsize=style.NORMAL + 1.0,
+        ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + 9.0 * len(below), fontsize=style.points(style.NORMAL + 1.0),
                      fontweight="bold")  # fmt: skip
         ax.annotate("\n".join(below), (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), gid="chosen",
-                    textcoords="offset points", color=style.QUIET, fontsize=style.SMALL, linespacing=1.0)  # fmt: skip
+                    textcoords="offset points", color=style.QUIET, fontsize=style.points(style.SMALL),
+                    linespacing=1.0)  # fmt: skip

@@ -100,7 +100,7 @@ def draw_bar(figure, shade: Shades, label: str, **place):
     bar.set_ticks(shade.levels[first % stride :: stride])
     bar.set_label(label)
     bar.outline.set_linewidth(0.5)
-    bar.ax.tick_params(labelsize=style.NORMAL, width=0.6)
+    bar.ax.tick_params(labelsize=style.points(style.NORMAL), width=0.6)
     return bar
 
 

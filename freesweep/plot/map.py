@@ -2,6 +2,7 @@
 
 import textwrap
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -58,19 +59,20 @@ def design_map(dataset, variable="rotation", ax=None, paths=True, examples=True,
 
 def _dress(ax, sheet: Plane, variable, handles):
     """Window, ticks, title with what was chosen, and the legend below the axes."""
-    family = {"fontfamily": style.SETTINGS["font.family"]}  # Axes that were handed in bring their own type
-    plain = {"fontsize": style.NORMAL + 1.0, "color": style.INK, "math_fontfamily": "stix", **family}
+    family = {"fontfamily": mpl.rcParams["font.family"]}  # Axes that were handed in bring their own type
+    plain = {"fontsize": style.points(style.NORMAL + 1.0), "color": mpl.rcParams["axes.labelcolor"], **family}
+    plain["math_fontfamily"] = mpl.rcParams["mathtext.fontset"]
     ax.set(xlim=ALPHA, ylim=BETA, facecolor=style.PAPER)
     ax.set_xlabel(r"fiber angle $\alpha$ [degree]", **plain)
     ax.set_ylabel(r"fiber angle $\beta$ [degree]", labelpad=1.0, **plain)
     for axis, major, minor in ((ax.xaxis, 15.0, 5.0), (ax.yaxis, 30.0, 10.0)):
         axis.set_major_locator(MultipleLocator(major))
         axis.set_minor_locator(MultipleLocator(minor))
-    ax.tick_params(labelsize=style.NORMAL, labelfontfamily=family["fontfamily"])
+    ax.tick_params(labelsize=style.points(style.NORMAL), labelfontfamily=family["fontfamily"])
 
     width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
     below = textwrap.wrap(", ".join(sheet.point.words()), max(int(width / LETTER), 30))
-    heading = {**plain, "fontsize": style.LARGE, "fontweight": "bold"}
+    heading = {**plain, "fontsize": style.points(style.LARGE), "fontweight": "bold"}
     ax.set_title(title(variable), loc="left", pad=7.0 + 10.0 * len(below), **heading)
     ax.annotate(
         "\n".join(below),

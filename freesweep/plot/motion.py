@@ -53,7 +53,7 @@ def frames(tube: Actuator, states):
             ax.set_xlabel("axial position [mm], radii to the same scale")
             ax.yaxis.set_visible(False)
             ax.spines[["left", "top", "right"]].set_visible(False)
-            ax.set_title(_words(states.isel(pressure=k), shape), loc="left", fontsize=style.NORMAL + 1.0)
+            ax.set_title(_words(states.isel(pressure=k), shape), loc="left", fontsize=style.points(style.NORMAL + 1.0))
         yield ax
 
 

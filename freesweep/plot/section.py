@@ -73,7 +73,7 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
             sheet = sheets[i][k]
             keys |= _draw(ax, sheet, values[i][k], shade, variable, dataset)
             if i == 0:
-                ax.set_title(describe(over[0], nodes[0][k]), loc="left", fontsize=style.NORMAL)
+                ax.set_title(describe(over[0], nodes[0][k]), loc="left", fontsize=style.points(style.NORMAL))
             if i == len(rows) - 1:
                 ax.set_xlabel(axis_label(x, short=True))
             if k == 0:
@@ -124,10 +124,10 @@ def head(figure, ax, text, point, lift) -> None:
     width = figure.get_size_inches()[0] * style.INCH
     below = textwrap.wrap(", ".join(point.words()), int(width / LETTER))
     heading = "\n".join([text, *[" "] * len(below)])  # room for what was chosen
-    figure.suptitle(heading, x=0.01, ha="left", fontsize=style.LARGE, fontweight="bold", linespacing=1.0)
+    figure.suptitle(heading, x=0.01, ha="left", fontsize=style.points(style.LARGE), fontweight="bold", linespacing=1.0)
     how = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False, "gid": "chosen"}
     chosen = ax.annotate(
-        "\n".join(below), (0.0, 1.0), xytext=(0.0, lift), color=style.QUIET, fontsize=style.SMALL, **how
+        "\n".join(below), (0.0, 1.0), xytext=(0.0, lift), color=style.QUIET, fontsize=style.points(style.SMALL), **how
     )
     chosen.set_in_layout(False)  # it may run over several maps
 

@@ -70,11 +70,14 @@ SETTINGS = {
 
 @contextlib.contextmanager
 def context():
-    """The settings, for a while. What pyplot sets when it is first imported meanwhile stays: ``rc_context`` would take a
-    notebook's ``interactive`` back, and later plots would not be seen.
+    """The settings, for a while, but for those that the user has changed: own styles pass through.
+
+    What pyplot sets when it is first imported meanwhile stays: ``rc_context`` would take a notebook's ``interactive`` back,
+    and later plots would not be seen.
     """
     before = {name: mpl.rcParams[name] for name in SETTINGS}
-    mpl.rcParams.update(SETTINGS)
+    own = {name for name, value in before.items() if value != mpl.rcParamsDefault[name]}
+    mpl.rcParams.update({name: value for name, value in SETTINGS.items() if name not in own})
     try:
         yield
     finally:
@@ -100,6 +103,11 @@ def ramp(count: int) -> list[str]:
     return [to_hex(colour) for colour in SEQUENTIAL(np.linspace(1.0, 0.38, count)[::-1])]
 
 
+def points(size: float) -> float:
+    """A size of type, SMALL, NORMAL or LARGE, to the scale of the font size that holds [points]."""
+    return size * mpl.rcParams["font.size"] / NORMAL
+
+
 def legible(colour: str) -> str:
     """The colour of type beside a line of ``colour``: darker where that is too light to read on paper."""
     rgb = np.array(to_rgb(colour))
@@ -118,7 +126,7 @@ def dress(ax: Axes, xlabel: str, ylabel: str, heading: str = "") -> Axes:
     """Labels with units, a heading at the left, open axes with faint lines to read values from."""
     ax.set_xlabel(xlabel)
     ax.set_ylabel(ylabel)
-    ax.set_title(heading, loc="left", fontsize=NORMAL + 1.0, fontweight="bold")
+    ax.set_title(heading, loc="left", fontsize=points(NORMAL + 1.0), fontweight="bold")
     ax.spines[["top", "right"]].set_visible(False)
     ax.grid(True, color=BLANK, linewidth=0.5)
     ax.set_axisbelow(True)

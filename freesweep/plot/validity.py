@@ -78,7 +78,9 @@ def validity_maps(datasets, of="equilibrium", x="alpha", y="beta", figure=None, 
             _, found, sheet = validity_map(dataset, of, x, y, ax, **select)
             keys |= found
             ax.set_title(
-                f"strain energy: {dataset.attrs.get('energy', 'not named')}", loc="left", fontsize=style.NORMAL
+                f"strain energy: {dataset.attrs.get('energy', 'not named')}",
+                loc="left",
+                fontsize=style.points(style.NORMAL),
             )
             if ax is not axes[0]:
                 ax.set_ylabel("")
