@@ -14,6 +14,7 @@ from .export import add_export
 from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
 from .judge import add_judging
 from .query import add_query
+from .shell import SHELLS, Completion, Parser
 from .single import add_single
 from .thesis import add_thesis
 
@@ -76,11 +77,18 @@ def _joined(words):
 
 def parser() -> argparse.ArgumentParser:
     """The whole command line."""
-    top = argparse.ArgumentParser(
+    top = Parser(
         prog="freesweep",
         description="Statics of fiber-reinforced soft actuators: solve one, sweep a design space, draw it.",
     )
     top.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    top.add_argument(
+        "--print-completion",
+        action=Completion,
+        choices=SHELLS,
+        metavar="SHELL",
+        help=f"a script for {', '.join(SHELLS)}",
+    )
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _sweep(commands)
     add_plot(commands)
@@ -189,6 +197,7 @@ def _info(commands):
     command = commands.add_parser("info", help="what an atlas holds and where it comes from")
     command.add_argument("atlas")
     command.add_argument("--specification", action="store_true", help="print the specification it was made from")
+    command.add_argument("--json", action="store_true", help="print it as JSON")
     command.set_defaults(run=_run_info)
 
 
@@ -201,4 +210,9 @@ def _run_info(options):
         warnings.simplefilter("ignore", UnsealedWarning)  # one of the lines says so
         atlas = open_atlas(options.atlas)
     with atlas:
-        print(atlas.data.attrs.get("specification", "") if options.specification else describe(atlas))
+        if options.json:
+            from .as_json import of_atlas
+
+            print(of_atlas(atlas))
+        else:
+            print(atlas.data.attrs.get("specification", "") if options.specification else describe(atlas))
