@@ -186,3 +186,12 @@ def test_what_pyplot_sets_when_it_is_first_imported_within_a_plot_stays():
     matplotlib.interactive(before)
     assert after is not before
     assert matplotlib.rcParams["font.family"] == font
+
+
+def test_long_names_fit_the_axes_of_xarray():
+    """It breaks them after 30 characters, the unit among them; what else is to say stands in a comment."""
+    for name in (*schema.PARAMETERS, *schema.VARIABLES, *schema.PROFILES, "x"):
+        about = schema.attributes(name)
+        units = about["units"].replace("1", "")
+        assert len(f"{about['long_name']} [{units}]" if units else about["long_name"]) <= 30, name
+    assert "positive in tension" in schema.attributes("force")["comment"]

@@ -260,9 +260,8 @@ def describe(atlas) -> str:
         if not name.endswith("_error"):
             bound = ", with error bound" if f"{name}_error" in data else ""
             unit = variable.attrs.get("units")
-            lines.append(
-                f"  {name:<28}{f'[{unit}]' if unit else '[flag]':<10}{variable.attrs.get('long_name', '')}{bound}"
-            )
+            said = variable.attrs.get("comment", variable.attrs.get("long_name", ""))
+            lines.append(f"  {name:<28}{f'[{unit}]' if unit else '[flag]':<10}{said}{bound}")
     lines += ["", "statuses"]
     for status in (name for name in STATUS_OF if name in data):
         lines += [

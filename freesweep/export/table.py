@@ -59,7 +59,7 @@ def grid_of(found) -> Grid:
     }
     known = {**first, **found.data_vars, **{name: found[name] for name in fixed}}
     units = {name: one.attrs.get("units", "") for name, one in known.items()}
-    words = {name: one.attrs.get("long_name", name) for name, one in known.items()}
+    words = {name: one.attrs.get("comment", one.attrs.get("long_name", name)) for name, one in known.items()}
     return Grid(axes, columns, fixed, units, words, dict(found.attrs))
 
 

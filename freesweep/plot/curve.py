@@ -189,9 +189,9 @@ def _name_choice(ax, point, marks):
     words = [*point.words(), *marks]
     if words:
         width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
-        below = textwrap.wrap(", ".join(words), max(int(width / LETTER), 30))
-        ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + 9.0 * len(below), fontsize=style.points(style.NORMAL + 1.0),
-                     fontweight="bold")  # fmt: skip
+        below = textwrap.wrap(", ".join(words), max(int(width / (LETTER * style.wider())), 30))
+        ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + style.points(9.0) * len(below),
+                     fontsize=style.points(style.NORMAL + 1.0), fontweight="bold")  # fmt: skip
         ax.annotate("\n".join(below), (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), gid="chosen",
                     textcoords="offset points", color=style.QUIET, fontsize=style.points(style.SMALL),
                     linespacing=1.0)  # fmt: skip

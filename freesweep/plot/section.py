@@ -44,7 +44,8 @@ def section_map(dataset, variable="rotation", x="alpha", y="beta", ax=None, **se
 def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure",), figure=None, **select) -> Figure:
     """Small maps of ``variable`` over ``x`` and ``y``, one for each node of one or two axes ``over``; returns the figure.
 
-    Of an axis with more than four nodes, four are taken, first and last among them; the first axis runs to the right, the
+    Of an axis with more than four nodes, four are taken, the last among them (without pressure there is nothing to see), and
+    steps of the colours so that each of them shows some; the first axis runs to the right, the
     second down. One set of colours serves all. Raises ValueError as :func:`section_map` does.
     """
     over = (over,) if isinstance(over, str) else tuple(over)
@@ -54,7 +55,7 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
         )
     for name in over:
         check_name(name, [axis for axis in dimensions(dataset) if axis not in (x, y)], "axis to run over")
-    nodes = [_some(dataset[name].values) for name in over]
+    nodes = [_some(name, dataset[name].values) for name in over]
     rows = nodes[1] if len(over) == 2 else [None]
     sheets = [
         [
@@ -67,7 +68,8 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
         figure = style.new_figure(style.PAGE, PANEL * len(rows) + 34.0) if figure is None else figure
         axes = figure.subplots(len(rows), len(nodes[0]), sharex=True, sharey=True, squeeze=False)
         values = [[shown_values(sheet, variable) for sheet in row] for row in sheets]
-        shade = shades(np.concatenate([one.compressed() for row in values for one in row]), display(variable).centre)
+        panels = [one.compressed() for row in values for one in row]
+        shade = shades(np.concatenate(panels), display(variable).centre, panels)
         keys = {}
         for (i, k), ax in np.ndenumerate(axes):
             sheet = sheets[i][k]
@@ -86,9 +88,10 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
     return figure
 
 
-def _some(nodes):
-    """Up to MOST nodes, evenly among them: numbers, or names of designs."""
-    at = np.unique(np.linspace(0, len(nodes) - 1, MOST).round().astype(int))
+def _some(name, nodes):
+    """Up to MOST nodes, evenly among them: numbers, or names of designs. Without pressure there is nothing to see."""
+    blank = int(name == "pressure" and len(nodes) > 1 and nodes[0] == 0.0)
+    at = np.unique(np.linspace(0, len(nodes) - 1, MOST + blank).round().astype(int))[blank:]
     return [str(node) if nodes.dtype.kind in "UO" else float(node) for node in nodes[at]]
 
 
@@ -122,7 +125,7 @@ def window(ax, sheet: Plane) -> None:
 def head(figure, ax, text, point, lift) -> None:
     """Title of the figure and, ``lift`` points above the first map, what was chosen."""
     width = figure.get_size_inches()[0] * style.INCH
-    below = textwrap.wrap(", ".join(point.words()), int(width / LETTER))
+    below = textwrap.wrap(", ".join(point.words()), int(width / (LETTER * style.wider())))
     heading = "\n".join([text, *[" "] * len(below)])  # room for what was chosen
     figure.suptitle(heading, x=0.01, ha="left", fontsize=style.points(style.LARGE), fontweight="bold", linespacing=1.0)
     how = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False, "gid": "chosen"}

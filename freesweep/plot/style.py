@@ -5,6 +5,7 @@ CIELAB, so equal steps of a value look equally large and keep their order in gre
 """
 
 import contextlib
+import functools
 import io
 import os
 from pathlib import Path
@@ -14,6 +15,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import TextPath
 
 from ..atlas.files import write_whole
 
@@ -38,6 +41,7 @@ THICK, THIN = 1.4, 0.7  # lines of data; where a fiber family would have to push
 DESIGN = {"color": INK, "markerfacecolor": PAPER, "markersize": 3.4, "markeredgewidth": 0.8}  # the dot of a design
 
 LIGHTEST_TYPE = 0.24  # relative luminance: a contrast of 3.6 to paper
+SAMPLE = "length 192 mm, radius 4.76 mm, wall 1.59 mm, thin lines"
 SMALL, NORMAL, LARGE = 7.0, 8.0, 10.0  # type [points]
 
 SETTINGS = {
@@ -106,6 +110,21 @@ def ramp(count: int) -> list[str]:
 def points(size: float) -> float:
     """A size of type, SMALL, NORMAL or LARGE, to the scale of the font size that holds [points]."""
     return size * mpl.rcParams["font.size"] / NORMAL
+
+
+@functools.lru_cache(maxsize=8)
+def _mean_letter(family):
+    """Mean width of letters of a font, in sizes of type."""
+    return TextPath((0, 0), SAMPLE, size=100.0, prop=FontProperties(family=list(family))).get_extents().width / len(
+        SAMPLE
+    )
+
+
+def wider() -> float:
+    """By how much the type that holds is wider than SETTINGS' own, size included: for words that are broken to a width."""
+    own, plain = tuple(mpl.rcParams["font.family"]), tuple(SETTINGS["font.family"])
+    scale = mpl.rcParams["font.size"] / SETTINGS["font.size"]
+    return scale * (1.0 if own == plain else _mean_letter(own) / _mean_letter(plain))
 
 
 def legible(colour: str) -> str:
