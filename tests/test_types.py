@@ -11,6 +11,7 @@ import pytest
 from test_docs import BLOCK
 
 import freesweep as fs
+from freesweep.plot import curve, map, motion, section, style, tubes, validity
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "freesweep"
@@ -90,6 +91,8 @@ def test_dir_shows_what_is_public():
 
 def public():
     """Every public function, and every public method of a public class."""
+    plots = [map.design_map, section.section_map, section.multiples, curve.curve, tubes.shape_plot, motion.save_motion]
+    yield from ((plot.__name__, plot) for plot in (*plots, validity.validity_map, validity.validity_maps, style.save))
     for name in [*fs.__all__, "closed_form"]:
         one = getattr(fs, name)
         if inspect.isclass(one) and not issubclass(one, Exception):

@@ -1,6 +1,7 @@
 """The map of the design space: one variable of an atlas over the two fiber angles, in the manner of Figure 1-2."""
 
 import textwrap
+from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
@@ -9,10 +10,14 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
+from ..quantities import Quantity
 from . import glyph, regions, style
 from .display import display, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, plane
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIZE = (style.PAGE, 165.0)  # of a figure of its own [mm]
 LEGEND_COLUMN = 43.0  # [mm]
@@ -20,10 +25,18 @@ LETTER = 1.3  # of the line below the title [mm]
 COARSE = 6.0  # [degree]: wider grids are drawn node by node, without contours between them
 
 
-def design_map(dataset, variable="rotation", ax=None, paths=True, examples=True, **select) -> Axes:
+def design_map(
+    dataset: "xr.Dataset",
+    variable: str = "rotation",
+    ax: Axes | None = None,
+    paths: bool = True,
+    examples: bool = True,
+    **select: Quantity,
+) -> Axes:
     """Draws ``variable`` of an atlas (xarray Dataset) over alpha and beta [degree], and returns the Axes.
 
-    ``select`` gives the other dimensions (``length=0.2``, ``pressure=1e5``, in the stored units), named below the title.
+    ``select`` gives the other dimensions (``length=0.2``, ``pressure="1 bar"``; plain numbers in stored units), named below
+    the title.
     Between its nodes an atlas is interpolated, as by a query; a dataset that cannot be is drawn at the nearest node, which
     is said there and in a warning. Not given: the largest pressure, the force and torque nearest zero,
     the middle of anything else. ``paths`` draws the way of some designs under pressure (uniform tube), ``examples``

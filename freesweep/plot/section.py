@@ -1,6 +1,8 @@
 """Maps of an atlas over any two of its axes, alone or as small multiples along others, in one set of colours."""
 
 import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,11 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .. import closed_form
+from ..quantities import Quantity
 from . import style
 from .choice import check_name, dimensions
 from .display import axis_label, describe, display, shown_units, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, section
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIZE = (style.PAGE * 0.75, 105.0)  # of a figure of one map [mm]
 SMOOTH = 12  # nodes along an axis from which contours are drawn between them
@@ -22,7 +28,14 @@ LETTER = 1.3  # of the words above the maps [mm]
 LEGEND_COLUMN = 43.0  # [mm]
 
 
-def section_map(dataset, variable="rotation", x="alpha", y="beta", ax=None, **select) -> Axes:
+def section_map(
+    dataset: "xr.Dataset",
+    variable: str = "rotation",
+    x: str = "alpha",
+    y: str = "beta",
+    ax: Axes | None = None,
+    **select: Quantity,
+) -> Axes:
     """Draws ``variable`` of an atlas over the axes ``x`` and ``y``, and returns the Axes.
 
     Everything else is as in :func:`freesweep.plot.map.design_map`, which draws more over both fiber angles. Raises
@@ -41,7 +54,15 @@ def section_map(dataset, variable="rotation", x="alpha", y="beta", ax=None, **se
     return ax
 
 
-def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure",), figure=None, **select) -> Figure:
+def multiples(
+    dataset: "xr.Dataset",
+    variable: str = "rotation",
+    x: str = "alpha",
+    y: str = "beta",
+    over: str | Sequence[str] = ("pressure",),
+    figure: Figure | None = None,
+    **select: Quantity,
+) -> Figure:
     """Small maps of ``variable`` over ``x`` and ``y``, one for each node of one or two axes ``over``; returns the figure.
 
     Of an axis with more than four nodes, four are taken, the last among them (without pressure there is nothing to see), and
