@@ -35,20 +35,23 @@ _HOMES = {
     "Limit": "inverse.wishes",
     "Profile": "inverse.freedom",
     "run_sweep": "sweep.run",
+    "to_dataframe": "export.frame",
+    "example_atlas": "example",
     "open_atlas": "atlas.store",
     "Atlas": "atlas.store",
     "UnsealedWarning": "atlas.store",
 }
-__all__ = [*_HOMES, "closed_form"]
+_ROOMS = ("closed_form", "plot", "status", "sweep")
+__all__ = [*_HOMES, "closed_form", "sweep"]
 
 
 def __getattr__(name):
     if name in _HOMES:
         return getattr(importlib.import_module(f".{_HOMES[name]}", __name__), name)
-    if name in ("closed_form", "plot", "status"):
+    if name in _ROOMS:
         return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module 'freesweep' has no attribute {name!r}")
 
 
 def __dir__():
-    return sorted([*globals(), *__all__])
+    return sorted({*__all__, *_ROOMS, "__version__"})

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -9,7 +10,8 @@ from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
 from .faults import ActuatorError
 from .given import numbers, read_number
 from .options import read_choice
-from .profiles import ProfileError, as_profile, is_profile, together
+from .profiles import Profile, ProfileError, as_profile, is_profile, together
+from .quantities import Along, Quantities, Quantity
 from .tube_model import DEFAULT, FIBER_PLACES, MODELS, fiber_place, word_faults
 from .unit_warnings import doubts, warn_of
 
@@ -61,11 +63,11 @@ class Actuator:
     thicker than the radius. Equal actuators have equal hashes; callables are equal if they are the same.
     """
 
-    alpha: object
-    beta: object
+    alpha: Any
+    beta: Any
     length: float
     radius: float
-    wall: object
+    wall: Any
     material: MooneyRivlin | Yeoh
     fiber_extension: float = 1.0
     fiber_radius: float | str | None = None
@@ -73,6 +75,25 @@ class Actuator:
     model: str = DEFAULT
     wall_model: str | None = None
     fibers: str | None = None
+
+    if TYPE_CHECKING:  # what may be given is more than what is kept
+
+        def __init__(
+            self,
+            *,
+            alpha: Along,
+            beta: Along,
+            length: Quantity,
+            radius: Quantity,
+            wall: Along,
+            material: MooneyRivlin | Yeoh,
+            fiber_extension: Quantity = 1.0,
+            fiber_radius: Quantity | None = None,
+            energy: str = "full",
+            model: str = DEFAULT,
+            wall_model: str | None = None,
+            fibers: str | None = None,
+        ) -> None: ...
 
     def __post_init__(self):
         faults = []
@@ -114,6 +135,11 @@ class Actuator:
         )  # fmt: skip
         varying = tuple(tuple(self.profile(name).at(HASHED).tolist()) for name in VARYING)
         return hash((*fields, varying))
+
+    def _repr_html_(self):
+        from .notebook import of_actuator
+
+        return of_actuator(self)
 
     def _impossible(self):
         """Faults of numbers that are each fine alone."""
@@ -157,7 +183,7 @@ class Actuator:
         """Whether a fiber angle or the wall is a profile along the tube."""
         return any(is_profile(getattr(self, name)) for name in VARYING)
 
-    def angles(self, share):
+    def angles(self, share: Quantities) -> tuple[Any, Any]:
         """Both fiber angles [degree] at shares x/l of the length, 0 to 1; on a jump the left ones.
 
         Raises :class:`ActuatorError`.
@@ -170,7 +196,7 @@ class Actuator:
             raise ActuatorError(["share: a place x/l lies beyond the tube; give numbers from 0 to 1"])
         return self.profile("alpha").at(share), self.profile("beta").at(share)
 
-    def profile(self, name):
+    def profile(self, name: str) -> Profile:
         """Fiber angle [degree] or wall [m] along the tube, as a :class:`freesweep.profiles.Profile`, numbers too.
 
         ``name`` is "alpha", "beta" or "wall". Raises :class:`ActuatorError`.
@@ -198,7 +224,7 @@ class Actuator:
         """Whether the fibers are threads, which cannot push."""
         return (self.fibers or MODELS[self.model].fibers) == "loose"
 
-    def design(self) -> dict:
+    def design(self) -> dict[str, float]:
         """The numbers that a sweep would vary: name -> value in SI units and degrees; of a profile, the middle's."""
         alpha, beta = self.angles(0.5)
         return {

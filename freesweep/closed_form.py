@@ -14,12 +14,17 @@ meaning (a straight fiber cannot stretch; alpha = -beta cannot rotate; region I 
 
 import functools
 import inspect
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import numpy as np
 
 from .faults import ActuatorError
 from .given import numbers
 from .options import read_choice
+from .quantities import Quantities
+
+Formula = TypeVar("Formula", bound=Callable[..., Any])
 
 UNITS = {
     **{"alpha": "degree", "beta": "degree", "fiber_extension": "1", "stretch": "1"},
@@ -29,7 +34,7 @@ REGIONS = ("AF", "DF", "I", "IIa", "IIb", "LM")
 ANGLE_TOLERANCE = 1e-9  # [degree] and, for the product of tangents, relative: what counts as lying on a line
 
 
-def _formula(function):
+def _formula(function: Formula) -> Formula:
     """Let a formula take numbers as every public function does; raises :class:`ActuatorError` with every fault."""
     signature = inspect.signature(function)
 
@@ -64,7 +69,7 @@ def _tangents(alpha, beta):
 
 
 @_formula
-def locked_stretch(alpha, beta, fiber_extension=1.0):
+def locked_stretch(alpha: Quantities, beta: Quantities, fiber_extension: Quantities = 1.0) -> Any:
     """Circumferential stretch of the locked uniform tube [-]; NaN on the line alpha = beta."""
     ta, tb = _tangents(alpha, beta)
     half_sum, half_difference = 0.5 * (ta + tb), 0.5 * (ta - tb)
@@ -80,7 +85,9 @@ def _on(alpha, beta):
 
 
 @_formula
-def uniform_state(alpha, beta, stretch, fiber_extension=1.0):
+def uniform_state(
+    alpha: Quantities, beta: Quantities, stretch: Quantities, fiber_extension: Quantities = 1.0
+) -> tuple[Any, Any, Any, Any]:
     """Axial stretch [-], twist [radian per radius of undeformed length] and deformed angles [degree] of a uniform tube.
 
     Eqs. 2.3 and 2.4 solved for a circumferential ``stretch``; returns ``(axial_stretch, twist, alpha', beta')``.
@@ -102,19 +109,19 @@ def uniform_state(alpha, beta, stretch, fiber_extension=1.0):
 
 
 @_formula
-def locked_angles(alpha, beta, fiber_extension=1.0):
+def locked_angles(alpha: Quantities, beta: Quantities, fiber_extension: Quantities = 1.0) -> tuple[Any, Any]:
     """Fiber angles of the locked uniform tube [degree], ``(alpha', beta')``: a point of the locked manifold."""
     return uniform_state(alpha, beta, locked_stretch(alpha, beta, fiber_extension), fiber_extension)[2:]
 
 
 @_formula
-def locked_manifold(alpha):
+def locked_manifold(alpha: Quantities) -> Any:
     """The beta [degree] that makes ``tan(alpha) tan(beta) = -2``: such a design does not move under pressure."""
     return np.degrees(np.arctan(-2.0 / np.tan(np.radians(np.asarray(alpha, float)))))
 
 
 @_formula
-def blocked_force(alpha, beta, radius, pressure):
+def blocked_force(alpha: Quantities, beta: Quantities, radius: Quantities, pressure: Quantities) -> Any:
     """Force [N] that keeps the length at pressure [Pa] with the ends free to rotate (Eq. 2.16); ``radius`` [m]."""
     ta, tb = _tangents(alpha, beta)
     product = ta * tb
@@ -123,7 +130,7 @@ def blocked_force(alpha, beta, radius, pressure):
 
 
 @_formula
-def blocked_torque(alpha, beta, radius, pressure):
+def blocked_torque(alpha: Quantities, beta: Quantities, radius: Quantities, pressure: Quantities) -> Any:
     """Torque [N m] that keeps the rotation at pressure [Pa] with the length free (Eqs. 2.19, 2.20); ``radius`` [m]."""
     ta, tb = _tangents(alpha, beta)
     torque = np.pi * np.asarray(radius) ** 3 * pressure * (2.0 + ta * tb) / (ta + tb)
@@ -132,7 +139,16 @@ def blocked_torque(alpha, beta, radius, pressure):
 
 
 @_formula
-def critical_pressure(alpha, beta, length, radius, wall, c10, c01=0.0, energy="full"):
+def critical_pressure(
+    alpha: Quantities,
+    beta: Quantities,
+    length: Quantities,
+    radius: Quantities,
+    wall: Quantities,
+    c10: Quantities,
+    c01: Quantities = 0.0,
+    energy: str = "full",
+) -> Any:
     """Pressure [Pa] from which a cylinder whose rotation is held buckles: its first mode is antisymmetric.
 
     Lengths in [m], constants in [Pa]; infinite where it never does. Linear stability of y = 1 under Eq. 2.20, where nothing
@@ -149,7 +165,7 @@ def critical_pressure(alpha, beta, length, radius, wall, c10, c01=0.0, energy="f
 
 
 @_formula
-def region(alpha, beta):
+def region(alpha: Quantities, beta: Quantities) -> Any:
     """Name of the region of the design space (Figure 1-2) as an array of strings, one of REGIONS.
 
     AF: alpha = -beta; DF: alpha = beta; LM: the locked manifold; I: swells, first longer, then shorter, rotating; IIa:

@@ -6,12 +6,13 @@ All are cases of ``w = c10 (I1 - 3) + c01 (I2 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 
 import math
 import warnings
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from .faults import ActuatorError
 from .given import described, read_number
+from .quantities import Quantity
 
 
 @dataclass(frozen=True)
@@ -32,8 +33,19 @@ class MooneyRivlin:
     largest_stretch: float | None = field(default=None, repr=False, compare=False, kw_only=True)
     source: str = field(default="", repr=False, compare=False, kw_only=True)
 
+    if TYPE_CHECKING:  # what may be given is more than what is kept
+
+        def __init__(
+            self, c10: Quantity, c01: Quantity = 0.0, *, largest_stretch: Quantity | None = None, source: str = ""
+        ) -> None: ...
+
     def __post_init__(self):
         _read(self, c10={"positive": True}, c01={"least": 0.0})
+
+    def _repr_html_(self):
+        from .notebook import of_rubber
+
+        return of_rubber(self)
 
 
 @dataclass(frozen=True)
@@ -43,6 +55,10 @@ class NeoHookean(MooneyRivlin):
     constants: ClassVar[tuple] = ("c10",)
 
     c01: float = field(default=0.0, init=False, repr=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(self, c10: Quantity, *, largest_stretch: Quantity | None = None, source: str = "") -> None: ...
 
 
 @dataclass(frozen=True)
@@ -64,6 +80,18 @@ class Yeoh:
     largest_stretch: float | None = field(default=None, repr=False, compare=False, kw_only=True)
     source: str = field(default="", repr=False, compare=False, kw_only=True)
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            c1: Quantity,
+            c2: Quantity = 0.0,
+            c3: Quantity = 0.0,
+            *,
+            largest_stretch: Quantity | None = None,
+            source: str = "",
+        ) -> None: ...
+
     def __post_init__(self):
         _read(self, c1={"positive": True}, c2={}, c3={})
         limit = float(convex_to(self.c1, self.c2, self.c3))
@@ -73,6 +101,11 @@ class Yeoh:
                 " beyond it the stress would fall as the strain grows; take these constants below that only",
                 stacklevel=3,
             )
+
+    def _repr_html_(self):
+        from .notebook import of_rubber
+
+        return of_rubber(self)
 
     @property
     def c10(self) -> float:

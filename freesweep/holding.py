@@ -6,6 +6,8 @@ to the value asked for. Where the wall would have to be pushed on that way, the 
 or rotation found is changed to the value asked for: ``held_path`` says so.
 """
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from .actuator import Actuator
@@ -15,10 +17,14 @@ from .given import numbers
 from .loads import read_load, read_stations, warn_of_loads
 from .options import read_switch
 from .profiles import SENSITIVITY, widened
+from .quantities import Names, Quantities
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .statics import inflate, is_solved_whole, read_course, undeformed
 from .thick_wall import thin_wall_attributes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 HALF_CELLS = 48  # of half a tube that is the same all along
 MANY = 200  # states among which it is worth to look first for those that nothing holds
@@ -34,15 +40,15 @@ BOTH_HELD = (
 
 def blocked_force(
     tube: Actuator,
-    pressure,
-    deformed_length=None,
-    torque=0.0,
+    pressure: Quantities,
+    deformed_length: Quantities | None = None,
+    torque: Quantities = 0.0,
     *,
-    rotation=None,
-    x=None,
-    accuracy=1e-6,
-    derivatives=None,
-):
+    rotation: None = None,
+    x: Quantities | None = None,
+    accuracy: float = 1e-6,
+    derivatives: Names = None,
+) -> "xr.Dataset":
     """The axial force that holds the deformed length, the free end being free to rotate (Eqs. 2.16, 2.18).
 
     Parameters
@@ -67,9 +73,17 @@ def blocked_force(
 
 
 def blocked_torque(
-    tube: Actuator, pressure, rotation=0.0, force=0.0, *, deformed_length=None, buckled=False, x=None, accuracy=1e-6,
-    derivatives=None,
-):  # fmt: skip
+    tube: Actuator,
+    pressure: Quantities,
+    rotation: Quantities = 0.0,
+    force: Quantities = 0.0,
+    *,
+    deformed_length: None = None,
+    buckled: bool = False,
+    x: Quantities | None = None,
+    accuracy: float = 1e-6,
+    derivatives: Names = None,
+) -> "xr.Dataset":
     """The torque that holds the rotation of the free end, the length being free (Eqs. 2.19, 2.20).
 
     Parameters
@@ -223,7 +237,7 @@ def _hold(
     return attach(result, asked, loads, shapes, at[2])
 
 
-def corrected_torque(tube: Actuator, pressure):
+def corrected_torque(tube: Actuator, pressure: Quantities) -> Any:
     """Blocked torque with the source's superposed contraction [N m] (Eqs. 2.21, 2.22); ``pressure`` number or array [Pa].
 
     For a straight family and another (alpha = 0): the stretch y_c of the McKibben muscle (Eq. 2.15) at angle beta and the

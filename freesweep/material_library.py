@@ -25,7 +25,7 @@ _TENSILE = (
 )
 
 
-class Library(Mapping):
+class Library(Mapping[str, MooneyRivlin | Yeoh]):
     """Rubbers by name: ``materials["ecoflex-00-30"]``; each has its ``source`` and its ``largest_stretch``."""
 
     def __init__(self, rubbers):
@@ -39,6 +39,16 @@ class Library(Mapping):
 
     def __len__(self):
         return len(self._rubbers)
+
+    def __repr__(self):
+        from .notebook import library_text
+
+        return library_text(self)
+
+    def _repr_html_(self):
+        from .notebook import of_library
+
+        return of_library(self)
 
 
 materials = Library(
@@ -63,7 +73,7 @@ materials = Library(
 )
 
 
-def material(name):
+def material(name: str) -> MooneyRivlin | Yeoh:
     """A rubber of the library (``freesweep.materials`` lists them); its ``source`` says where the constants come from.
 
     Raises :class:`ActuatorError` for a name it does not hold.

@@ -12,12 +12,17 @@ actuator pulls with, and no model here knows it. Take the values for upper bound
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .actuator import Actuator
 from .faults import ActuatorError
 from .given import described, numbers, read_number
+from .quantities import Quantities, Quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MEASURED = (
     "string model: measured loads are lower by almost half (Figure 3-13), as a side load reduces the blocked force"
@@ -36,6 +41,10 @@ class Helix:
     height: float
     turns: float
 
+    if TYPE_CHECKING:  # what may be given is more than what is kept
+
+        def __init__(self, *, length: Quantity, height: Quantity, turns: Quantity) -> None: ...
+
     def __post_init__(self):
         faults = []
         for name, unit in {"length": "m", "height": "m", "turns": "1"}.items():
@@ -48,7 +57,7 @@ class Helix:
             raise ActuatorError(faults)
 
     @classmethod
-    def around(cls, radius, length, height):
+    def around(cls, radius: Quantity, length: Quantity, height: Quantity) -> "Helix":
         """The helix of an actuator of a ``length`` on an arm of a ``radius``, both ends a ``height`` apart [m].
 
         The source takes the arm's radius; add the actuator's outer radius for its middle line. Raises
@@ -77,27 +86,27 @@ class Helix:
         """Angle of the actuator from the arm's axis [degree]."""
         return float(np.degrees(np.arccos(self.height / self.length)))
 
-    def shortened(self, length) -> "Helix":
+    def shortened(self, length: Quantity) -> "Helix":
         """The helix of the same ends and turns once its actuator has another ``length`` [m]: its radius follows."""
         return Helix(length=length, height=self.height, turns=self.turns)
 
-    def hoop_load(self, force):
+    def hoop_load(self, force: Quantities) -> Any:
         """Line load on the arm per length of hoop [N/m] for a tension [N], Eq. 3.4. Slack where ``force`` < 0: 0."""
         return _tension(force) * self._sine / self.radius
 
-    def line_load(self, force):
+    def line_load(self, force: Quantities) -> Any:
         """Line load on the arm per length of the actuator [N/m] for a tension [N]. Slack where ``force`` < 0: 0."""
         return self.hoop_load(force) * self._sine
 
-    def pressure(self, force):
+    def pressure(self, force: Quantities) -> Any:
         """Mean pressure on the arm over the height that is wound [Pa] for a tension [N]."""
         return self.normal_force(force) / (2.0 * np.pi * self.radius * self.height)
 
-    def normal_force(self, force):
+    def normal_force(self, force: Quantities) -> Any:
         """Sum of all forces normal to the arm [N], whatever their direction around it, for a tension [N]."""
         return self.line_load(force) * self.length
 
-    def friction_force(self, force, coefficient):
+    def friction_force(self, force: Quantities, coefficient: Quantity) -> Any:
         """Largest load along the arm [N] that static friction takes up, for a tension [N] and a ``coefficient`` [-].
 
         The tension is the same all along: friction along the winding (a capstan's) is left out. Raises
@@ -122,7 +131,9 @@ def _tension(force):
         raise ActuatorError([f"force: {error}"]) from None
 
 
-def constriction(tube: Actuator, helix: Helix, pressure, *, friction=0.0, accuracy=1e-6):
+def constriction(
+    tube: Actuator, helix: Helix, pressure: Quantities, *, friction: Quantity = 0.0, accuracy: float = 1e-6
+) -> "xr.Dataset":
     """What an actuator wound around an arm presses with (sections 3.3 and 3.4).
 
     Parameters

@@ -1,15 +1,29 @@
 """Tolerances of manufacture: how far each output spreads, and which tolerance matters."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from .actuator import Actuator
 from .derivative.request import SHAPE, parameters, unit_of
 from .faults import ActuatorError
 from .given import described, read_number
+from .quantities import Quantity
 from .statics import LOADS, inflate
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-def tolerance(tube: Actuator, pressure, force=0.0, torque=0.0, *, accuracy=1e-6, **tolerances):
+
+def tolerance(
+    tube: Actuator,
+    pressure: Quantity,
+    force: Quantity = 0.0,
+    torque: Quantity = 0.0,
+    *,
+    accuracy: float = 1e-6,
+    **tolerances: Quantity,
+) -> "xr.Dataset":
     """The standard deviation of each output of :func:`freesweep.inflate`, to first order in independent ``tolerances``.
 
     Parameters

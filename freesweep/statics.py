@@ -1,5 +1,7 @@
 """Statics of one actuator: the locked shape, and inflation under force and torque. Results are xarray Datasets."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from . import profiles, status
@@ -9,15 +11,21 @@ from .derivative.request import asked_of
 from .faults import ActuatorError
 from .loads import read_load, read_stations, warn_of_loads
 from .profiles import SENSITIVITY, widened
+from .quantities import Names, Quantities
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .thick_wall import thin_wall_attributes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 BASE_CELLS = 96  # four times a sweep's: profiles are wanted as exact as scalars
 LOADS = ("force", "torque", "pressure")
 
 
-def lock(tube: Actuator, *, x=None, accuracy=1e-6, derivatives=None):
+def lock(
+    tube: Actuator, *, x: Quantities | None = None, accuracy: float = 1e-6, derivatives: Names = None
+) -> "xr.Dataset":
     """The locked shape: largest volume that the fibers allow, whatever the wall (Eq. 2.12).
 
     Parameters
@@ -48,7 +56,16 @@ def lock(tube: Actuator, *, x=None, accuracy=1e-6, derivatives=None):
     return result
 
 
-def inflate(tube: Actuator, pressure, force=0.0, torque=0.0, *, x=None, accuracy=1e-6, derivatives=None):
+def inflate(
+    tube: Actuator,
+    pressure: Quantities,
+    force: Quantities = 0.0,
+    torque: Quantities = 0.0,
+    *,
+    x: Quantities | None = None,
+    accuracy: float = 1e-6,
+    derivatives: Names = None,
+) -> "xr.Dataset":
     """Equilibrium under pressure, axial force and torque (Eqs. 2.11, 2.15, 2.18).
 
     Parameters

@@ -122,6 +122,12 @@ def _from_text(text, units, expects):
     return float(_DECIMAL.multiply(_DECIMAL.create_decimal(number), _factor(unit, units, text)))
 
 
+def unit_of(text: str) -> str:
+    """The unit that is written behind a number, "" if there is none."""
+    match = _QUANTITY.fullmatch(str(text).strip().replace("−", "-"))
+    return match[2].strip() if match else ""
+
+
 def factor(unit: str, units: str) -> float:
     """What a number in a ``unit`` is multiplied with, to be in ``units``; no unit at all: 1. Raises ValueError as above."""
     return float(_factor(unit, units, unit))

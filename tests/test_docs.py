@@ -1,11 +1,17 @@
 """The pages under docs/: every block of Python runs, and prints what the page says it prints."""
 
 import contextlib
+import importlib.util
 import io
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from grids import CHILD_ENVIRONMENT
+
+import freesweep as fs
 
 DOCS = Path(__file__).parent.parent / "docs"
 BLOCK = re.compile(r"^```python\n(.*?)^```(?:\n\n```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE)
@@ -51,3 +57,17 @@ def test_pages_link_to_what_is_there():
     for page in DOCS.glob("*.md"):
         for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
             assert (DOCS / target).exists(), f"{page.name}: {target}"
+
+
+@pytest.mark.skipif(importlib.util.find_spec("myst_nb") is None, reason="Sphinx and MyST are not installed")
+def test_the_site_is_built_offline_without_a_warning(tmp_path):
+    """Warnings are errors: dead links, names that are none, docstrings that cannot be read. Notebooks are run elsewhere."""
+    words = ["-m", "sphinx", "-q", "-W", "--keep-going", "-D", "nb_execution_mode=off", str(DOCS), str(tmp_path)]
+    done = subprocess.run([sys.executable, *words], capture_output=True, text=True, env=CHILD_ENVIRONMENT)
+    assert done.returncode == 0, done.stderr
+    reference = (tmp_path / "api.html").read_text(encoding="utf-8")
+    for name in set(fs.__all__) - {"sweep", "closed_form", "materials"}:
+        assert f'id="freesweep.{name}"' in reference, name
+    assert 'id="freesweep.sweep.from_python.sweep"' in reference
+    assert not [name for name in re.findall(r'(?:src|href)="(https?:[^"]+)"', reference) if "sphinx-doc" not in name
+                and "alabaster" not in name]  # fmt: skip

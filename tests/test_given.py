@@ -354,7 +354,10 @@ def test_every_public_callable_is_tried():
         "UnsealedWarning",
         "Calibration",
         "run_sweep",
+        "sweep",
+        "to_dataframe",
         "open_atlas",
+        "example_atlas",
         "Atlas",
         "closed_form",
     }

@@ -241,7 +241,7 @@ def test_axes_in_axes_out(whole):
         ({"variable": "locked_rotation"}, "no variable 'locked_rotation'"),
         ({"lenght": 0.1}, "no dimension 'lenght'; did you mean 'length'.*pressure"),
         ({"alpha": 30.0}, "no dimension 'alpha'"),
-        ({"length": "10 mm"}, r"length must be one finite number \[m\]"),
+        ({"length": "10 kPa"}, "length: expects a length"),
         ({"pressure": np.nan}, r"pressure must be one finite number \[Pa\]"),
     ],
 )
@@ -291,3 +291,9 @@ def test_every_variable_can_be_shown():
 def test_no_solver_is_loaded():
     code = "import sys, freesweep.plot.map; sys.exit(bool({'freesweep.solver', 'numba'} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_what_is_chosen_is_read_with_its_unit(whole):
+    """As everywhere in Python: texts, and a fault by its name."""
+    plain, text = (design_map(whole, length=value, paths=False, examples=False) for value in (0.2, "200 mm"))
+    assert np.array_equal(mesh_of(plain).filled(0.0), mesh_of(text).filled(0.0))

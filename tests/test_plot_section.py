@@ -14,6 +14,8 @@ from matplotlib.collections import QuadMesh
 
 from freesweep import status
 from freesweep.atlas import schema
+from freesweep.plot import fill, style
+from freesweep.plot.plane import section
 from freesweep.plot.section import multiples, section_map
 from freesweep.plot.validity import KINDS, validity_map, validity_maps
 
@@ -93,7 +95,7 @@ def test_small_multiples_share_colours(data):
     assert len(maps) == 4 * 3
     norms = {tuple(mesh(ax).norm.boundaries) for ax in maps}
     assert len(norms) == 1
-    pressures = PRESSURES[np.linspace(0, 12, 4).round().astype(int)]
+    pressures = PRESSURES[np.linspace(0, 12, 5).round().astype(int)][1:]  # without pressure there is nothing to see
     for k, ax in enumerate(maps):
         length, pressure = LENGTHS[k // 4], pressures[k % 4]
         stored = data["rotation"].sel(pressure=pressure, length=length).transpose("beta", "alpha").values
@@ -174,3 +176,36 @@ def test_commands(data, tmp_path, capsys):
     capsys.readouterr()
     assert "no axis of rotation" in refused(capsys, "plot", "map", str(atlas), "--axes", "wall", "alpha")
     assert "no state 'blocked_force'" in refused(capsys, "plot", "validity", str(atlas), "--of", "blocked_force")
+
+
+def test_every_small_multiple_shows_something(data):
+    """One of the pressures turns the tubes a hundredth as far: equal steps left its map a single colour."""
+    faint = data.assign(rotation=data["rotation"] * xr.where(data["pressure"] < PRESSURES[4], 0.01, 1.0))
+    faint["rotation"].attrs = data["rotation"].attrs
+    figure = multiples(faint, "rotation", over="pressure")
+    maps = [ax for ax in figure.axes if ax.lines and any(isinstance(one, QuadMesh) for one in ax.collections)]
+    norm = mesh(maps[0]).norm
+    assert np.all(np.diff(norm.boundaries) > 0.0)
+    for ax in maps:
+        assert len(set(np.asarray(norm(mesh(ax).get_array().compressed())).tolist())) >= 3
+
+
+def test_the_line_of_equal_angles_makes_no_stairs(data):
+    strip = fill.seam(section(data, "rotation", "alpha", "beta", {"pressure": 1e5, "length": 0.2}))
+    count = len(strip) // 2
+    for edge in (strip[:count], strip[count:]):
+        inner = edge[np.abs(edge[:, 1]) < 80.0][1:-1]
+        assert len(set(np.round(inner[:, 1] - inner[:, 0], 6))) == 1  # parallel to beta = alpha
+
+
+def test_own_styles_pass_through(data):
+    own = {"font.family": ["DejaVu Sans"], "font.size": 16.0, "axes.labelcolor": "#ff0000"}
+    with matplotlib.rc_context(own):
+        ax = section_map(data, "rotation", "pressure", "alpha", beta=-20.0, length=0.2)
+    assert ax.xaxis.label.get_fontfamily() == ["DejaVu Sans"]
+    assert ax.xaxis.label.get_color() == "#ff0000"
+    (chosen,) = [text for text in ax.texts if text.get_gid() == "chosen"]
+    assert chosen.get_fontfamily() == ["DejaVu Sans"]
+    assert chosen.get_fontsize() == 2.0 * style.SMALL
+    plain = section_map(data, "rotation", "pressure", "alpha", beta=-20.0, length=0.2)
+    assert plain.xaxis.label.get_fontfamily() == ["STIXGeneral"]

@@ -118,6 +118,27 @@ PROFILES = {
 }
 
 
+# xarray writes long names beside axes, and breaks them after 30 characters, the unit among them
+SHORT = {
+    **{"alpha": "fiber angle alpha", "beta": "fiber angle beta", "x": "distance from fixed end"},
+    **{"fiber_radius": "radius of the fibers", "fiber_extension": "stretch of the fibers"},
+    **{"c10": "first rubber constant", "c01": "second Mooney constant"},
+    **{"force": "axial force", "torque": "torque", "held_length": "held length", "held_rotation": "held rotation"},
+    "held_length_ratio": "held/undeformed length",
+    **{"deformed_length": "length", "rotation": "rotation", "mid_radius": "radius at half length", "volume": "volume"},
+    **{"strain_energy": "strain energy", "limit_pressure": "limit pressure"},
+    **{"locked_deformed_length": "locked length", "locked_rotation": "locked rotation"},
+    **{"locked_mid_radius": "locked radius", "locked_volume": "locked volume"},
+    "locked_strain_energy": "locked strain energy",
+    **{"blocked_force": "blocked force", "blocked_torque": "blocked torque"},
+    **{"ideal_blocked_force": "ideal blocked force", "ideal_blocked_torque": "ideal blocked torque"},
+    **{"held_path": "way to the held state", "least_buckled_pressure": "least buckled pressure"},
+    **{"deformed_radius": "fiber radius", "axial_position": "axial position", "twist": "rotation along x"},
+    **{"alpha_deformed": "deformed alpha", "beta_deformed": "deformed beta"},
+    **{"fiber_tension_alpha": "tension of family alpha", "fiber_tension_beta": "tension of family beta"},
+}
+
+
 def without(name: str) -> tuple:
     """The parameters that a variable of an atlas, or its bound, does not vary in."""
     of = name.removesuffix("_error")
@@ -146,12 +167,12 @@ def attributes(name: str) -> dict:
         of = PARAMETERS[name.removesuffix("_error")]
         return {"units": of.units, "long_name": f"error bound of {name.removesuffix('_error')}"}
     if name in PARAMETERS:
-        return {"units": PARAMETERS[name].units, "long_name": PARAMETERS[name].long_name}
+        return {"units": PARAMETERS[name].units, **_named(name, PARAMETERS[name].long_name)}
     if name == "x":
-        return {"units": "m", "long_name": "distance from the fixed end before deformation"}
+        return {"units": "m", **_named(name, "distance from the fixed end before deformation")}
     if name in PROFILES:
         units, long_name = PROFILES[name]
-        return {"units": units, "long_name": long_name}
+        return {"units": units, **_named(name, long_name)}
     if name in STATUS_OF:
         return {"long_name": STATUS_OF[name][0], **status_attributes()}
     if name in FLAG_OF:
@@ -164,4 +185,9 @@ def attributes(name: str) -> dict:
         units = PROFILES[of][0] if of in PROFILES else (VARIABLES | HELD_ALONE)[of].units
         return {"units": units, "long_name": f"error bound of {of}"}
     of = (VARIABLES | HELD_ALONE)[name]
-    return {"units": of.units, "long_name": of.long_name}
+    return {"units": of.units, **_named(name, of.long_name)}
+
+
+def _named(name, text):
+    """A long name that is no longer than an axis of a plot, and the rest of what is to say as a comment."""
+    return {"long_name": SHORT[name], "comment": text} if name in SHORT else {"long_name": text}

@@ -2,13 +2,17 @@
 
 import functools
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..given import described
 from ..options import read_choice, read_path
+from ..quantities import Names, Quantities
 from ..status import STATUSES
 from . import netcdf
 from .content import faults
@@ -16,6 +20,11 @@ from .files import check_environment
 from .guard import Unsafe, check_structure
 from .schema import STATUS_OF
 from .seal import has_seal
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..query.interpolator import Interpolator
 
 FORMAT = "1"
 MOST_FAULTS = 20  # listed of one file
@@ -40,7 +49,7 @@ class Atlas:
     Pickled, it is the path: it is opened anew where it arrives, once in a process.
     """
 
-    data: object
+    data: "xr.Dataset"
     path: Path
 
     def __post_init__(self):
@@ -63,7 +72,12 @@ class Atlas:
         counts = "; ".join(f"{meaning} {count:,}" for meaning, count in self.status_counts().items())
         return f"<Atlas {self.path.name}: {self.data.attrs.get('title', '')}\n  {axes}\n  {counts}>"
 
-    def status_counts(self, name="status") -> dict:
+    def _repr_html_(self):
+        from ..notebook import of_atlas
+
+        return of_atlas(self)
+
+    def status_counts(self, name: str = "status") -> dict[str, int]:
         """How many points of the grid have which status, of the equilibrium or of another state: meaning -> count.
 
         Raises :class:`AtlasError` for a ``name`` that is no status of this atlas.
@@ -83,7 +97,14 @@ class Atlas:
 
         return Reader(self.data)
 
-    def query(self, variables=None, method="cubic", refine=False, x=None, **axes):
+    def query(
+        self,
+        variables: Names = None,
+        method: str = "cubic",
+        refine: bool = False,
+        x: Quantities | None = None,
+        **axes: Quantities,
+    ) -> "xr.Dataset":
         """What the atlas says of any design and load within its grid.
 
         Parameters
@@ -106,7 +127,7 @@ class Atlas:
 
         return query(self._reader, axes, variables, method, refine, x)
 
-    def curve(self, along, values=None, **query):
+    def curve(self, along: str, values: Quantities | None = None, **query: Any) -> "xr.Dataset":
         """Answers along one axis, such as "pressure": :meth:`query` at ``values`` or at 201 of them over its range.
 
         A force-stroke or torque-rotation family is the curve of an atlas with held lengths or rotations along that axis.
@@ -116,7 +137,7 @@ class Atlas:
 
         return curve(self._reader, along, values, query)
 
-    def interpolator(self, names):
+    def interpolator(self, names: str | Sequence[str]) -> "Interpolator":
         """A callable for loops and optimizers: ``f(*values, gradient=False)``, see :class:`freesweep.query.Interpolator`.
 
         ``names`` is a variable or a list of them; the values are given in the order of ``f.axes``. Raises QueryError.
@@ -125,18 +146,44 @@ class Atlas:
 
         return Interpolator(self, names)
 
-    def close(self):
+    def export(
+        self,
+        path: str | PathLike[str],
+        to: str | None = None,
+        variables: Names = None,
+        derivatives: bool = False,
+        **axes: Quantities,
+    ) -> Path:
+        """Write a slice as a table for another program, with unit, error and status of each number.
+
+        Parameters
+        ----------
+        path : the file to make
+        to : "csv", "npz", "mat", "c" (a header), "json", "mujoco" (a small model), "simulink" (a MATLAB script); default: by
+            the suffix of ``path`` (.csv, .npz, .mat, .h, .json, .xml, .m)
+        variables : names of stored variables; default: all
+        derivatives : those of each variable by each axis, too (of the interpolant)
+        axes : where: a number, or ascending numbers along which the table runs; ``design`` by its name. Axes left out run
+            over their own nodes. Numbers at nodes are the stored ones, others those of :meth:`query`
+
+        Returns the path. Raises QueryError, ExportError, EnvironmentFault.
+        """
+        from ..export.write import export
+
+        return export(self, path, to, variables, derivatives, axes)
+
+    def close(self) -> None:
         """Let go of the file."""
         self.data.close()
 
-    def __enter__(self):
+    def __enter__(self) -> "Atlas":
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 
-def open_atlas(path) -> Atlas:
+def open_atlas(path: str | PathLike[str]) -> Atlas:
     """Open an atlas; its numbers are read when they are used.
 
     The file may be anybody's: nothing but this file is read, and it is refused with the reason unless it is an atlas in
@@ -213,9 +260,8 @@ def describe(atlas) -> str:
         if not name.endswith("_error"):
             bound = ", with error bound" if f"{name}_error" in data else ""
             unit = variable.attrs.get("units")
-            lines.append(
-                f"  {name:<28}{f'[{unit}]' if unit else '[flag]':<10}{variable.attrs.get('long_name', '')}{bound}"
-            )
+            said = variable.attrs.get("comment", variable.attrs.get("long_name", ""))
+            lines.append(f"  {name:<28}{f'[{unit}]' if unit else '[flag]':<10}{said}{bound}")
     lines += ["", "statuses"]
     for status in (name for name in STATUS_OF if name in data):
         lines += [

@@ -1,8 +1,8 @@
 """What a test bench measured: states of actuators under pressure, as arrays in SI units and degrees."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from ..actuator import Actuator
 from ..faults import ActuatorError
 from ..given import described, read_column
 from ..options import read_choice
+from ..quantities import Quantities
 
 COLUMNS = {"deformed_length": "m", "rotation": "degree", "mid_radius": "m", "force": "N", "torque": "N m"}
 DOMAINS = {"pressure": {"least": 0.0}, "deformed_length": {"positive": True}, "mid_radius": {"positive": True}}
@@ -55,6 +56,21 @@ class Measurement:
     torque: np.ndarray | None = None
     measured: tuple = ()
     sigma: dict = field(default_factory=dict)
+
+    if TYPE_CHECKING:  # what may be given is more than what is kept
+
+        def __init__(
+            self,
+            tube: Actuator,
+            pressure: Quantities,
+            deformed_length: Quantities | None = None,
+            rotation: Quantities | None = None,
+            mid_radius: Quantities | None = None,
+            force: Quantities | None = None,
+            torque: Quantities | None = None,
+            measured: str | Sequence[str] = (),
+            sigma: Mapping[str, Quantities] = ...,
+        ) -> None: ...
 
     def __post_init__(self):
         faults = [] if isinstance(self.tube, Actuator) else [f"tube: found {described(self.tube)}; give an Actuator"]

@@ -99,6 +99,6 @@ def _finer(job, count):
 
 
 def _bar(total, progress):
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     return tqdm(total=total, unit=" designs", unit_scale=True, disable=not progress, dynamic_ncols=True)

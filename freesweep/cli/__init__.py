@@ -10,9 +10,11 @@ import sys
 from .calibrate import add_calibrate
 from .design import add_design
 from .draw import add_plot, check_map, draw_map
+from .export import add_export
 from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
 from .judge import add_judging
 from .query import add_query
+from .shell import SHELLS, Completion, Parser
 from .single import add_single
 from .thesis import add_thesis
 
@@ -75,16 +77,24 @@ def _joined(words):
 
 def parser() -> argparse.ArgumentParser:
     """The whole command line."""
-    top = argparse.ArgumentParser(
+    top = Parser(
         prog="freesweep",
         description="Statics of fiber-reinforced soft actuators: solve one, sweep a design space, draw it.",
     )
     top.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    top.add_argument(
+        "--print-completion",
+        action=Completion,
+        choices=SHELLS,
+        metavar="SHELL",
+        help=f"a script for {', '.join(SHELLS)}",
+    )
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     _sweep(commands)
     add_plot(commands)
     _info(commands)
     add_query(commands)
+    add_export(commands)
     add_single(commands)
     add_judging(commands)
     add_calibrate(commands)
@@ -103,7 +113,10 @@ class _Version(argparse.Action):
 
 def _sweep(commands):
     command = commands.add_parser("sweep", help="solve a grid of designs into an atlas")
-    command.add_argument("spec", help="TOML specification, such as sweeps/quick.toml")
+    command.add_argument("spec", nargs="?", help="TOML specification, such as sweeps/quick.toml")
+    command.add_argument(
+        "--example", metavar="NAME", help="instead of SPEC: one that comes with freesweep, such as quick"
+    )
     command.add_argument("-o", "--out", metavar="FILE.nc", help="the atlas to make (default: named after SPEC, here)")
     command.add_argument("--map", metavar="FILE", help="draw the design-space map too (.png, .svg, .pdf)")
     command.add_argument("--threads", type=int, metavar="N", help="default: one for each core")
@@ -133,6 +146,12 @@ def _run_sweep(options):
 
     from ..sweep.spec import read_file
 
+    if (options.spec is None) == (options.example is None):
+        raise ValueError("give SPEC, the path of a TOML specification, or --example NAME, such as quick")
+    if options.example is not None:
+        from ..example import specification
+
+        options.spec = str(specification(options.example))
     sweep = read_file(options.spec)
     out = Path(options.out or Path(options.spec).with_suffix(".nc").name)
     if options.threads is not None and options.threads < 1:
@@ -178,6 +197,7 @@ def _info(commands):
     command = commands.add_parser("info", help="what an atlas holds and where it comes from")
     command.add_argument("atlas")
     command.add_argument("--specification", action="store_true", help="print the specification it was made from")
+    command.add_argument("--json", action="store_true", help="print it as JSON")
     command.set_defaults(run=_run_info)
 
 
@@ -190,4 +210,9 @@ def _run_info(options):
         warnings.simplefilter("ignore", UnsealedWarning)  # one of the lines says so
         atlas = open_atlas(options.atlas)
     with atlas:
-        print(atlas.data.attrs.get("specification", "") if options.specification else describe(atlas))
+        if options.json:
+            from .as_json import of_atlas
+
+            print(of_atlas(atlas))
+        else:
+            print(atlas.data.attrs.get("specification", "") if options.specification else describe(atlas))

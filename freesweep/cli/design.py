@@ -12,6 +12,7 @@ def add_design(commands):
     command.add_argument("wishes", metavar="WISH.toml", help="goals, limits and what is free")
     command.add_argument("-o", "--out", metavar="FILE", help="keep the candidates (.csv or .nc)")
     command.add_argument("--picture", metavar="FILE", help="draw them: angles, goal curves, shapes (.png, .svg, .pdf)")
+    command.add_argument("--json", action="store_true", help="print the candidates as JSON")
     command.set_defaults(run=_run)
 
 
@@ -27,9 +28,14 @@ def _run(options):
         raise ValueError(f"--out: found {options.out!r}; candidates are kept as .csv or .nc")
     asked = wish_file.read(options.wishes)
     found, tubes = find(**asked)
-    print(table(found))
-    print(found.attrs["summary"])
-    print(lines(found))
+    if options.json:
+        from .as_json import of_candidates
+
+        print(of_candidates(found))
+    else:
+        print(table(found))
+        print(found.attrs["summary"])
+        print(lines(found))
     if options.out:
         content = csv(found).encode() if options.out.endswith(".csv") else found.to_netcdf(engine="netcdf4")
         write_whole(options.out, content)

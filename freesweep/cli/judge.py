@@ -16,6 +16,7 @@ def add_judging(commands):
         help="solve N of its points anew by a second method, and hold them against their bounds",
     )
     verify.add_argument("--seed", type=int, default=0, help="of the points drawn (default 0)")
+    verify.add_argument("--json", action="store_true", help="print the comparison as JSON")
     verify.set_defaults(run=_run_verify)
     bench = commands.add_parser(
         "bench", help="how fast this is on this machine, beside its peers, and with which errors"
@@ -46,6 +47,16 @@ def _run_verify(options):
         raise ValueError(f"--resolve: found {options.resolve}; give 1 or more")
     if found := faults(options.atlas):
         raise AtlasError(f"{options.atlas} fails:\n" + "\n".join(f"  - {fault}" for fault in found))
+    if options.json:
+        from .as_json import of_comparisons
+
+        points, comparisons = None, []
+        if options.resolve is not None:
+            with open_atlas(options.atlas) as atlas:
+                points, comparisons, _ = _compared(atlas, options)
+        print(of_comparisons(options.atlas, comparisons))
+        _refuse(points, comparisons)
+        return
     print(
         f"{options.atlas}: whole; every bit is the one that was written, and the grid is what its specification asks for"
     )
@@ -54,23 +65,37 @@ def _run_verify(options):
             _resolve(atlas, options)
 
 
-def _resolve(atlas, options):
-    from ..atlas.store import AtlasError
-    from ..resolve import draw, resolve, table
-    from ..restate import faults, finer
+def _compared(atlas, options):
+    """Points of an atlas solved anew: points, comparisons, notes."""
+    from ..resolve import draw, resolve
+    from ..restate import finer
 
     points = draw(atlas.data, options.resolve, options.seed)
-    comparisons, notes = (finer if points.model.is_physical else resolve)(points)
+    return points, *(finer if points.model.is_physical else resolve)(points)
+
+
+def _resolve(atlas, options):
+    from ..resolve import table
+
+    points, comparisons, notes = _compared(atlas, options)
     if not points.model.is_physical:
         print(
             "solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n"
         )
     print(*([table(comparisons)] if comparisons else []), *notes, sep="\n")
+    _refuse(points, comparisons)
+    print("\nbounds and limit pressures are those that the solver states anew")
+
+
+def _refuse(points, comparisons):
+    """Raises if stored numbers are not those of the second method, or what is stated of them not what the solver states."""
+    from ..atlas.store import AtlasError
+    from ..restate import faults
+
     if broken := sum(int(compared.broken.sum()) for compared in comparisons):
         raise AtlasError(f"{broken:,} stored numbers lie farther from the second method's than both errors allow")
-    if found := faults(points):
+    if points is not None and (found := faults(points)):
         raise AtlasError("\n  - ".join(["what is stated of its numbers is not what the solver states:", *found]))
-    print("\nbounds and limit pressures are those that the solver states anew")
 
 
 def _run_bench(options):

@@ -25,6 +25,7 @@ def add_query(commands):
     command.add_argument("--method", default="cubic", choices=("cubic", "linear"), help="default: cubic")
     command.add_argument("--refine", action="store_true", help="solve exactly what the atlas cannot answer")
     command.add_argument("--format", choices=FORMATS, default="table", help="default: table")
+    command.add_argument("--json", action="store_const", const="json", dest="format", help="the same as --format json")
     command.add_argument("-o", "--out", metavar="FILE", help="write there instead of to the screen")
     command.set_defaults(run=_run)
 
@@ -42,8 +43,9 @@ def _run(options):
     from ..atlas.store import open_atlas
 
     with open_atlas(options.atlas) as atlas:
-        axes = _axes(options)
+        axes, units = _axes(options)
         found = atlas.query(options.variable, options.method, options.refine, **axes)
+    found = in_units(found, units) if options.format == "table" else found
     text = {"table": _table, "csv": _csv, "json": _json}[options.format](found)
     if note := found.attrs.get("thin_wall_note"):
         print(f"freesweep: note: {note}", file=sys.stderr)
@@ -55,31 +57,36 @@ def _run(options):
 
 
 def _axes(options):
-    """Axes from the options, and from the CSV if there is one; raises ValueError with every fault."""
+    """Axes from the options, and from the CSV if there is one, and the units in which they were asked by name; raises
+    ValueError with every fault.
+    """
     from ..atlas.schema import PARAMETERS
-    from ..units import quantity
+    from ..units import quantity, unit_of
 
-    faults, axes = [], {}
+    faults, axes, units = [], {}, {}
     for name in PARAMETERS:
         if (given := getattr(options, name)) is not None:
             try:
                 axes[name] = quantity(given, PARAMETERS[name].units)
+                units[name] = unit_of(given)
             except ValueError as error:
                 faults.append(f"--{name.replace('_', '-')}: {error}")
     if options.design is not None:
         axes["design"] = options.design
     if options.points:
-        columns = _read_points(options.points, faults)
+        columns = _read_points(options.points, faults, units)
         for name in sorted(set(columns) & set(axes)):
             faults.append(f"{name}: given as an option and in {options.points}; remove one")
         axes |= columns
     if faults:
         raise ValueError("\n".join(["cannot read this question:", *(f"  - {fault}" for fault in faults)]))
-    return axes
+    return axes, {name: unit for name, unit in units.items() if unit}
 
 
-def _read_points(path, faults):
-    """Columns of a CSV: name -> list of numbers in the units of the API. A header cell is ``name`` or ``name [unit]``."""
+def _read_points(path, faults, asked):
+    """Columns of a CSV: name -> list of numbers in the units of the API. A header cell is ``name`` or ``name [unit]``; the
+    units go into ``asked``.
+    """
     import csv
 
     from ..units import quantity
@@ -109,6 +116,7 @@ def _read_points(path, faults):
     if len(set(names)) < len(names):
         faults.append(f"--points: {path} names a column twice")
     columns = {name: [] for name, _ in names if name}
+    asked |= {name: unit for name, (_, unit) in names if name}
     for number, line in enumerate(lines, start=2):
         if len(line) != len(names):
             faults.append(f"--points: line {number} of {path} has {len(line)} cells, its header {len(names)}")
@@ -139,6 +147,22 @@ def _column(cell, path, faults):
         faults.append(f"--points: {path}: {unknown('column', name, list(PARAMETERS))}")
         return None, ("", "")
     return name, (PARAMETERS[name].units, unit)
+
+
+def in_units(found, units):
+    """An answer in the units of its question: each axis in its own, an output in the first that was used of its kind."""
+    from ..atlas.schema import PARAMETERS
+    from ..units import factor
+
+    first = {}
+    for name, unit in units.items():
+        first.setdefault(PARAMETERS[name].units, unit)
+    found = found.copy()
+    for name in found.variables:
+        kept = found[name].attrs.get("units")
+        if unit := units.get(name, first.get(kept)):
+            found[name] = (found[name] / factor(unit, kept)).assign_attrs(found[name].attrs | {"units": unit})
+    return found
 
 
 def _records(found):
@@ -178,9 +202,16 @@ def _json(found):
     return json.dumps({"units": units, "points": records}, indent=1)
 
 
+def _shown(units):
+    """Unit in which a table shows what is in ``units``, and the factor: an everyday one for those of SI."""
+    from ..report import SHOWN
+
+    return SHOWN.get(units, (units.removeprefix("1"), 1.0))
+
+
 def _table(found):
     """Everyday units; one line for each variable of a single point, else one for each point."""
-    from ..report import SHOWN, aligned, number
+    from ..report import aligned, number
     from ..status import STATUSES
 
     records = _records(found)
@@ -189,7 +220,7 @@ def _table(found):
     flags = [
         name for name in found.data_vars if name not in statuses and name not in values and not name.endswith("_error")
     ]
-    shown = {name: SHOWN.get(found[name].attrs.get("units", ""), ("", 1.0)) for name in [*found.coords, *values]}
+    shown = {name: _shown(found[name].attrs.get("units", "")) for name in [*found.coords, *values]}
 
     def cell(record, name):
         scale = shown[name][1]

@@ -68,6 +68,7 @@ def add_rubber(command, remark=""):
 
 
 def _keep(command):
+    command.add_argument("--json", action="store_true", help="print the table as JSON")
     command.add_argument("-o", "--out", metavar="FILE.nc", help="keep everything, profiles too, as netCDF4")
 
 
@@ -209,8 +210,9 @@ def _run_block(options):
 def _show(dataset, options):
     from ..atlas.files import write_whole
     from ..report import table
+    from .as_json import of_states
 
-    print(table(dataset))
+    print(of_states(dataset) if options.json else table(dataset))
     if note := dataset.attrs.get("thin_wall_note"):
         print(f"freesweep: note: {note}", file=sys.stderr)
     if options.out:

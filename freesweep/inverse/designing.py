@@ -1,5 +1,8 @@
 """Inverse design: the tubes that do what is wished for."""
 
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ..actuator import Actuator
@@ -7,6 +10,7 @@ from ..atlas.store import Atlas
 from ..faults import ActuatorError
 from ..given import described
 from ..options import read_count
+from ..quantities import Names
 from . import freedom, wishes
 from .candidates import Found, gather
 from .least import front, least, multipliers
@@ -15,12 +19,24 @@ from .misfit import make
 from .polish import polish
 from .wishes import Goal, Limit
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 STARTS = 3  # for each candidate that is asked for
 DIFFERENT = 0.01  # of the unit box's diagonal: nearer ones are the same candidate
 MISSED = 1.0  # tolerances
 
 
-def design(template: Actuator, free, goals, limits=(), minimize=None, count=10, atlas=None, seed=0):
+def design(
+    template: Actuator,
+    free: Mapping[str, Any],
+    goals: Goal | Sequence[Goal],
+    limits: Limit | Sequence[Limit] = (),
+    minimize: Names = None,
+    count: int = 10,
+    atlas: Atlas | None = None,
+    seed: int = 0,
+) -> "xr.Dataset":
     """Tubes that do what is wished for, the best ones first.
 
     Parameters

@@ -16,6 +16,7 @@ from ..atlas.schema import PARAMETERS
 from ..faults import ActuatorError
 from ..given import described, numbers
 from ..material_library import material
+from ..quantities import Quantity
 from ..tube_model import MODELS, fiber_place
 from .wishes import DESIGN
 
@@ -37,7 +38,7 @@ class Profile:
     """
 
     knots: int
-    between: tuple
+    between: tuple[Quantity, Quantity]
 
     def __post_init__(self):
         if not isinstance(self.knots, int) or isinstance(self.knots, bool) or not 2 <= self.knots <= MOST_KNOTS:

@@ -6,7 +6,7 @@ import io
 NAMES = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "pressure", "force", "torque")
 
 
-def _columns(found):
+def columns_of(found):
     """(heading, values (candidates,)) of everything that is one number each."""
     for name in found.data_vars:
         variable = found[name]
@@ -28,7 +28,7 @@ def csv(found) -> str:
     """A CSV file of all candidates, the Python line of each at the end."""
     stream = io.StringIO()
     writer = files.writer(stream)
-    columns = [("candidate", found["candidate"].values), *_columns(found), ("python", found["python"].values)]
+    columns = [("candidate", found["candidate"].values), *columns_of(found), ("python", found["python"].values)]
     writer.writerow([heading for heading, _ in columns])
     writer.writerows(zip(*(values.tolist() for _, values in columns)))
     return stream.getvalue()

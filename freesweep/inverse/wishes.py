@@ -13,6 +13,7 @@ import numpy as np
 from ..atlas.schema import PARAMETERS
 from ..faults import ActuatorError
 from ..given import described, numbers, read_number
+from ..quantities import Quantities, Quantity
 
 UNITS = {
     "deformed_length": "m", "rotation": "degree", "volume": "m3", "mid_radius": "m", "strain_energy": "J",
@@ -67,16 +68,16 @@ class _Asked:
     """
 
     output: str
-    value: object = None
-    at_least: object = None
-    at_most: object = None
-    between: tuple = None
-    tolerance: float = None
-    pressure: object = None
-    force: object = None
-    torque: object = None
-    deformed_length: object = None
-    rotation: object = None
+    value: Quantities | None = None
+    at_least: Quantities | None = None
+    at_most: Quantities | None = None
+    between: tuple[Quantities, Quantities] | None = None
+    tolerance: Quantity | None = None
+    pressure: Quantities | None = None
+    force: Quantities | None = None
+    torque: Quantities | None = None
+    deformed_length: Quantities | None = None
+    rotation: Quantities | None = None
 
     def __post_init__(self):
         faults = []

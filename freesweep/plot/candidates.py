@@ -25,7 +25,9 @@ def draw(found, curves, shapes) -> Figure:
         for name, curve in zip(names, curves):
             _draw_curve(axes[name], curve)
         _draw_shapes(axes["shapes"], shapes)
-        figure.suptitle("\n".join(textwrap.wrap(found.attrs["summary"], WIDTH)), fontsize=style.NORMAL + 1)
+        figure.suptitle(
+            "\n".join(textwrap.wrap(found.attrs["summary"], WIDTH)), fontsize=style.points(style.NORMAL + 1)
+        )
     return figure
 
 
@@ -36,13 +38,13 @@ def _colour(k):
 def _draw_angles(ax, found):
     """Both angles of each candidate as a point; over the tube, where they vary along it."""
     met = found["met"].values
-    ax.set_title("filled: meets all" if met.any() else "none meets all", fontsize=style.NORMAL)
+    ax.set_title("filled: meets all" if met.any() else "none meets all", fontsize=style.points(style.NORMAL))
     if "knot" in found.dims:
         for k in range(min(len(met), MOST)):
             for name, line in (("alpha", "-"), ("beta", "--")):
                 _draw_along(ax, found, name, k, linestyle=line)
         ax.set(xlabel="place along the tube, x/l", ylabel="fiber angle [degree]")
-        ax.set_title("solid: alpha, dashed: beta", fontsize=style.NORMAL)
+        ax.set_title("solid: alpha, dashed: beta", fontsize=style.points(style.NORMAL))
         return
     alpha, beta = found["alpha"].values, found["beta"].values
     for k, fine in enumerate(met):

@@ -7,6 +7,7 @@ from numbers import Real
 import numpy as np
 
 from ..atlas import schema
+from ..given import numbers
 from ..tube_model import MODELS, model_of
 from .display import USUAL, describe
 
@@ -47,6 +48,22 @@ class Point(dict):
         point.missed = {name: value for name, value in self.missed.items() if keep(name)}
         point.model = self.model
         return point
+
+
+def read_selection(select: dict) -> dict:
+    """Values by name with their units read, where they are numbers; raises ValueError with every fault."""
+    faults, read = [], {}
+    for name, value in select.items():
+        known = name in schema.PARAMETERS or name in HELD
+        try:
+            array = numbers(value, schema.attributes(name)["units"]) if known and not isinstance(value, bool) else None
+        except ValueError as error:
+            faults.append(f"{name}: {error}")
+            continue
+        read[name] = value if array is None or array.ndim else array.item()
+    if faults:
+        raise ValueError("; ".join(faults))
+    return read
 
 
 def check_name(name: str, available, what: str) -> None:

@@ -1,6 +1,7 @@
 """Curves: a variable of a dataset along one of its dimensions, with its error bound as a band and its flags."""
 
 import textwrap
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,12 +10,16 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..atlas import schema
+from ..quantities import Quantity
 from ..status import VALUED
 from . import style
 from .between import between
-from .choice import DESIGN, check_name, choose, dimensions
+from .choice import DESIGN, check_name, choose, dimensions, read_selection
 from .display import absolute, axis_label, shown_units
 from .plane import status_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIZE = (style.PAGE * 0.75, 85.0)  # of a figure of its own [mm]
 MOST = 9  # lines in one plot
@@ -82,7 +87,7 @@ def label_ends(ax: Axes, lines, texts) -> list:
     for place, (x, y, text, colour) in zip(places, ends):
         far = abs(place - y) > 0.4 * step or x < right - 1e-6 * abs(right)
         joint = {"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 0.0}
-        how = {"color": style.legible(colour), "fontsize": style.NORMAL, "va": "center", "gid": "end"}
+        how = {"color": style.legible(colour), "fontsize": style.points(style.NORMAL), "va": "center", "gid": "end"}
         labels.append(ax.annotate(
             text, (x, y), xytext=(BESIDE, place), textcoords=ax.get_yaxis_transform(), annotation_clip=False,
             arrowprops={**joint, "relpos": (0.0, 0.5)} if far else None, **how,
@@ -104,17 +109,26 @@ def spread(places, step):
     return np.concatenate([centre + step * (np.arange(size) - 0.5 * (size - 1)) for centre, size in groups])
 
 
-def curve(dataset, variable="deformed_length", along="pressure", each=None, ax=None, **select) -> Axes:
+def curve(
+    dataset: "xr.Dataset",
+    variable: str = "deformed_length",
+    along: str = "pressure",
+    each: str | None = None,
+    ax: Axes | None = None,
+    **select: Quantity,
+) -> Axes:
     """Draws ``variable`` of a Dataset (an atlas, or one actuator) along one dimension, and returns the Axes.
 
     ``each`` names a second dimension: one line per node of it, 9 at most, evenly chosen. ``select`` gives the others
-    (stored units, or the name of a ``design``), named below the title; between its nodes an atlas is interpolated, of
+    (stored units, texts with units, or the name of a ``design``), named below the title; between its nodes an atlas is
+    interpolated, of
     another dataset the nearest node is taken, and a warning says so. Not given: the largest
     pressure, force and torque nearest zero, the middle of anything else. The error bound is a band, thin lines mark states
     that need a fiber family to push, open circles unstable ones; lines end where there is no result.
 
     Raises ValueError for unknown names, and where ``along`` or ``each`` is no dimension of the variable.
     """
+    select = read_selection(select)
     known = [name for name in (*schema.VARIABLES, "force", "torque") if name in dataset.data_vars]
     check_name(variable, known, "variable")
     dims = [name for name in dimensions(dataset) if name in dataset[variable].dims]
@@ -189,8 +203,9 @@ def _name_choice(ax, point, marks):
     words = [*point.words(), *marks]
     if words:
         width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
-        below = textwrap.wrap(", ".join(words), max(int(width / LETTER), 30))
-        ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + 9.0 * len(below), fontsize=style.NORMAL + 1.0,
-                     fontweight="bold")  # fmt: skip
+        below = textwrap.wrap(", ".join(words), max(int(width / (LETTER * style.wider())), 30))
+        ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + style.points(9.0) * len(below),
+                     fontsize=style.points(style.NORMAL + 1.0), fontweight="bold")  # fmt: skip
         ax.annotate("\n".join(below), (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), gid="chosen",
-                    textcoords="offset points", color=style.QUIET, fontsize=style.SMALL, linespacing=1.0)  # fmt: skip
+                    textcoords="offset points", color=style.QUIET, fontsize=style.points(style.SMALL),
+                    linespacing=1.0)  # fmt: skip

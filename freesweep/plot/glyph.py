@@ -64,7 +64,7 @@ def draw_examples(ax: Axes) -> list[AnnotationBbox]:
     cards = []
     for (alpha, beta), place in EXAMPLES:
         angles = f"{alpha:.0f}°, {beta:.0f}°".replace("-", "\N{MINUS SIGN}")
-        words = TextArea(angles, textprops={"fontsize": style.SMALL - 0.5, "color": style.INK})
+        words = TextArea(angles, textprops={"fontsize": style.points(style.SMALL - 0.5), "color": style.INK})
         card = AnnotationBbox(
             VPacker(children=[tube(alpha, beta), words], align="center", pad=0.0, sep=2.5),
             (alpha, beta),

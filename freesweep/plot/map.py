@@ -1,17 +1,23 @@
 """The map of the design space: one variable of an atlas over the two fiber angles, in the manner of Figure 1-2."""
 
 import textwrap
+from typing import TYPE_CHECKING
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
+from ..quantities import Quantity
 from . import glyph, regions, style
 from .display import display, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, plane
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIZE = (style.PAGE, 165.0)  # of a figure of its own [mm]
 LEGEND_COLUMN = 43.0  # [mm]
@@ -19,10 +25,18 @@ LETTER = 1.3  # of the line below the title [mm]
 COARSE = 6.0  # [degree]: wider grids are drawn node by node, without contours between them
 
 
-def design_map(dataset, variable="rotation", ax=None, paths=True, examples=True, **select) -> Axes:
+def design_map(
+    dataset: "xr.Dataset",
+    variable: str = "rotation",
+    ax: Axes | None = None,
+    paths: bool = True,
+    examples: bool = True,
+    **select: Quantity,
+) -> Axes:
     """Draws ``variable`` of an atlas (xarray Dataset) over alpha and beta [degree], and returns the Axes.
 
-    ``select`` gives the other dimensions (``length=0.2``, ``pressure=1e5``, in the stored units), named below the title.
+    ``select`` gives the other dimensions (``length=0.2``, ``pressure="1 bar"``; plain numbers in stored units), named below
+    the title.
     Between its nodes an atlas is interpolated, as by a query; a dataset that cannot be is drawn at the nearest node, which
     is said there and in a warning. Not given: the largest pressure, the force and torque nearest zero,
     the middle of anything else. ``paths`` draws the way of some designs under pressure (uniform tube), ``examples``
@@ -58,20 +72,21 @@ def design_map(dataset, variable="rotation", ax=None, paths=True, examples=True,
 
 def _dress(ax, sheet: Plane, variable, handles):
     """Window, ticks, title with what was chosen, and the legend below the axes."""
-    family = {"fontfamily": style.SETTINGS["font.family"]}  # Axes that were handed in bring their own type
-    plain = {"fontsize": style.NORMAL + 1.0, "color": style.INK, "math_fontfamily": "stix", **family}
+    family = {"fontfamily": mpl.rcParams["font.family"]}  # Axes that were handed in bring their own type
+    plain = {"fontsize": style.points(style.NORMAL + 1.0), "color": mpl.rcParams["axes.labelcolor"], **family}
+    plain["math_fontfamily"] = mpl.rcParams["mathtext.fontset"]
     ax.set(xlim=ALPHA, ylim=BETA, facecolor=style.PAPER)
     ax.set_xlabel(r"fiber angle $\alpha$ [degree]", **plain)
     ax.set_ylabel(r"fiber angle $\beta$ [degree]", labelpad=1.0, **plain)
     for axis, major, minor in ((ax.xaxis, 15.0, 5.0), (ax.yaxis, 30.0, 10.0)):
         axis.set_major_locator(MultipleLocator(major))
         axis.set_minor_locator(MultipleLocator(minor))
-    ax.tick_params(labelsize=style.NORMAL, labelfontfamily=family["fontfamily"])
+    ax.tick_params(labelsize=style.points(style.NORMAL), labelfontfamily=family["fontfamily"])
 
     width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
-    below = textwrap.wrap(", ".join(sheet.point.words()), max(int(width / LETTER), 30))
-    heading = {**plain, "fontsize": style.LARGE, "fontweight": "bold"}
-    ax.set_title(title(variable), loc="left", pad=7.0 + 10.0 * len(below), **heading)
+    below = textwrap.wrap(", ".join(sheet.point.words()), max(int(width / (LETTER * style.wider())), 30))
+    heading = {**plain, "fontsize": style.points(style.LARGE), "fontweight": "bold"}
+    ax.set_title(title(variable), loc="left", pad=7.0 + style.points(10.0) * len(below), **heading)
     ax.annotate(
         "\n".join(below),
         (0.0, 1.0),

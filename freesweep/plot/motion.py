@@ -3,6 +3,7 @@
 import io
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -13,6 +14,9 @@ from ..status import VALUED
 from . import style
 from .shape import draw_outline, draw_shape, project, shape_of
 from .tubes import MARGIN
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 WIDTH = 150.0  # [mm]
 RESOLUTION = 110.0  # for the screen [dots per inch]
@@ -53,7 +57,7 @@ def frames(tube: Actuator, states):
             ax.set_xlabel("axial position [mm], radii to the same scale")
             ax.yaxis.set_visible(False)
             ax.spines[["left", "top", "right"]].set_visible(False)
-            ax.set_title(_words(states.isel(pressure=k), shape), loc="left", fontsize=style.NORMAL + 1.0)
+            ax.set_title(_words(states.isel(pressure=k), shape), loc="left", fontsize=style.points(style.NORMAL + 1.0))
         yield ax
 
 
@@ -62,7 +66,7 @@ def _words(state, shape):
     return f"{float(state['pressure']) * 1e-3:.1f} kPa    {shape.position[-1]:.1f} mm long    turned by {turned}"
 
 
-def save_motion(tube: Actuator, states, path: str | os.PathLike, resolution: float = RESOLUTION) -> Path:
+def save_motion(tube: Actuator, states: "xr.Dataset", path: str | os.PathLike, resolution: float = RESOLUTION) -> Path:
     """Writes the motion as a GIF that runs forth and back, with ``resolution`` in dots per inch, and returns its path.
 
     The file is whole or not there. Raises ValueError as :func:`frames` does and for another suffix, OSError where the path

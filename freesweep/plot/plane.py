@@ -11,7 +11,7 @@ import numpy as np
 from ..atlas import schema
 from ..status import OK, OUTSIDE, VALUED
 from .between import between
-from .choice import DESIGN, check_name, choose, dimensions
+from .choice import DESIGN, check_name, choose, dimensions, read_selection
 
 ALPHA, BETA = (0.0, 90.0), (-90.0, 90.0)  # the two quadrants of Figure 1-2 [degree]
 ODD = ("rotation", "locked_rotation", "blocked_torque", "ideal_blocked_torque")  # change sign in the mirror
@@ -47,6 +47,7 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     What is not selected: the largest pressure, the force and torque nearest zero, the middle of anything else. Raises
     ValueError for names that are unknown, values that are no numbers, and a dataset without a plane of angles.
     """
+    select = read_selection(select)
     missing = [name for name in ("alpha", "beta") if dataset.sizes.get(name, 0) < 2]
     if missing:
         sizes = ", ".join(f"{name} ({size})" for name, size in dataset.sizes.items()) or "none"
@@ -74,6 +75,7 @@ def section(dataset, variable: str, x: str, y: str, select: dict) -> Plane:
     """``variable`` over any two axes of a dataset, else as :func:`plane`; over both angles it is that plane."""
     if {x, y} == {"alpha", "beta"}:
         return plane(dataset, variable, select)
+    select = read_selection(select)
     known = [name for name in schema.VARIABLES if name in dataset]
     check_name(variable, known, "variable")
     check_name(status_of(variable), dataset.data_vars, "status variable")

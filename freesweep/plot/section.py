@@ -1,6 +1,8 @@
 """Maps of an atlas over any two of its axes, alone or as small multiples along others, in one set of colours."""
 
 import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,11 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .. import closed_form
+from ..quantities import Quantity
 from . import style
 from .choice import check_name, dimensions
 from .display import axis_label, describe, display, shown_units, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, section
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIZE = (style.PAGE * 0.75, 105.0)  # of a figure of one map [mm]
 SMOOTH = 12  # nodes along an axis from which contours are drawn between them
@@ -22,7 +28,14 @@ LETTER = 1.3  # of the words above the maps [mm]
 LEGEND_COLUMN = 43.0  # [mm]
 
 
-def section_map(dataset, variable="rotation", x="alpha", y="beta", ax=None, **select) -> Axes:
+def section_map(
+    dataset: "xr.Dataset",
+    variable: str = "rotation",
+    x: str = "alpha",
+    y: str = "beta",
+    ax: Axes | None = None,
+    **select: Quantity,
+) -> Axes:
     """Draws ``variable`` of an atlas over the axes ``x`` and ``y``, and returns the Axes.
 
     Everything else is as in :func:`freesweep.plot.map.design_map`, which draws more over both fiber angles. Raises
@@ -41,10 +54,19 @@ def section_map(dataset, variable="rotation", x="alpha", y="beta", ax=None, **se
     return ax
 
 
-def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure",), figure=None, **select) -> Figure:
+def multiples(
+    dataset: "xr.Dataset",
+    variable: str = "rotation",
+    x: str = "alpha",
+    y: str = "beta",
+    over: str | Sequence[str] = ("pressure",),
+    figure: Figure | None = None,
+    **select: Quantity,
+) -> Figure:
     """Small maps of ``variable`` over ``x`` and ``y``, one for each node of one or two axes ``over``; returns the figure.
 
-    Of an axis with more than four nodes, four are taken, first and last among them; the first axis runs to the right, the
+    Of an axis with more than four nodes, four are taken, the last among them (without pressure there is nothing to see), and
+    steps of the colours so that each of them shows some; the first axis runs to the right, the
     second down. One set of colours serves all. Raises ValueError as :func:`section_map` does.
     """
     over = (over,) if isinstance(over, str) else tuple(over)
@@ -54,7 +76,7 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
         )
     for name in over:
         check_name(name, [axis for axis in dimensions(dataset) if axis not in (x, y)], "axis to run over")
-    nodes = [_some(dataset[name].values) for name in over]
+    nodes = [_some(name, dataset[name].values) for name in over]
     rows = nodes[1] if len(over) == 2 else [None]
     sheets = [
         [
@@ -67,13 +89,14 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
         figure = style.new_figure(style.PAGE, PANEL * len(rows) + 34.0) if figure is None else figure
         axes = figure.subplots(len(rows), len(nodes[0]), sharex=True, sharey=True, squeeze=False)
         values = [[shown_values(sheet, variable) for sheet in row] for row in sheets]
-        shade = shades(np.concatenate([one.compressed() for row in values for one in row]), display(variable).centre)
+        panels = [one.compressed() for row in values for one in row]
+        shade = shades(np.concatenate(panels), display(variable).centre, panels)
         keys = {}
         for (i, k), ax in np.ndenumerate(axes):
             sheet = sheets[i][k]
             keys |= _draw(ax, sheet, values[i][k], shade, variable, dataset)
             if i == 0:
-                ax.set_title(describe(over[0], nodes[0][k]), loc="left", fontsize=style.NORMAL)
+                ax.set_title(describe(over[0], nodes[0][k]), loc="left", fontsize=style.points(style.NORMAL))
             if i == len(rows) - 1:
                 ax.set_xlabel(axis_label(x, short=True))
             if k == 0:
@@ -86,9 +109,10 @@ def multiples(dataset, variable="rotation", x="alpha", y="beta", over=("pressure
     return figure
 
 
-def _some(nodes):
-    """Up to MOST nodes, evenly among them: numbers, or names of designs."""
-    at = np.unique(np.linspace(0, len(nodes) - 1, MOST).round().astype(int))
+def _some(name, nodes):
+    """Up to MOST nodes, evenly among them: numbers, or names of designs. Without pressure there is nothing to see."""
+    blank = int(name == "pressure" and len(nodes) > 1 and nodes[0] == 0.0)
+    at = np.unique(np.linspace(0, len(nodes) - 1, MOST + blank).round().astype(int))[blank:]
     return [str(node) if nodes.dtype.kind in "UO" else float(node) for node in nodes[at]]
 
 
@@ -122,12 +146,12 @@ def window(ax, sheet: Plane) -> None:
 def head(figure, ax, text, point, lift) -> None:
     """Title of the figure and, ``lift`` points above the first map, what was chosen."""
     width = figure.get_size_inches()[0] * style.INCH
-    below = textwrap.wrap(", ".join(point.words()), int(width / LETTER))
+    below = textwrap.wrap(", ".join(point.words()), int(width / (LETTER * style.wider())))
     heading = "\n".join([text, *[" "] * len(below)])  # room for what was chosen
-    figure.suptitle(heading, x=0.01, ha="left", fontsize=style.LARGE, fontweight="bold", linespacing=1.0)
+    figure.suptitle(heading, x=0.01, ha="left", fontsize=style.points(style.LARGE), fontweight="bold", linespacing=1.0)
     how = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False, "gid": "chosen"}
     chosen = ax.annotate(
-        "\n".join(below), (0.0, 1.0), xytext=(0.0, lift), color=style.QUIET, fontsize=style.SMALL, **how
+        "\n".join(below), (0.0, 1.0), xytext=(0.0, lift), color=style.QUIET, fontsize=style.points(style.SMALL), **how
     )
     chosen.set_in_layout(False)  # it may run over several maps
 

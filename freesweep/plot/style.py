@@ -5,6 +5,7 @@ CIELAB, so equal steps of a value look equally large and keep their order in gre
 """
 
 import contextlib
+import functools
 import io
 import os
 from pathlib import Path
@@ -14,6 +15,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import TextPath
 
 from ..atlas.files import write_whole
 
@@ -38,6 +41,7 @@ THICK, THIN = 1.4, 0.7  # lines of data; where a fiber family would have to push
 DESIGN = {"color": INK, "markerfacecolor": PAPER, "markersize": 3.4, "markeredgewidth": 0.8}  # the dot of a design
 
 LIGHTEST_TYPE = 0.24  # relative luminance: a contrast of 3.6 to paper
+SAMPLE = "length 192 mm, radius 4.76 mm, wall 1.59 mm, thin lines"
 SMALL, NORMAL, LARGE = 7.0, 8.0, 10.0  # type [points]
 
 SETTINGS = {
@@ -70,11 +74,14 @@ SETTINGS = {
 
 @contextlib.contextmanager
 def context():
-    """The settings, for a while. What pyplot sets when it is first imported meanwhile stays: ``rc_context`` would take a
-    notebook's ``interactive`` back, and later plots would not be seen.
+    """The settings, for a while, but for those that the user has changed: own styles pass through.
+
+    What pyplot sets when it is first imported meanwhile stays: ``rc_context`` would take a notebook's ``interactive`` back,
+    and later plots would not be seen.
     """
     before = {name: mpl.rcParams[name] for name in SETTINGS}
-    mpl.rcParams.update(SETTINGS)
+    own = {name for name, value in before.items() if value != mpl.rcParamsDefault[name]}
+    mpl.rcParams.update({name: value for name, value in SETTINGS.items() if name not in own})
     try:
         yield
     finally:
@@ -100,6 +107,26 @@ def ramp(count: int) -> list[str]:
     return [to_hex(colour) for colour in SEQUENTIAL(np.linspace(1.0, 0.38, count)[::-1])]
 
 
+def points(size: float) -> float:
+    """A size of type, SMALL, NORMAL or LARGE, to the scale of the font size that holds [points]."""
+    return size * mpl.rcParams["font.size"] / NORMAL
+
+
+@functools.lru_cache(maxsize=8)
+def _mean_letter(family):
+    """Mean width of letters of a font, in sizes of type."""
+    return TextPath((0, 0), SAMPLE, size=100.0, prop=FontProperties(family=list(family))).get_extents().width / len(
+        SAMPLE
+    )
+
+
+def wider() -> float:
+    """By how much the type that holds is wider than SETTINGS' own, size included: for words that are broken to a width."""
+    own, plain = tuple(mpl.rcParams["font.family"]), tuple(SETTINGS["font.family"])
+    scale = mpl.rcParams["font.size"] / SETTINGS["font.size"]
+    return scale * (1.0 if own == plain else _mean_letter(own) / _mean_letter(plain))
+
+
 def legible(colour: str) -> str:
     """The colour of type beside a line of ``colour``: darker where that is too light to read on paper."""
     rgb = np.array(to_rgb(colour))
@@ -118,7 +145,7 @@ def dress(ax: Axes, xlabel: str, ylabel: str, heading: str = "") -> Axes:
     """Labels with units, a heading at the left, open axes with faint lines to read values from."""
     ax.set_xlabel(xlabel)
     ax.set_ylabel(ylabel)
-    ax.set_title(heading, loc="left", fontsize=NORMAL + 1.0, fontweight="bold")
+    ax.set_title(heading, loc="left", fontsize=points(NORMAL + 1.0), fontweight="bold")
     ax.spines[["top", "right"]].set_visible(False)
     ax.grid(True, color=BLANK, linewidth=0.5)
     ax.set_axisbelow(True)

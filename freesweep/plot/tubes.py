@@ -1,6 +1,7 @@
 """Several shapes of one actuator below each other, to one scale: undeformed on top, then deformed."""
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,6 +9,9 @@ from matplotlib.axes import Axes
 from ..actuator import Actuator
 from . import style
 from .shape import draw_shape, project, shape_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 WIDTH = style.PAGE  # of a figure of its own [mm]
 MARGIN = 0.02  # beside a shape, over its length
@@ -44,7 +48,7 @@ def size_of(tube: Actuator, *states) -> tuple[float, float]:
     return WIDTH, -layout.bottom / layout.span * (WIDTH - 4.0) + 14.0
 
 
-def shape_plot(tube: Actuator, *states, titles=(), ax=None) -> Axes:
+def shape_plot(tube: Actuator, *states: "xr.Dataset", titles: Sequence[str] = (), ax: Axes | None = None) -> Axes:
     """The undeformed actuator on top, in blue, and below it each of ``states`` in red; returns the Axes.
 
     A state is a Dataset of one load, from ``lock``, ``inflate``, ``blocked_force`` or the like; ``titles`` names each.

@@ -1,5 +1,8 @@
 """Validity of an atlas: where it has results, which fibers would have to push there, what is unstable, what fails."""
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -7,14 +10,18 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
+from ..quantities import Quantity
 from ..status import VALUED
 from . import style
 from .between import between
-from .choice import check_name
+from .choice import check_name, read_selection
 from .display import axis_label
 from .fill import cell, draw_failures, edges
 from .plane import Plane, section, status_of
 from .section import head, legend, scaled, window
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STATES = {  # what may be shown: a variable that has it, its stability, its slack fibers
     "equilibrium": ("deformed_length", "stable", "slack_fiber"),
@@ -32,7 +39,14 @@ UNSTABLE = ("oo", "unstable")  # hatch and words
 PANEL = 75.0  # height of a map [mm]
 
 
-def validity_map(dataset, of="equilibrium", x="alpha", y="beta", ax=None, **select) -> tuple[Axes, dict, Plane]:
+def validity_map(
+    dataset: "xr.Dataset",
+    of: str = "equilibrium",
+    x: str = "alpha",
+    y: str = "beta",
+    ax: Axes | None = None,
+    **select: Quantity,
+) -> tuple[Axes, dict, Plane]:
     """Draws validity, stability and slack fibers of an atlas over two axes.
 
     ``of`` is "equilibrium", "blocked_force" or "blocked_torque"; ``select`` is as in :func:`freesweep.plot.map.design_map`.
@@ -40,6 +54,7 @@ def validity_map(dataset, of="equilibrium", x="alpha", y="beta", ax=None, **sele
     """
     check_name(of, [name for name, (host, _, _) in STATES.items() if host in dataset], "state")
     host, stable, slack = STATES[of]
+    select = read_selection(select)
     dataset = between(dataset, host, select, (x, y))  # its flags with it
     sheet = scaled(section(dataset, host, x, y, select))
     kind = np.zeros(sheet.reason.shape) if slack is None else _slack(dataset, host, slack, x, y, select)
@@ -66,7 +81,14 @@ def validity_map(dataset, of="equilibrium", x="alpha", y="beta", ax=None, **sele
     return ax, keys, sheet
 
 
-def validity_maps(datasets, of="equilibrium", x="alpha", y="beta", figure=None, **select) -> Figure:
+def validity_maps(
+    datasets: "Sequence[xr.Dataset]",
+    of: str = "equilibrium",
+    x: str = "alpha",
+    y: str = "beta",
+    figure: Figure | None = None,
+    **select: Quantity,
+) -> Figure:
     """The validity maps of several atlases side by side, each named by its strain energy; returns the figure."""
     with style.context():
         count = len(datasets)
@@ -78,7 +100,9 @@ def validity_maps(datasets, of="equilibrium", x="alpha", y="beta", figure=None, 
             _, found, sheet = validity_map(dataset, of, x, y, ax, **select)
             keys |= found
             ax.set_title(
-                f"strain energy: {dataset.attrs.get('energy', 'not named')}", loc="left", fontsize=style.NORMAL
+                f"strain energy: {dataset.attrs.get('energy', 'not named')}",
+                loc="left",
+                fontsize=style.points(style.NORMAL),
             )
             if ax is not axes[0]:
                 ax.set_ylabel("")

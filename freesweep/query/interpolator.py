@@ -1,12 +1,14 @@
 """A bare callable for loops and optimizers: arrays in, arrays out, gradients on request."""
 
 import operator
+from typing import Any
 
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..given import numbers
 from ..options import read_switch
+from ..quantities import Quantities
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import reference
 from .answer import Inquiry
@@ -49,7 +51,7 @@ class Interpolator:
     def __reduce__(self):
         return operator.methodcaller("interpolator", self.names[0] if self.single else self.names), (self.atlas,)
 
-    def __call__(self, *values, gradient=False):
+    def __call__(self, *values: Quantities, gradient: bool = False) -> Any:
         """Values, and with ``gradient`` their derivatives; raises :class:`QueryError`."""
         if len(values) != len(self.axes):
             raise QueryError([f"found {len(values)} values; give {len(self.axes)}: {', '.join(self.axes)}"])

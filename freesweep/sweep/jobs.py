@@ -46,7 +46,7 @@ def as_done(begin, jobs, most):
 
 def bar(total, finished, unit, progress):
     """A progress bar, or nothing that is seen."""
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     return tqdm(
         total=total,

@@ -54,20 +54,20 @@ def rubber_attributes(sweep) -> dict:
     return {"material": sweep.material, "material_source": rubber.source, "largest_stretch": rubber.largest_stretch}
 
 
-def warn_beyond_range(dataset):
+def warn_beyond_range(dataset, stacklevel=3):
     """Warn if states of an atlas strain their wall beyond what its rubber is known for, or is convex to."""
     limit = dataset.attrs.get("largest_stretch")
     if limit is not None and (count := beyond_range(dataset, limit)):
         warnings.warn(
             f"{count:,} states stretch the wall by more than {limit:g}, to which the constants of"
             f" {dataset.attrs['material']} are known to hold",
-            stacklevel=3,
+            stacklevel=stacklevel,
         )
     if count := beyond_convexity(dataset):
         warnings.warn(
             f"{count:,} states strain the wall beyond where its Yeoh energy is convex (c20 or c30 is negative): no rubber"
             " behaves so there",
-            stacklevel=3,
+            stacklevel=stacklevel,
         )
 
 

@@ -4,6 +4,7 @@ import contextlib
 import os
 import time
 import warnings
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
 from ..given import described
 from ..options import read_count, read_path, read_switch
+from ..quantities import Path
 from ..status import STATUSES
 from ..unit_warnings import warn_of
 from . import estimate, kernels
@@ -40,7 +42,15 @@ HELD_COST, VARYING_COST, PHYSICAL_COST = (
 # free state of others
 
 
-def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrite=False) -> Atlas:
+def run_sweep(
+    spec: Path | Sweep,
+    out: Path,
+    *,
+    threads: int | None = None,
+    executor: Any = None,
+    progress: bool = True,
+    overwrite: bool = False,
+) -> Atlas:
     """Solve a sweep and store its atlas.
 
     Parameters
@@ -57,10 +67,15 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
     whole numbers of each design. Returns the opened :class:`Atlas`. Raises SpecificationError, :class:`SweepError`,
     EnvironmentFault.
     """
+    return run(spec, out, threads, executor, progress, overwrite, stacklevel=3)
+
+
+def run(spec, out, threads, executor, progress, overwrite, stacklevel) -> Atlas:
+    """What :func:`run_sweep` does; warnings name the line ``stacklevel`` calls above."""
     begun = time.perf_counter()
     spec, out, threads, progress, overwrite = _read(spec, out, threads, executor, progress, overwrite)
     sweep = spec if isinstance(spec, Sweep) else read_file(spec)
-    warn_of(doubts_of(sweep), stacklevel=2)
+    warn_of(doubts_of(sweep), stacklevel)
     identity, shards = identify(sweep), Shards(out)
     if atlas := _complete(out, identity, sweep.text, overwrite, progress):
         shards.tidy(identity)
@@ -92,8 +107,10 @@ def run_sweep(spec, out, *, threads=None, executor=None, progress=True, overwrit
         shards.release()
     atlas = open_atlas(out)
     if lost:
-        warnings.warn(f"{lost}; their status is not_converged, sweep again with overwriting to try anew", stacklevel=2)
-    warn_beyond_range(atlas.data)
+        warnings.warn(
+            f"{lost}; their status is not_converged, sweep again with overwriting to try anew", stacklevel=stacklevel
+        )
+    warn_beyond_range(atlas.data, stacklevel + 1)
     if progress:
         now = time.perf_counter()
         print(summary(atlas, tables, solved - begun, now - begun))

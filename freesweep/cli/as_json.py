@@ -1,0 +1,73 @@
+"""What commands print as tables, as JSON: numbers in SI units and degrees, null where there is none."""
+
+import json
+import math
+
+
+def _plain(value):
+    """Python's own types, NaN and infinities as None."""
+    if isinstance(value, dict):
+        return {str(name): _plain(one) for name, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def text(content) -> str:
+    """Indented JSON."""
+    return json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
+
+
+def of_states(dataset) -> str:
+    """States of one actuator: units by name, and one record for each point; statuses in words."""
+    from .query import _json
+
+    return _json(dataset.drop_dims("x"))
+
+
+def of_atlas(atlas) -> str:
+    """Axes, fixed values, variables, statuses and attributes of an atlas."""
+    from ..atlas.schema import STATUS_OF
+
+    data = atlas.data
+    about = {name: {"values": data[name].values, **_units(data[name])} for name in data.sizes}
+    fixed = {name: {"value": one.values, **_units(one)} for name, one in data.coords.items() if one.ndim == 0}
+    held = {
+        name: {"long_name": one.attrs.get("long_name", ""), "dimensions": list(one.dims), **_units(one)}
+        for name, one in data.data_vars.items()
+    }
+    statuses = {name: atlas.status_counts(name) for name in STATUS_OF if name in data}
+    return text(
+        {"axes": about, "fixed": fixed, "variables": held, "statuses": statuses, "attributes": dict(data.attrs)}
+    )
+
+
+def _units(variable):
+    return {"units": variable.attrs["units"]} if "units" in variable.attrs else {}
+
+
+def of_candidates(found) -> str:
+    """Candidates of a design, best first, with the line of Python that makes each."""
+    from ..inverse.report import columns_of
+
+    named = {heading: values.tolist() for heading, values in columns_of(found)} | {
+        "python": found["python"].values.tolist()
+    }
+    rows = [dict(zip(named, values)) for values in zip(*named.values())]
+    return text({"summary": found.attrs["summary"], "candidates": rows})
+
+
+def of_comparisons(path, comparisons) -> str:
+    """Largest differences of an atlas from the second method, beside the stored bounds."""
+    rows = {
+        one.name: {
+            "judged": one.difference.size,
+            "unjudged": one.unjudged,
+            "largest_difference": max(one.difference, default=None),
+            "broken": one.broken.sum(),
+        }
+        for one in comparisons
+    }
+    return text({"atlas": str(path), "whole": True, "resolved": rows})

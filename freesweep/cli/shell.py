@@ -1,0 +1,71 @@
+"""The parser of all commands: it suggests what was meant, shows examples, and prints scripts for completion."""
+
+import argparse
+import difflib
+
+from .examples import EXAMPLES
+
+FILES = ("atlas", "spec", "out", "data", "files", "points", "wishes", "picture", "map")  # arguments that name files
+SHELLS = ("bash", "zsh", "tcsh")
+
+
+class _Formatter(argparse.HelpFormatter):
+    def _fill_text(self, text, width, indent):
+        return text if text.startswith("examples:") else super()._fill_text(text, width, indent)
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors name what was probably meant, and whose help ends with examples."""
+
+    def __init__(self, *given, **named):
+        super().__init__(*given, **named | {"formatter_class": _Formatter})
+        lines = EXAMPLES.get(self.prog, ())
+        if lines:
+            self.epilog = "\n".join(["examples:", *(f"  {line}" for line in lines)])
+
+    def _check_value(self, action, value):
+        """Refuse what is no choice; the choices of commands are a mapping of names."""
+        if action.choices is not None and value not in action.choices:
+            known = list(map(str, action.choices))
+            raise argparse.ArgumentError(
+                action, f"invalid choice: {value!r:.60}; {_meant(str(value), known)}choose from {', '.join(known)}"
+            )
+
+    def parse_known_args(self, args=None, namespace=None):
+        """Options that are unknown here are told here, with the option that was meant."""
+        found, rest = super().parse_known_args(args, namespace)
+        unknown = [word.partition("=")[0] for word in rest if word.startswith("--")]
+        if unknown:
+            known = [name for name in self._option_string_actions if name.startswith("--")]
+            self.error(
+                "; ".join(f"there is no option {word:.60}; {_meant(word, known)}".rstrip("; ") for word in unknown)
+            )
+        return found, rest
+
+
+def _meant(word, known):
+    near = difflib.get_close_matches(word[:60], known, n=1, cutoff=0.6)
+    return f"did you mean {near[0]}? " if near else ""
+
+
+class Completion(argparse.Action):
+    """Prints a script that completes commands, options and files: ``--print-completion bash``."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        """Print it, and end."""
+        try:
+            import shtab
+        except ImportError:
+            parser.error("--print-completion needs shtab: pip install 'freesweep[completion]'")
+        _mark_files(parser, shtab.FILE)
+        print(shtab.complete(parser, shell=values))
+        parser.exit()
+
+
+def _mark_files(parser, kind):
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for own in action.choices.values():
+                _mark_files(own, kind)
+        elif action.dest in FILES:
+            action.complete = kind

@@ -1,0 +1,45 @@
+"""Writes a slice of an atlas in one of the formats, whole or not at all."""
+
+import re
+from pathlib import Path
+
+from ..atlas.files import write_whole
+from ..options import read_choice, read_path
+from .arrays import as_mat, as_npz
+from .c_header import as_c
+from .chosen import chosen
+from .mujoco import as_mujoco
+from .plain import as_csv, as_json
+from .simulink import as_simulink
+from .table import ExportError, grid_of
+
+# name -> (how, suffix)
+FORMATS = {
+    "csv": (as_csv, ".csv"),
+    "npz": (as_npz, ".npz"),
+    "mat": (as_mat, ".mat"),
+    "c": (as_c, ".h"),
+    "json": (as_json, ".json"),
+    "mujoco": (as_mujoco, ".xml"),
+    "simulink": (as_simulink, ".m"),
+}
+
+
+def export(atlas, path, to=None, variables=None, derivatives=False, at=None) -> Path:
+    """See :meth:`freesweep.Atlas.export`."""
+    faults = []
+    path = read_path("path", path, "the table to make", faults)
+    if to is None and path is not None:
+        to = next((name for name, (_, suffix) in FORMATS.items() if path.suffix == suffix), None)
+        if to is None:
+            known = ", ".join(f"{suffix} ({name})" for name, (_, suffix) in FORMATS.items())
+            faults.append(f"path: the suffix {path.suffix!r} names no format; use {known}, or give to=")
+    elif to is not None:
+        to = read_choice("to", to, tuple(FORMATS), faults)
+    if faults:
+        raise ExportError(faults)
+    name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
+    name = name if re.match("[A-Za-z]", name) else f"table_{name}"
+    content = FORMATS[to][0](grid_of(chosen(atlas, variables, derivatives, at or {})), name)
+    write_whole(path, content)
+    return path

@@ -1,0 +1,124 @@
+"""What editors and type checkers see: the stub, the annotations, the cookbook."""
+
+import ast
+import importlib.util
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from test_docs import BLOCK
+
+import freesweep as fs
+from freesweep.plot import curve, map, motion, section, style, tubes, validity
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "freesweep"
+UNSEEN = (
+    "numba matplotlib scipy pandas sympy dask distributed netCDF4 h5py llvmlite PIL tqdm"  # not looked into: seconds
+)
+SETTINGS = f"""
+[mypy]
+ignore_missing_imports = True
+follow_imports = silent
+[mypy-{",".join(f"{name}.*" for name in UNSEEN.split())}]
+follow_imports = skip
+follow_imports_for_stubs = True
+"""
+GOOD = """
+import numpy as np
+import xarray as xr
+import freesweep as fs
+
+rubber = fs.NeoHookean("0.1 MPa")
+tube = fs.Actuator(
+    alpha=30, beta=[(0, "30 deg"), (1, 40)], length="131 mm", radius=np.float64(4.76e-3), wall=lambda u: u, material=rubber
+)
+twice: float = 2 * tube.length
+locked: xr.Dataset = fs.lock(tube, x=["1 mm", 0.1])
+held: xr.Dataset = fs.blocked_force(tube, np.linspace(0, 1e5, 5), derivatives="all")
+atlas: fs.Atlas = fs.sweep(alpha=(0, 80, 10), beta=np.arange(3), length=["1 mm"], pressure={"start": 0}, out="a.nc")
+answer: xr.Dataset = atlas.query("rotation", alpha="20 deg", pressure=xr.DataArray([1.0], dims="pressure"))
+fs.Measurement(tube, [1e4, 2e4], deformed_length=["190 mm", 0.18])
+fs.Goal("rotation", "90 deg", pressure="1 bar")
+stretch = fs.closed_form.locked_stretch("30 deg", [-30, -40])
+"""
+BAD = """
+import freesweep as fs
+fs.Actuator(alpha=30, beta=40)
+fs.inflate(presure=1e5)
+fs.lock(3)
+fs.sweeep
+fs.material(3)
+"""
+
+
+@pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="mypy is not installed")
+def test_a_type_checker_reads_the_cookbook_and_sees_what_is_wrong(tmp_path):
+    text = (ROOT / "docs" / "cookbook.md").read_text(encoding="utf-8")
+    (tmp_path / "cookbook.py").write_text("\n".join(block[1] for block in BLOCK.finditer(text)))
+    (tmp_path / "good.py").write_text(GOOD)
+    (tmp_path / "bad.py").write_text(BAD)
+    (tmp_path / "mypy.ini").write_text(SETTINGS)
+    words = ["--config-file", "mypy.ini", "--cache-dir", "cache", "cookbook.py", "good.py", "bad.py"]
+    environment = {"MYPYPATH": str(ROOT), "PATH": "", "HOME": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", *words], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    errors = [line for line in done.stdout.splitlines() if ": error: " in line]
+    assert not [line for line in errors if not line.startswith("bad.py")], done.stdout
+    assert {int(line.split(":")[1]) for line in errors} == {3, 4, 5, 6, 7}, done.stdout + done.stderr
+
+
+def test_the_stub_names_what_the_package_hands_out():
+    imports = [
+        node for node in ast.parse((PACKAGE / "__init__.pyi").read_text()).body if isinstance(node, ast.ImportFrom)
+    ]
+    told = {name.name: node.module for node in imports for name in node.names}
+    assert all(name.name == name.asname for node in imports for name in node.names)  # else they are private there
+    rooms = {name for name, module in told.items() if module is None}
+    assert rooms | {"sweep"} == set(fs._ROOMS)
+    homes = {name: module for name, module in told.items() if module is not None}
+    assert homes == fs._HOMES | {"sweep": "sweep.from_python"}
+    assert (PACKAGE / "py.typed").exists()
+
+
+def test_dir_shows_what_is_public():
+    assert set(dir(fs)) == {*fs.__all__, "__version__", "plot", "status"}
+    assert all(hasattr(fs, name) for name in dir(fs))
+
+
+def public():
+    """Every public function, and every public method of a public class."""
+    plots = [map.design_map, section.section_map, section.multiples, curve.curve, tubes.shape_plot, motion.save_motion]
+    yield from ((plot.__name__, plot) for plot in (*plots, validity.validity_map, validity.validity_maps, style.save))
+    for name in [*fs.__all__, "closed_form"]:
+        one = getattr(fs, name)
+        if inspect.isclass(one) and not issubclass(one, Exception):
+            methods = {key: value for key, value in vars(one).items() if key[0] != "_"}
+            for key, value in methods.items():
+                plain = value.__func__ if isinstance(value, classmethod) else value
+                if inspect.isfunction(plain):
+                    yield f"{name}.{key}", plain
+        elif inspect.ismodule(one):
+            yield from (
+                (f"{name}.{key}", value)
+                for key, value in vars(one).items()
+                if key[0] != "_" and inspect.isfunction(value) and value.__module__ == one.__name__
+            )
+        elif inspect.isfunction(one):
+            yield name, one
+
+
+def test_every_public_function_is_annotated():
+    seen, apart = 0, ("calibrate", "read_measurements", "Measurement.imposed")
+    for name, function in public():
+        signature = inspect.signature(function)
+        given = [one for key, one in signature.parameters.items() if key not in ("self", "cls")]
+        missing = [one.name for one in given if one.annotation is one.empty]
+        if name not in apart:
+            assert not missing, f"{name}: {missing}"
+            assert signature.return_annotation is not signature.empty, name
+        seen += 1
+    assert seen > 30
