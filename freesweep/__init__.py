@@ -38,6 +38,7 @@ _HOMES = {
     "open_atlas": "atlas.store",
     "Atlas": "atlas.store",
     "UnsealedWarning": "atlas.store",
+    "explore": "explorer.notebook",
 }
 __all__ = [*_HOMES, "closed_form"]
 

@@ -84,7 +84,7 @@ def test_what_is_imported_at_run_time_is_declared():
     modules = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
     modules += [node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.level == 0]
     named = {name.split(".")[0] for name in modules}
-    extra = PROJECT["project"]["optional-dependencies"]["dask"]
+    extra = [one for name in ("dask", "explore") for one in PROJECT["project"]["optional-dependencies"][name]]
     declared = {text.split(">")[0] for text in [*PROJECT["project"]["dependencies"], *extra]}
     ours = {name for name in named if name not in sys.stdlib_module_names} - {"freesweep"}
     ours = {{"PIL": "pillow"}.get(name, name) for name in ours}
