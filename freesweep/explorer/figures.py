@@ -4,11 +4,20 @@ from bokeh.core.properties import value
 from bokeh.models import ColorBar, ColumnDataSource, CustomJS, LinearColorMapper, Range1d
 from bokeh.plotting import figure
 
+from .. import status
 from ..plot import style
+from .measures import COARSE_STATUS
 
 FONT = "system-ui, -apple-system, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif"
 SMALL, NORMAL = "11px", "12px"
-HATCHES = {"horizontal": "horizontal_line", "right": "right_diagonal_line", "left": "left_diagonal_line"}
+DIAGONAL, BACK, CROSSED = "right_diagonal_line", "left_diagonal_line", "diagonal_cross"
+SLACK_KIND = 100  # and the slack families
+HATCHES = {  # by status of what failed, of COARSE_STATUS, and by slack families: pattern
+    status.DEGENERATE: "dot", status.BEYOND_LIMIT: DIAGONAL, status.COMPRESSED: BACK, status.HELD_IMPOSSIBLE: CROSSED,
+    status.NOT_CONVERGED: "cross", status.INVALID: "horizontal_line", status.OUTSIDE: "blank",
+    status.NOT_INTERPOLABLE: "ring", COARSE_STATUS: "dot",
+    SLACK_KIND + 1: DIAGONAL, SLACK_KIND + 2: BACK, SLACK_KIND + 3: CROSSED,
+}  # fmt: skip
 
 
 def figures() -> dict:
@@ -45,10 +54,11 @@ def _map():
     made.toolbar.active_drag = None
     made.toolbar.active_scroll = None
     made.image_rgba("image", "x", "y", "dw", "dh", source=_source("map_image", columns="image x y dw dh"))
-    made.quad(
-        "left", "right", "bottom", "top", source=_source("map_hatch", columns="left right bottom top fill pattern ink"),
-        fill_color="fill", line_color=None, hatch_pattern="pattern", hatch_color="ink", hatch_scale=8, hatch_weight=0.8,
-    )  # fmt: skip
+    for kind, pattern in HATCHES.items():  # one glyph for each: a column of patterns would cost a canvas for each cell
+        made.quad(
+            "left", "right", "bottom", "top", source=_source(f"hatch_{kind}", columns="left right bottom top"),
+            fill_color=None, line_color=None, hatch_pattern=pattern, hatch_scale=8, hatch_weight=0.8,
+        ).glyph.name = f"hatch_glyph_{kind}"  # fmt: skip
     thin = {"line_width": 1.0, "line_color": "ink", "line_alpha": 0.75}
     made.multi_line("xs", "ys", source=_source("map_lines", columns="xs ys ink dash"), line_dash="dash", **thin)
     made.line("x", "y", source=_source("map_manifold"), line_color="white", line_width=4, line_alpha=0.6)

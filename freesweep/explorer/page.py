@@ -61,6 +61,8 @@ def _embedded(value) -> str:
 
 def facts(desk) -> dict:
     """What the page knows of the atlas from the beginning."""
+    from .figures import HATCHES
+
     frame = desk.reader.frame
     fixed = {name: float(array[0]) for name, array in frame.values.items() if name in PARAMETERS and len(array) == 1}
     axes = {name: _axis(frame, name) for name in desk.axes}
@@ -77,7 +79,7 @@ def facts(desk) -> dict:
         "fiber_share": frame.fiber_share,
         "measures": [one._asdict() for one in desk.measures.values()],
         "systems": list(SYSTEMS), "units": {unit: system_units(unit) for unit in sorted(kinds)},
-        "statuses": sentences(),
+        "statuses": sentences(), "hatches": {str(kind): pattern for kind, pattern in HATCHES.items()},
         "slack": ["taut", "alpha slack", "beta slack", "both slack"],
         "tolerance": desk.reader.tolerance,
         "colours": {

@@ -47,14 +47,18 @@ function drawControls() {
     const designs = box.querySelector("[data-design]");
     if (designs) designs.innerHTML = facts.designs.map((name, k) => `<option value="${k}">${text(name)}</option>`).join("");
   }
-  for (const row of box.querySelectorAll("[data-axis]")) {
+  drawSliders();
+  const designs = box.querySelector("[data-design]");
+  if (designs) designs.value = state.at.design;
+}
+
+function drawSliders() {
+  for (const row of byId("sliders").querySelectorAll("[data-axis]")) {
     const name = row.dataset.axis, [label, field, range] = row.children;
     label.textContent = withUnit(name);
     if (document.activeElement !== field) field.value = digits(shown(name, state.at[name]));
     if (Math.abs(Number(range.value) - STEPS * toShare(name, state.at[name])) > 0.5) range.value = STEPS * toShare(name, state.at[name]);
   }
-  const designs = box.querySelector("[data-design]");
-  if (designs) designs.value = state.at.design;
 }
 
 function axesChosen(id, value) {

@@ -9,16 +9,23 @@ function dress() {
     }
     for (const one of model.center.filter((each) => "grid_line_color" in each)) one.grid_line_color = line;
   }
+  for (const kind of Object.keys(facts.hatches)) {
+    const fails = kind < 100 && isFailed(Number(kind)), weak = Number(kind) === 10 ? 0.22 : 0.42;
+    models[`hatch_glyph_${kind}`].setv({
+      fill_color: fails ? { value: css("--blank") } : { value: null }, hatch_color: { value: fails ? quiet : state.dark ? "#000000" : ink }, hatch_alpha: { value: fails ? 0.7 : weak },
+    });
+  }
   models.map_bar.setv({ major_label_text_color: quiet });
   models.map_cross_glyph?.setv({ line_color: ink });
 }
 
 hearers.push((keys, drag) => {
   const any = (...names) => keys.some((key) => names.includes(key));
-  drawControls();
+  if (drag) drawSliders(); else drawControls();
   if (any("dark")) dress();
   if (any("x", "y")) { grid = null; cross = null; }
   if (any("x", "y", "u", "m")) windowMap();
+  if (!drag || !(facts.design_axes.includes(state.x) && facts.design_axes.includes(state.y))) drawMarks();
   if (any("at", "m", "x", "y", "fx", "fy", "cloud") || (any("wishes") && !state.wishes.every((one) => grid?.values[one.measure]))) askMap(drag);
   else if (any("wishes", "taut", "u", "dark")) { drawMap(); drawWishes(); }
   if (any("at", "fx", "fy", "cloud", "wishes", "taut") && (!drag || state.cloud === "all")) askCloud(); else if (any("u", "dx", "dy", "pins")) drawFront();

@@ -1,10 +1,5 @@
 // The map: asked for coarsely while something is dragged, finely when it rests.
 const FINE = 4, DRAFT = 3;
-const HATCH = { // by status: pattern and words; 0 and 5 have values
-  1: "dot", 2: "right_diagonal_line", 3: "left_diagonal_line", 4: "diagonal_cross", 5: "dot", 6: "cross", 7: "horizontal_line",
-  8: " ", 9: "ring", 10: "dot",
-};
-const SLACK = { 1: "right_diagonal_line", 2: "left_diagonal_line", 3: "diagonal_cross" };
 let grid = null, bands = null, draftScale = 0.5, cross = null;
 
 function gridSize(drag) {
@@ -51,7 +46,6 @@ function drawMap() {
   const [x0, x1] = spanOf(state.x), [y0, y1] = spanOf(state.y);
   put("map_image", { image: [pixelColumn(pixels(fine, bands, lit), fine.w, fine.h)], x: [x0], y: [y0], dw: [x1 - x0], dh: [y1 - y0] });
   drawHatches();
-  drawMarks();
 }
 
 const spanOf = (name) => [shown(name, facts.axes[name].low), shown(name, facts.axes[name].high)];
@@ -89,50 +83,51 @@ const isFailed = (status) => ![0, 5, 10].includes(status);
 function drawHatches() {
   const { nx, ny, status, slack } = grid, [x0, x1] = spanOf(state.x), [y0, y1] = spanOf(state.y);
   const dx = (x1 - x0) / (nx - 1), dy = (y1 - y0) / (ny - 1);
-  const data = { left: [], right: [], bottom: [], top: [], fill: [], pattern: [], ink: [] };
-  const blank = css("--blank"), quiet = css("--quiet"), thin = state.dark ? "rgba(0,0,0,0.55)" : "rgba(35,39,46,0.38)";
-  const faint = state.dark ? "rgba(0,0,0,0.3)" : "rgba(35,39,46,0.2)", seen = new Set(), coarse = 10 * 16;
-  const kindOf = (k) => (isFailed(status[k]) ? status[k] : slack[k] ? 100 + slack[k] : status[k] === 10 ? coarse : 0);
-  let before = new Map();
+  const made = Object.fromEntries(Object.keys(facts.hatches).map((kind) => [kind, { left: [], right: [], bottom: [], top: [] }]));
+  const kindOf = (k) => (isFailed(status[k]) ? status[k] : slack[k] ? 100 + slack[k] : status[k] === 10 ? 10 : 0);
+  let before = new Map(); // runs of the row below: those that go on grow
   for (let j = 0; j < ny; j++) {
-    const runs = new Map();
+    const runs = new Map(), top = Math.min(y0 + (j + 0.5) * dy, y1);
     for (let i = 0, from = 0; i < nx; i++) {
       const kind = kindOf(j * nx + i);
       if (i + 1 < nx && kindOf(j * nx + i + 1) === kind) continue;
       if (kind) {
-        const key = `${kind}:${from}:${i}`, top = Math.min(y0 + (j + 0.5) * dy, y1);
-        seen.add(kind);
-        if (before.has(key)) { data.top[before.get(key)] = top; runs.set(key, before.get(key)); } else {
-          runs.set(key, data.left.length);
+        const key = (kind * nx + from) * nx + i, data = made[kind], old = before.get(key);
+        runs.set(key, old ?? data.left.length);
+        if (old !== undefined) data.top[old] = top; else {
           data.left.push(Math.max(x0 + (from - 0.5) * dx, x0));
           data.right.push(Math.min(x0 + (i + 0.5) * dx, x1));
           data.bottom.push(Math.max(y0 + (j - 0.5) * dy, y0));
           data.top.push(top);
-          data.fill.push(kind < 100 ? blank : "rgba(0,0,0,0)");
-          data.pattern.push(kind < 100 ? HATCH[kind] : kind === coarse ? "dot" : SLACK[kind - 100]);
-          data.ink.push(kind < 100 ? quiet : kind === coarse ? faint : thin);
         }
       }
       from = i + 1;
     }
     before = runs;
   }
-  put("map_hatch", data);
-  drawLegend([...seen].sort((a, b) => a - b), coarse);
+  const seen = [];
+  for (const [kind, data] of Object.entries(made)) {
+    if (data.left.length) seen.push(Number(kind));
+    if (data.left.length || models[`hatch_${kind}`].data.left.length) put(`hatch_${kind}`, data);
+  }
+  drawLegend(seen);
 }
 
-function drawLegend(kinds, coarse) {
-  const lines = {
-    right_diagonal_line: "M0 11L8 0M6 11L14 0M12 11L20 0", left_diagonal_line: "M0 0L8 11M6 0L14 11M12 0L20 11",
-    diagonal_cross: "M0 11L8 0M6 11L14 0M12 11L20 0M0 0L8 11M6 0L14 11M12 0L20 11", horizontal_line: "M0 3H18M0 8H18",
-    cross: "M0 3H18M0 8H18M4 0V11M9 0V11M14 0V11", dot: "M3 3h1M9 3h1M15 3h1M6 8h1M12 8h1", ring: "M3 5h2M8 5h2M13 5h2", " ": "",
-  };
-  byId("legend").innerHTML = kinds.map((kind) => {
-    const fails = kind < 100, pattern = fails ? HATCH[kind] : kind === coarse ? "dot" : SLACK[kind - 100];
-    const words = fails ? facts.statuses[kind].meaning : kind === coarse ? "coarse" : facts.slack[kind - 100];
-    const title = fails ? facts.statuses[kind].sentence : kind === coarse ? facts.statuses[10].sentence : "a family of threads that would have to push, which it cannot";
-    return `<span title="${title.replaceAll('"', "'")}"><svg><rect width="18" height="11" fill="${fails ? css("--blank") : "none"}"/>` +
-      `<path d="${lines[pattern]}" stroke="${css("--quiet")}" fill="none"/></svg>${words}</span>`;
+const LINES = {
+  right_diagonal_line: "M0 11L8 0M6 11L14 0M12 11L20 0", left_diagonal_line: "M0 0L8 11M6 0L14 11M12 0L20 11",
+  diagonal_cross: "M0 11L8 0M6 11L14 0M12 11L20 0M0 0L8 11M6 0L14 11M12 0L20 11", horizontal_line: "M0 3H18M0 8H18",
+  cross: "M0 3H18M0 8H18M4 0V11M9 0V11M14 0V11", dot: "M3 3h1M9 3h1M15 3h1M6 8h1M12 8h1", ring: "M3 5h2M8 5h2M13 5h2", blank: "",
+};
+const PUSH = "a family of threads that would have to push, which it cannot";
+
+function drawLegend(kinds) {
+  const box = byId("legend"), of = kinds.join() + state.dark;
+  if (box.dataset.of === of) return;
+  box.dataset.of = of;
+  box.innerHTML = kinds.map((kind) => {
+    const words = kind < 100 ? facts.statuses[kind].meaning : facts.slack[kind - 100], title = kind < 100 ? facts.statuses[kind].sentence : PUSH;
+    return `<span title="${title.replaceAll('"', "'")}"><svg><rect width="18" height="11" fill="${isFailed(kind) && kind < 100 ? "var(--blank)" : "none"}"/>` +
+      `<path d="${LINES[facts.hatches[kind]]}" stroke="var(--quiet)" fill="none"/></svg>${words}</span>`;
   }).join("");
 }
 

@@ -21,7 +21,11 @@ function unpin(k) {
 
 const lockedOf = (name) => (measures.has(`locked_${name}`) ? `locked_${name}` : null);
 
+let pinsAsked = 0;
+
 function askPins(drag) {
+  if (drag && performance.now() - pinsAsked < 150) return; // the map comes first
+  pinsAsked = performance.now();
   if (!state.pins.length) { pinned = { pins: [], curves: [], nodes: [] }; drawPins(); return; }
   const all = drag ? [...new Set([state.m, ...needsShape(), ...(lockedOf(state.m) ? [lockedOf(state.m)] : [])])] : [...measures.keys()];
   const question = { what: "pins", pins: state.pins, at: { ...state.at }, measures: all, curves: [state.m], n: 81 };
@@ -34,7 +38,6 @@ function askPins(drag) {
 }
 
 function drawPins() {
-  drawMarks();
   drawCurve();
   drawShapes();
   drawTable();
