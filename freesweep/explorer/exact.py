@@ -9,10 +9,10 @@ from ..elastomer import rubber_of
 from ..faults import ActuatorError
 from ..plot.shape import shape_of
 from ..status import STATUSES, VALUED
+from ..tube_model import MODELS
 
 STATIONS = 161  # of a shape
 DRAWN = 121  # of them that travel to the page
-MODEL = ("wall_model", "fibers")
 
 
 def tube_of(desk, pin: dict) -> Actuator:
@@ -25,9 +25,11 @@ def tube_of(desk, pin: dict) -> Actuator:
     values = {name: array[0] for name, array in _columns(desk, pin).items()}
     rubber = rubber_of(*(float(values.get(name, 0.0)) for name in ("c10", "c01", "c20", "c30")))
     own = {name: float(values[name]) for name in ("alpha", "beta", "length", "radius", "wall", "fiber_extension")}
-    parts = {name: getattr(frame.model, name) for name in MODEL}
-    place = float(values["fiber_radius"]) if "fiber_radius" in frame.values else frame.model.fiber_radius
-    return Actuator(**own, material=rubber, energy=frame.energy, model="source", fiber_radius=place, **parts)
+    usual = MODELS["source"]._asdict()
+    parts = {name: part for name, part in frame.model._asdict().items() if part != usual[name]}
+    if "fiber_radius" in frame.values:
+        parts["fiber_radius"] = float(values["fiber_radius"])
+    return Actuator(**own, **parts, material=rubber, energy=frame.energy, model="source")
 
 
 def loads_of(desk, pin: dict) -> dict:

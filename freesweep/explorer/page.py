@@ -10,7 +10,7 @@ from .. import __version__, closed_form
 from ..atlas.schema import LOADS, PARAMETERS
 from ..plot import regions, style
 from .desk import sentences
-from .measures import SYSTEMS, system_units
+from .measures import FLOORS, SYSTEMS, system_units
 
 SCRIPTS = (
     "state", "units", "provider", "table", "picture", "map", "pins", "shape", "panels", "wishes", "front", "export",
@@ -81,7 +81,7 @@ def facts(desk) -> dict:
         "systems": list(SYSTEMS), "units": {unit: system_units(unit) for unit in sorted(kinds)},
         "statuses": sentences(), "hatches": {str(kind): pattern for kind, pattern in HATCHES.items()},
         "slack": ["taut", "alpha slack", "beta slack", "both slack"],
-        "tolerance": desk.reader.tolerance,
+        "floors": FLOORS,
         "colours": {
             "diverging": _shades(style.DIVERGING), "sequential": _shades(style.SEQUENTIAL), "series": style.SERIES[:5],
             "families": style.FAMILIES, "before": style.BEFORE, "after": style.AFTER, "locked": style.LOCKED,

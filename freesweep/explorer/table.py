@@ -13,18 +13,25 @@ import numpy as np
 from ..query.axis import LOG, SQRT
 from .measures import evaluate, floor_of
 
-NODES = 240_000  # of all axes together
+NODES = 600_000  # of all axes together: some megabytes
 FEWEST = {"pressure": 8}  # to which an axis is thinned before the angles are
 FEW = 4
 DIGITS = 13  # binary, of a number
-SAMPLE, SEED = 4000, 1  # places at which the table is held against the atlas
+SAMPLE, CHUNK, SEED = 24_000, 4000, 1  # places at which the table is held against the atlas
+BINS = (6, 12)  # of the first two axes, in each of which its deviation is stated
 QUANTILE = 0.99
 ANGLES = ("alpha", "beta")
+SCALES = {  # what a measure grows with, as powers of sizes: what is left is smooth along them
+    "rotation": {"length": 1, "radius": -1}, "deformed_length": {"length": 1}, "mid_radius": {"radius": 1},
+    "outer_radius": {"radius": 1}, "volume": {"length": 1, "radius": 2}, "strain_energy": {"length": 1, "radius": 1},
+    "blocked_force": {"radius": 2}, "blocked_torque": {"radius": 3},
+}  # fmt: skip
 
 
 def small_table(desk) -> dict:
     """What the page holds: axes with their kinds, and each measure over its own axes; ``deviation``: how far it is from the
-    atlas, relative, in QUANTILE of all places.
+    atlas, relative, in QUANTILE of
+    the places of each bin.
     """
     reader = desk.reader
     nodes = thinned({name: reader.frame.values[name] for name in desk.axes})
@@ -40,15 +47,16 @@ def small_table(desk) -> dict:
         values |= {name: array.ravel() for name, array in zip(axes, grid)}
         found = evaluate(reader, values, size, some)
         for one in some:
-            arrays[one.name] = found.value[one.name].reshape(shape)
+            scale = {key: power for key, power in SCALES.get(plain(one.name), {}).items() if key in axes}
+            arrays[one.name] = (found.value[one.name] / size_of(scale, values)).reshape(shape)
             tables[one.name] = {
-                "axes": axes, "values": coded(arrays[one.name]),
+                "axes": axes, "scale": scale, "values": coded(arrays[one.name]),
                 "status": _packed(found.status[one.name]), "slack": _packed(found.slack.astype(np.uint8)),
             }  # fmt: skip
     axes = {name: {"nodes": array.tolist(), "kind": kinds[name]} for name, array in nodes.items()}
     for name, error in _deviations(desk, axes, tables, arrays).items():
         tables[name]["deviation"] = error
-    return {"axes": axes, "tables": tables}
+    return {"axes": axes, "tables": tables, "bins": BINS}
 
 
 def thinned(axes: dict) -> dict:
@@ -114,6 +122,16 @@ def _by_axes(desk):
     return {names: some for names, some in groups.items() if names}
 
 
+def plain(name):
+    """A measure without the word for its state."""
+    return name.removeprefix("locked_").removeprefix("ideal_")
+
+
+def size_of(scale, values):
+    """The product of powers of axes by which a table's numbers are multiplied."""
+    return np.prod([values[name] ** power for name, power in scale.items()] or [1.0], axis=0)
+
+
 def place(value, kind):
     """The coordinate in which an axis is smooth."""
     return np.sqrt(value) if kind == "sqrt" else np.log(value) if kind == "log" else value
@@ -155,16 +173,29 @@ def read(axes, names, table, values):
 
 
 def _deviations(desk, axes, tables, arrays):
-    """Measure -> deviation from the atlas at random places, relative to the value (small ones to the floor)."""
+    """Measure -> deviation from the atlas at random places, relative to the value (small ones to the floor), in each of the
+    BINS of the first two axes, row by row.
+    """
     rng = np.random.default_rng(SEED)
-    ranges = desk.reader.frame.ranges
-    values = {name: rng.uniform(*ranges[name], SAMPLE) for name in desk.axes}
+    ranges, names = desk.reader.frame.ranges, list(axes)[: len(BINS)]
+    values = {name: rng.uniform(*ranges[name], SAMPLE) for name in axes}
+    bins = np.zeros(SAMPLE, int)
+    for name, count in zip(names, BINS):
+        low, high = ranges[name]
+        bins = bins * count + np.minimum((count * (values[name] - low) / (high - low)).astype(int), count - 1)
     found = evaluate(desk.reader, values, SAMPLE, list(desk.measures.values()))
     result = {}
     for name, table in tables.items():
-        made = read(axes, table["axes"], decoded(table["values"], arrays[name].shape), values)
+        numbers = decoded(table["values"], arrays[name].shape)
+        made = [
+            read(axes, table["axes"], numbers, {key: array[k : k + CHUNK] for key, array in values.items()})
+            for k in range(0, SAMPLE, CHUNK)
+        ]
+        made = np.concatenate(made) * size_of(table["scale"], values)
         true = found.value[name]
-        both = np.isfinite(made) & np.isfinite(true)
-        size = np.maximum(np.abs(true[both]), max(floor_of(desk.measures[name].unit), 1e-300))
-        result[name] = float(np.quantile(np.abs(made - true)[both] / size, QUANTILE)) if both.any() else 0.0
+        far = np.abs(made - true) / np.maximum(np.abs(true), max(floor_of(desk.measures[name].unit), 1e-300))
+        both = np.isfinite(far)
+        worst = float(np.quantile(far[both], QUANTILE)) if both.any() else 0.0
+        parts = [far[both & (bins == k)] for k in range(int(np.prod(BINS)))]
+        result[name] = [float(np.quantile(part, QUANTILE)) if len(part) > FEW else worst for part in parts]
     return result

@@ -70,5 +70,5 @@ async function begin() {
   window.freesweep.ready = true;
 }
 
-window.freesweep = { event, state, change, facts, link, pin, isIdle, frames, exports: EXPORTS, pictureOf, ask, get grid() { return grid; }, get cloud() { return cloud; }, get pinned() { return pinned; }, margins, models, ready: false };
+window.freesweep = { event, state, change, facts, link, pin, isIdle, frames, exports: EXPORTS, pictureOf, viewOf, ask, get grid() { return grid; }, get cloud() { return cloud; }, get pinned() { return pinned; }, margins, models, ready: false };
 begin();

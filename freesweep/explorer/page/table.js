@@ -84,21 +84,32 @@ function summed(numbers, weights, strides, d = 0, offset = 0) {
   return mixed(weights[d], (j) => summed(numbers, weights, strides, d + 1, offset + (weights[d].first + j) * strides[d]));
 }
 
+function scaleOf(measure, values) {
+  let size = 1;
+  for (const [name, power] of Object.entries(window.freesweepTable.tables[measure].scale)) size *= values[name] ** power;
+  return size;
+}
+
 function readSmall(measure, values) {
   const table = window.freesweepTable.tables[measure], weights = table.axes.map((name) => weigh(name, values[name]));
   if (weights.includes(null)) return { value: NaN, status: 8, slack: 0 };
-  const strides = stridesOf(table.axes), value = summed(table.numbers, weights, strides), near = nearest(weights, strides);
+  const strides = stridesOf(table.axes), value = scaleOf(measure, values) * summed(table.numbers, weights, strides), near = nearest(weights, strides);
   return { value, status: Number.isFinite(value) ? 0 : table.statuses[near] || 9, slack: table.slacks[near] };
 }
 
-function errorOf(measure, value) {
-  const floor = { degree: 0.1, "1": 0.01, "%": 0.01 }[measures.get(measure).unit] || 0;
-  return window.freesweepTable.tables[measure].deviation * Math.max(Math.abs(value), floor);
+// What the table may be off, from what it was off at places around when the page was made.
+function errorOf(measure, value, values) {
+  const floor = facts.floors[measures.get(measure).unit] || 0, { bins, axes, tables } = window.freesweepTable;
+  const bin = Object.keys(axes).slice(0, bins.length).reduce((all, name, k) => {
+    const { low, high } = facts.axes[name], at_ = Math.floor((bins[k] * (values[name] - low)) / (high - low));
+    return all * bins[k] + Math.min(Math.max(at_, 0), bins[k] - 1);
+  }, 0);
+  return tables[measure].deviation[bin] * Math.max(Math.abs(value), floor);
 }
 
 function told(measure, values) {
   const { value, status } = readSmall(measure, values);
-  return Number.isFinite(value) ? { value, error: errorOf(measure, value), status } : { value: null, error: null, status };
+  return Number.isFinite(value) ? { value, error: errorOf(measure, value, values), status } : { value: null, error: null, status };
 }
 
 const slackAt = (values) => {
@@ -119,9 +130,11 @@ function localGrid({ x, y, nx, ny, at: fixed, measures: wanted }) {
     const { axes, numbers, statuses, slacks } = contracted(measure, others);
     const stride = (name) => (axes.indexOf(name) < 0 ? 0 : axes.indexOf(name) === axes.length - 1 ? 1 : small[axes[1]].nodes.length);
     const sx = stride(x), sy = stride(y), values = new Float32Array(nx * ny);
+    const value = (name, k, n) => facts.axes[name].low + ((facts.axes[name].high - facts.axes[name].low) * k) / (n - 1);
     for (let j = 0; j < ny; j++) for (let i = 0; i < nx; i++) {
+      const size = scaleOf(measure, { ...fixed, [x]: value(x, i, nx), [y]: value(y, j, ny) });
       const a = sx ? wx[i] : none, b = sy ? wy[j] : none, to = j * nx + i;
-      values[to] = mixed(b, (q) => mixed(a, (p) => numbers[(a.first + p) * sx + (b.first + q) * sy]));
+      values[to] = size * mixed(b, (q) => mixed(a, (p) => numbers[(a.first + p) * sx + (b.first + q) * sy]));
       const near = (w) => w.piece + (w.share > 0.5 ? 1 : 0), at_ = near(a) * sx + near(b) * sy;
       if (measure === wanted[0]) answer.status[to] = Number.isFinite(values[to]) ? 0 : statuses[at_] || 9;
       if (measure === state_) answer.slack[to] = slacks[at_];
@@ -143,7 +156,7 @@ function localPins({ pins, at: fixed, measures: wanted, curves, n = 81 }) {
     answer.curves.push(Object.fromEntries(curves.map((one) => {
       const line = [...nodes].map((node) => ({ ...values, [facts.along]: node }));
       const value = Float64Array.from(line, (place) => readSmall(one, place).value);
-      return [one, { value, error: value.map((number) => errorOf(one, number)), slack: Uint8Array.from(line, slackAt) }];
+      return [one, { value, error: value.map((number) => errorOf(one, number, values)), slack: Uint8Array.from(line, slackAt) }];
     })));
   }
   return answer;
@@ -164,7 +177,7 @@ function localCloud({ n, at: fixed, measures: wanted }) {
     const strides = stridesOf(part.axes);
     for (let k = 0; k < n; k++) {
       const weights = part.axes.map((name) => weigh(name, designs[name][k]));
-      found[k] = summed(part.numbers, weights, strides);
+      found[k] = scaleOf(measure, { ...fixed, ...Object.fromEntries(free.map((name) => [name, designs[name][k]])) }) * summed(part.numbers, weights, strides);
       slack[k] |= part.slacks[nearest(weights, strides)];
     }
     values[measure] = found;
