@@ -58,7 +58,7 @@ _ORDER = ("rotation", "length_change", "relative_radius", "outer_radius")
 
 def measures_of(reader) -> list:
     """The measures of an atlas' reader, those a designer asks for first in front."""
-    found = [_plain(name) for name in reader.names]
+    found = [_plain(name) for name in reader.names if _is_told(reader, name)]
     for prefix, end in (("", ""), ("locked_", ", locked")):
         if prefix + "deformed_length" in reader.names and "length" in reader.frame.values:
             found.append(
@@ -72,6 +72,14 @@ def measures_of(reader) -> list:
         found.append(Measure("outer_radius", "mid_radius", "Outer radius", "m"))
     rank = {name: k for k, name in enumerate(_ORDER)}
     return sorted(found, key=lambda one: (rank.get(one.name, len(rank)), one.name.startswith(("locked_", "ideal_"))))
+
+
+def _is_told(reader, name):
+    """Whether a query answers a variable: it varies along the axes of its family (locked energies may along more)."""
+    if name not in FAMILY_OF:
+        return True
+    first = next(one for one in FAMILIES[FAMILY_OF[name]].variables if one in reader.frame.dims)
+    return set(reader.frame.dims[name]) == set(reader.frame.dims[first])
 
 
 def _plain(name):

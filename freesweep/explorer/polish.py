@@ -8,8 +8,8 @@ from ..inverse.wishes import Goal
 from .desk import AskError
 from .exact import loads_of, tube_of
 
-FREE = {"rotation", "deformed_length", "mid_radius", "outer_radius", "volume", "strain_energy"}
-LOCKED = {"rotation", "deformed_length", "mid_radius", "volume", "strain_energy"}
+FREE = {"stroke", "rotation", "deformed_length", "mid_radius", "outer_radius", "volume", "strain_energy"}
+LOCKED = {"stroke", "rotation", "deformed_length", "mid_radius", "volume", "strain_energy"}
 HELD = {"blocked_force": "force", "blocked_torque": "torque"}
 COUNT = 5  # designs that come back, at most: as many as can be pinned
 LEAST = {"alpha": 1.0, "beta": 1.0}  # widths of what is free: a single lit design may still move
@@ -25,11 +25,11 @@ def goals_of(wishes, tube, loads) -> list:
         plain = name.removeprefix("locked_")
         if locked:
             state = {"pressure": math.inf}
-        scale = {
-            "length_change": ("deformed_length", tube.length, 1.0),
-            "relative_radius": ("mid_radius", tube.fiber_surface, 0.0),
-        }
-        output, size, shift = scale.get(plain, (plain, 1.0, 0.0))
+        output, size, sign = plain, 1.0, 1.0
+        if plain == "length_change":  # which keeps its meaning while the length moves
+            output, sign = "stroke", -1.0
+        elif plain == "relative_radius":
+            output, size = "mid_radius", tube.fiber_surface
         if name in HELD:
             output, state = HELD[name], {"pressure": loads["pressure"]}
         elif name == "limit_pressure":
@@ -39,7 +39,8 @@ def goals_of(wishes, tube, loads) -> list:
             continue
         if low is None and high is None:
             continue
-        low, high = (None if end is None else (end + shift) * size for end in (low, high))
+        low, high = (None if end is None else sign * size * end for end in (low, high))
+        low, high = (high, low) if sign < 0.0 else (low, high)
         ends = {"at_most": high} if low is None else {"at_least": low} if high is None else {"between": (low, high)}
         goals.append(Goal(output, **ends, **state))
     if not goals and not faults:
@@ -56,8 +57,8 @@ def polished(desk, ask) -> dict:
     at, frame = ask["at"], desk.reader.frame
     tube, loads = tube_of(desk, at), loads_of(desk, at)
     goals = goals_of(ask["wishes"], tube, loads)
-    if any(wish["measure"].endswith(("length_change", "relative_radius")) for wish in ask["wishes"]):
-        moves = {"length", "radius", "wall"} & set(ask["free"])
+    if any(wish["measure"].endswith("relative_radius") for wish in ask["wishes"]):
+        moves = {"radius", "wall", "fiber_radius"} & set(ask["free"])
         ask["free"] = {
             name: span for name, span in ask["free"].items() if name not in moves
         }  # what they are relative to
@@ -80,4 +81,7 @@ def polished(desk, ask) -> dict:
     ]
     if "design" in at:
         pins = [pin | {"design": at["design"]} for pin in pins]
-    return {"pins": pins, "met": [bool(one) for one in data["met"].values], "summary": data.attrs["summary"]}
+    met = [bool(one) for one in data["met"].values]
+    if any(met):
+        pins = [pin for pin, one in zip(pins, met) if one]
+    return {"pins": pins, "met": met, "summary": data.attrs["summary"]}
