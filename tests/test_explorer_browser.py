@@ -83,7 +83,7 @@ def test_hovering_and_clicking_tell_what_a_query_answers(page, atlas):
     until(page, "!document.getElementById('tip').hidden && freesweep.isIdle()")
     words = page.find_element(By.ID, "tip").text.replace("\N{MINUS SIGN}", "-")
     number, _, rest = words.partition("°")
-    alpha, beta = (float(part.split()[1]) for part in words.splitlines()[1].split(", "))
+    alpha, beta = (float(part.strip("°").split()[1]) for part in words.splitlines()[1].split(", "))
     true = atlas.query(["rotation"], alpha=alpha, beta=beta, radius=5e-3, pressure=1e5)
     assert abs(alpha - 35.0) < 1.0
     assert abs(beta + 55.0) < 1.0

@@ -84,4 +84,8 @@ def polished(desk, ask) -> dict:
     met = [bool(one) for one in data["met"].values]
     if any(met):
         pins = [pin for pin, one in zip(pins, met) if one]
+    if ask.get("taut"):
+        some = next(iter(desk.measures))
+        taut = [pin for pin in pins if desk.point({"at": at | pin, "measures": [some]})["slack"] == 0]
+        pins = taut or pins
     return {"pins": pins, "met": met, "summary": data.attrs["summary"]}

@@ -23,6 +23,7 @@ hearers.push((keys, drag) => {
   const any = (...names) => keys.some((key) => names.includes(key));
   if (drag) drawSliders(); else drawControls();
   if (any("dark")) dress();
+  if (any("x", "y", "m", "u")) byId("tip").hidden = true;
   if (any("x", "y")) { grid = null; cross = null; }
   if (any("x", "y", "u", "m")) windowMap();
   if (!drag || !(facts.design_axes.includes(state.x) && facts.design_axes.includes(state.y))) drawMarks();

@@ -171,8 +171,8 @@ function askTip(x, y, sx, sy) {
   request("tip", { what: "point", at: values, measures: [measure] }, (answer) => {
     if (tip.dataset.away) return;
     const { value, error, status } = answer.measures[measure], factor = unitOf(measure)[1], unit = unitOf(measure)[0];
-    const number = value === null ? (status ? "no value" : "none") : `${honest(factor * value, factor * error)} ${unit === "degree" ? "°" : unit}`;
-    const where = [state.x, state.y].map((name) => `${labelOf(name)} ${digits(shown(name, values[name]))} ${unitOf(name)[0] === "degree" ? "°" : unitOf(name)[0]}`);
+    const number = value === null ? (status ? "no value" : "none") : `${honest(factor * value, factor * error)}${unit === "degree" ? "°" : " " + unit}`;
+    const where = [state.x, state.y].map((name) => `${labelOf(name)} ${digits(shown(name, values[name]))}${unitName(name) === "°" ? "°" : " " + unitName(name)}`);
     const words = status ? facts.statuses[status] : null;
     tip.innerHTML = `<b>${number}</b>${value === null ? "" : ` ± ${oneDigit(factor * error)}`}<small>${where.join(", ")}</small>` +
       (words ? `<small>${words.meaning}: ${words.sentence}</small>` : "") + (answer.slack && value !== null ? `<small>${facts.slack[answer.slack]}</small>` : "");

@@ -41,6 +41,7 @@ function drawPins() {
   drawCurve();
   drawShapes();
   drawTable();
+  if (!grid?.drag) drawFront();
 }
 
 // The value of a measure of a pin: exact where the solver was asked, else the atlas'.
@@ -59,23 +60,23 @@ function drawTable() {
   byId("pins_note").textContent = state.pins.length ? "" : "up to five";
   for (const button of document.querySelectorAll("[data-export]")) button.disabled = !state.pins.length;
   const extra = [...new Set([...exact.values()].flatMap((one) => Object.keys(one.measures)))].filter((name) => ["blocked_force", "blocked_torque"].includes(name) && !measures.has(name));
-  const columns = [...tableColumns(), ...extra], own = [...(facts.designs.length ? ["design"] : []), ...facts.design_axes];
+  const columns = [...tableColumns().filter((name) => !name.startsWith("locked_")), ...extra, ...tableColumns().filter((name) => name.startsWith("locked_"))], own = [...(facts.designs.length ? ["design"] : []), ...facts.design_axes];
   const unit = (name) => { const word = unitName(name); return word ? `<br>${word}` : ""; };
-  const heads = [...own.map((name) => `<th>${labelOf(name)}${name === "design" ? "" : unit(name)}</th>`), ...columns.map((name) => `<th class="${name === state.m ? "shown" : ""}">${headOf(name)}${unit(name)}</th>`), "<th>threads</th>"];
+  const heads = [...own.map((name) => `<th>${labelOf(name)}${name === "design" ? "" : unit(name)}</th>`), "<th>threads</th>", ...columns.map((name) => `<th class="${name === state.m ? "shown" : ""}">${headOf(name)}${unit(name)}</th>`)];
   const rows = state.pins.map((design, k) => {
     const cells = own.map((name) => `<td>${name === "design" ? text(facts.designs[design.design]) : digits(shownAny(name, design[name]))}</td>`);
+    const slack = exact.get(keyOf(design))?.slack ?? pinned.pins[k]?.slack;
+    cells.push(`<td>${slack === undefined ? "" : facts.slack[slack]}</td>`);
     for (const name of columns) {
       const one = valueOf(k, name), factor = factorOf(name);
       const words = one && one.status ? facts.statuses[one.status] : null;
       const number = one && one.value !== null ? `${honest(factor * one.value, factor * one.error)} <small>±${oneDigit(factor * one.error)}</small>` : words ? `<small>${words.meaning}</small>` : one ? "<small>none</small>" : "";
       cells.push(`<td class="${name === state.m ? "shown" : ""} ${one?.isExact ? "exact" : ""}" data-measure="${name}" title="${words ? words.sentence.replaceAll('"', "'") : one?.isExact ? "solved exactly" : "from the atlas"}">${number}</td>`);
     }
-    const slack = exact.get(keyOf(design))?.slack ?? pinned.pins[k]?.slack;
-    cells.push(`<td>${slack === undefined ? "" : facts.slack[slack]}</td>`);
-    const solve = isLocal ? "" : `<button data-solve="${k}" title="solve exactly (e)">solve exactly</button> `;
-    return `<tr data-pin="${k}" class="${k === state.active ? "active" : ""}"><td><span class="dot" style="background:${facts.colours.series[k]}"></span></td>${cells.join("")}<td>${solve}<button data-unpin="${k}" title="unpin (Delete)">×</button></td></tr>`;
+    const solve = isLocal ? "" : `<button data-solve="${k}" title="solve exactly (e)">${exact.has(keyOf(design)) ? "solved" : "solve exactly"}</button>`;
+    return `<tr data-pin="${k}" class="${k === state.active ? "active" : ""}"><td><span class="dot" style="background:${facts.colours.series[k]}"></span> <button data-unpin="${k}" title="unpin (Delete)">×</button> ${solve}</td>${cells.join("")}</tr>`;
   });
-  byId("pins").innerHTML = rows.length ? `<table><thead><tr><th></th>${heads.join("")}<th></th></tr></thead><tbody>${rows.join("")}</tbody></table>` : HINT;
+  byId("pins").innerHTML = rows.length ? `<table><thead><tr><th></th>${heads.join("")}</tr></thead><tbody>${rows.join("")}</tbody></table>` : HINT;
 }
 
 const HINT = `<p class="hint">Click the map to pin a design and to see its shape, its curve and its numbers here. Add a wish at the left and drag over

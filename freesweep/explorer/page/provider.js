@@ -40,6 +40,7 @@ async function request(kind, question, use) {
   }
   underWay.delete(kind);
   showBusy();
+  if (kind === "polish") drawLit();
   if (waiting.has(kind)) {
     const next = waiting.get(kind);
     waiting.delete(kind);

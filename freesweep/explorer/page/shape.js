@@ -119,6 +119,9 @@ function drawSpace() {
     wall.xs.push(corners.map((one_) => inUnits(one_[0]))); wall.ys.push(corners.map((one_) => inUnits(one_[1]))); wall.colour.push(colour);
   }
   shape.fibers.forEach((turn, family) => {
+    // steep threads turn far between two stations: as many places as make them round
+    const fine = Math.min(Math.max(Math.ceil(Math.abs(turn[STATIONS - 1] - turn[0]) / (STATIONS - 1) / 0.25), 1), 24);
+    const between = (list, k) => { const i = Math.min(Math.floor(k / fine), STATIONS - 2), share = k / fine - i; return (1 - share) * list[i] + share * list[i + 1]; };
     const count = shape.counts[family], colour = (one.state ? facts.colours.after[0] : facts.colours.before[0]);
     for (let f = 0; f < count; f++) {
       let xs = [], ys = [];
@@ -126,9 +129,9 @@ function drawSpace() {
         if (xs.length > 1) { lines.xs.push(xs); lines.ys.push(ys); lines.colour.push(family ? facts.colours.families[1] : colour); lines.alpha.push(0.95); lines.width.push(1.1); }
         [xs, ys] = [[], []];
       };
-      for (let k = 0; k < STATIONS; k++) {
-        const theta = turn[k] + (2 * Math.PI * (f + 0.5)) / count, [x, y] = seen(shape.position[k], shape.radius[k] * 1.004, theta);
-        if (Math.cos(theta + roll) * c - slopeAt(shape, k) * s > 0) { xs.push(inUnits(x)); ys.push(inUnits(y)); } else flush();
+      for (let k = 0; k <= (STATIONS - 1) * fine; k++) {
+        const theta = between(turn, k) + (2 * Math.PI * (f + 0.5)) / count, [x, y] = seen(between(shape.position, k), between(shape.radius, k) * 1.004, theta);
+        if (Math.cos(theta + roll) * c - slopeAt(shape, Math.floor(k / fine)) * s > 0) { xs.push(inUnits(x)); ys.push(inUnits(y)); } else flush();
       }
       flush();
     }

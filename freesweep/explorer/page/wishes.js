@@ -107,7 +107,7 @@ function litBox() {
 
 function polish() {
   if (byId("polish").disabled) return;
-  request("polish", { what: "polish", wishes: state.wishes, at: { ...state.at }, free: litBox() }, (answer) => {
+  request("polish", { what: "polish", wishes: state.wishes, at: { ...state.at }, free: litBox(), taut: state.taut }, (answer) => {
     say(answer.summary);
     change({ pins: answer.pins.slice(0, MOST_PINS), active: 0 });
   });
