@@ -2,6 +2,9 @@
 
 import json
 import re
+import signal
+import subprocess
+import sys
 import urllib.error
 import urllib.request
 
@@ -9,7 +12,7 @@ import numpy as np
 import pytest
 from commands import refused, run
 from explored import AT, small_atlas
-from grids import SMALL, swept
+from grids import CHILD_ENVIRONMENT, SMALL, swept
 
 import freesweep as fs
 from freesweep.explorer import table
@@ -234,6 +237,18 @@ def test_the_page_loads_nothing_and_no_title_ends_its_script(atlas, tmp_path, ca
     assert "default-src 'none'" in policy
     assert "connect-src" not in policy
     assert capsys.readouterr().out == f"{tmp_path / 'page.html'}\n"
+
+
+def test_the_command_serves_until_it_is_interrupted(atlas):
+    words = [sys.executable, "-m", "freesweep", "explore", str(atlas.path), "--no-browser"]
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=CHILD_ENVIRONMENT
+    ) as child:
+        address = child.stdout.readline().split()[0]
+        assert b"freesweep" in urllib.request.urlopen(address).read()
+        child.send_signal(signal.SIGINT)
+        assert child.wait(20) == 0
+        assert child.stderr.read() == ""
 
 
 def test_faults_of_the_command_are_told(atlas, tmp_path, capsys):

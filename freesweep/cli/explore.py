@@ -38,4 +38,4 @@ def _run(options):
                 import webbrowser
 
                 webbrowser.open(explorer.url)
-            explorer._thread.join()
+            explorer.wait()

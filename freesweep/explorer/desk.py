@@ -1,8 +1,11 @@
 """What the page asks of an atlas, answered: maps, points, pinned designs with their curves, clouds of designs."""
 
+from threading import Lock
+
 import numpy as np
 
 from ..atlas.schema import HELD, LOADS, PARAMETERS
+from ..query.family import FAMILY_OF
 from ..status import STATUSES
 from .measures import COARSE, COARSE_STATUS, evaluate, measures_of
 
@@ -26,6 +29,7 @@ class Desk:
         if len(self.axes) < 2 or not self.measures:
             held = ", ".join(f"{name} ({size})" for name, size in frame.sizes.items()) or "one point"
             raise AskError(f"to explore, an atlas needs two axes of numbers or more; this one holds {held}")
+        self._making, self._made = Lock(), set()
         self.design_axes = [name for name in self.axes if name not in (*LOADS, *HELD)]
 
     @property
@@ -56,7 +60,7 @@ class Desk:
         size = nx * ny
         values = self._at(ask["at"], size)
         values[x], values[y] = np.tile(xs, ny), np.repeat(ys, nx)
-        wanted = self._wanted(ask["measures"])
+        wanted = self._ready(ask["measures"])
         found = evaluate(self.reader, values, size, wanted)
         return {
             "nx": nx, "ny": ny,
@@ -111,7 +115,7 @@ class Desk:
         for name, share in zip(free, even(count, len(free)).T):
             low, high = free[name]
             values[name] = low + (high - low) * share
-        found = evaluate(self.reader, values, count, self._wanted(ask["measures"]))
+        found = evaluate(self.reader, values, count, self._ready(ask["measures"]))
         return {
             "designs": {name: values[name] for name in free},
             "values": {name: array.astype(np.float32) for name, array in found.value.items()},
@@ -138,6 +142,16 @@ class Desk:
         if wrong or not names:
             raise AskError(f"unknown measures {wrong!r:.100}; known: {', '.join(self.measures)}")
         return [self.measures[name] for name in dict.fromkeys(names)]
+
+    def _ready(self, names):
+        """The same, their whole tables made: once, whoever asks first."""
+        wanted = self._wanted(names)
+        for source in dict.fromkeys(one.source for one in wanted if one.source in FAMILY_OF):
+            if source not in self._made:
+                with self._making:
+                    self.reader.table(FAMILY_OF[source]).variable(source)
+                    self._made.add(source)
+        return wanted
 
 
 def even(count, dimensions):

@@ -1,5 +1,6 @@
 """Serves the page of one atlas to this machine alone: bound to 127.0.0.1, and deaf to pages of others."""
 
+import contextlib
 import json
 import secrets
 import threading
@@ -42,6 +43,11 @@ class Explorer(ThreadingHTTPServer):
         self._thread = threading.Thread(target=self.serve_forever, kwargs={"poll_interval": 0.1}, daemon=True)
         self._thread.start()
         return self
+
+    def wait(self):
+        """Serve until Ctrl-C, which is how one ends it."""
+        with contextlib.suppress(KeyboardInterrupt):
+            self._thread.join()
 
     def stop(self):
         """End it."""
