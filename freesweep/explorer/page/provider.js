@@ -57,7 +57,8 @@ function showBusy() {
   else if (!busySince) { busySince = performance.now(); setTimeout(showBusy, 1200); setTimeout(showBusy, 8000); }
   const long = busySince ? performance.now() - busySince : 0;
   const first = long > 7500 && words.length ? " (the first time the solver compiles, a minute or two)" : "";
-  byId("busy").textContent = words.length ? words.join(", ") + " …" + first : long > 1100 ? "reading the atlas …" : "";
+  const text = words.length ? words.join(", ") + " …" + first : long > 1100 ? "reading the atlas …" : "";
+  if (byId("busy").textContent !== text) byId("busy").textContent = text; // while something moves, nothing is laid out anew
 }
 
 const say = (text) => { byId("said").textContent = text; };
