@@ -17,7 +17,7 @@ from grids import CHILD_ENVIRONMENT, SMALL, swept
 import freesweep as fs
 from freesweep.explorer import table
 from freesweep.explorer.desk import AskError, Desk, even
-from freesweep.explorer.exact import tube_of
+from freesweep.explorer.exact import shape, solved, tube_of
 from freesweep.explorer.measures import COARSE_STATUS, system_units
 from freesweep.explorer.polish import goals_of
 from freesweep.explorer.wire import pack
@@ -171,6 +171,19 @@ def test_wishes_are_goals_in_the_state_of_the_sliders(desk):
         goals_of([{"measure": "ideal_blocked_force", "low": 1.0, "high": None}], tube, loads)
     with pytest.raises(AskError, match="no wish has a range"):
         goals_of(wishes[-1:], tube, loads)
+
+
+def test_pinned_designs_are_solved_to_what_the_atlas_states(atlas, desk):
+    told, found = atlas.query(["rotation"], **AT), unpacked(pack(solved(desk, {"at": AT})))["measures"]
+    assert abs(found["rotation"]["value"] - float(told["rotation"])) <= float(told["rotation_error"])
+    force = float(fs.blocked_force(tube_of(desk, AT), AT["pressure"])["force"])
+    assert found["blocked_force"]["value"] == pytest.approx(force, rel=1e-6)
+    drawn = unpacked(pack(shape(desk, {"at": AT})))
+    assert drawn["status"] == ""
+    ends = drawn["state"]["radius"][[0, -1]]
+    assert ends == pytest.approx([4.6, 4.6], rel=1e-9)  # [mm], clamped
+    assert np.degrees(drawn["state"]["twist"][-1]) == pytest.approx(found["rotation"]["value"], rel=1e-6)
+    assert drawn["rest"]["position"][-1] == pytest.approx(100.0)
 
 
 def test_the_smaller_table_keeps_to_the_deviation_it_states(desk, monkeypatch):

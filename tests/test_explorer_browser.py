@@ -80,7 +80,7 @@ def put_pin(driver):
 def test_hovering_and_clicking_tell_what_a_query_answers(page, atlas):
     place = page.find_element(By.ID, "map_place")
     ActionChains(page).move_to_element_with_offset(place, *on_map(page, 35.0, -55.0)).perform()
-    until(page, "!document.getElementById('tip').hidden && freesweep.isIdle()")
+    until(page, "!document.getElementById('tip').hidden && freesweep.isIdle(false)")
     words = page.find_element(By.ID, "tip").text.replace("\N{MINUS SIGN}", "-")
     number, _, rest = words.partition("°")
     alpha, beta = (float(part.strip("°").split()[1]) for part in words.splitlines()[1].split(", "))

@@ -1,5 +1,6 @@
 """What the page asks of an atlas, answered: maps, points, pinned designs with their curves, clouds of designs."""
 
+import contextlib
 from threading import Lock
 
 import numpy as np
@@ -70,7 +71,9 @@ class Desk:
 
     def point(self, ask):
         """Measures of one design: value, stated error, status."""
-        found = evaluate(self.reader, self._at(ask["at"], 1), 1, self._wanted(ask["measures"]))
+        wanted = self._wanted(ask["measures"])
+        with self._alone(wanted):
+            found = evaluate(self.reader, self._at(ask["at"], 1), 1, wanted)
         return {"measures": _told(found, 0), "slack": int(found.slack[0])}
 
     def pins(self, ask):
@@ -81,10 +84,12 @@ class Desk:
         if not pins:
             return {"along": along, "nodes": nodes, "pins": [], "curves": []}
         places = [{**ask["at"], **pin} for pin in pins]
-        one = evaluate(self.reader, self._stacked(places, 1), len(pins), wanted)
+        with self._alone(wanted):
+            one = evaluate(self.reader, self._stacked(places, 1), len(pins), wanted)
         count = len(nodes)
         values = self._stacked(places, count) | {along: np.tile(nodes, len(pins))}
-        line = evaluate(self.reader, values, count * len(pins), shown)
+        with self._alone(shown):
+            line = evaluate(self.reader, values, count * len(pins), shown)
         told, curves = [], []
         for k in range(len(pins)):
             told.append({"measures": _told(one, k), "slack": int(one.slack[k])})
@@ -152,6 +157,11 @@ class Desk:
                     self.reader.table(FAMILY_OF[source]).variable(source)
                     self._made.add(source)
         return wanted
+
+    def _alone(self, wanted):
+        """A lock for what may read from the file; none where whole tables are there already."""
+        known = all(one.source in self._made or one.source not in FAMILY_OF for one in wanted)
+        return contextlib.nullcontext() if known else self._making
 
 
 def even(count, dimensions):

@@ -62,4 +62,6 @@ function showBusy() {
 }
 
 const say = (text) => { byId("said").textContent = text; };
-const isIdle = () => underWay.size === 0 && waiting.size === 0;
+const SOLVER = ["shape", "exact", "polish"];
+// Whether nothing is under way; `solver` false: but for what the solver is at.
+const isIdle = (solver = true) => ![...underWay.keys(), ...waiting.keys()].some((kind) => solver || !SOLVER.includes(kind));
