@@ -40,6 +40,7 @@ _HOMES = {
     "open_atlas": "atlas.store",
     "Atlas": "atlas.store",
     "UnsealedWarning": "atlas.store",
+    "explore": "explorer.notebook",
 }
 _ROOMS = ("closed_form", "plot", "status", "sweep")
 __all__ = [*_HOMES, "closed_form", "sweep"]

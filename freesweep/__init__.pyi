@@ -13,6 +13,7 @@ from .elastomer import MooneyRivlin as MooneyRivlin
 from .elastomer import NeoHookean as NeoHookean
 from .elastomer import Yeoh as Yeoh
 from .example import example_atlas as example_atlas
+from .explorer.notebook import explore as explore
 from .export.frame import to_dataframe as to_dataframe
 from .faults import ActuatorError as ActuatorError
 from .holding import blocked_force as blocked_force

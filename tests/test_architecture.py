@@ -85,7 +85,7 @@ def test_what_is_imported_at_run_time_is_declared():
     modules += [node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.level == 0]
     named = {name.split(".")[0] for name in modules}
     extras = PROJECT["project"]["optional-dependencies"]
-    extra = [*extras["dask"], *extras["completion"]]
+    extra = [*extras["dask"], *extras["completion"], *extras["explore"]]
     declared = {text.split(">")[0] for text in [*PROJECT["project"]["dependencies"], *extra]}
     ours = {name for name in named if name not in sys.stdlib_module_names} - {"freesweep"}
     ours = {{"PIL": "pillow"}.get(name, name) for name in ours}

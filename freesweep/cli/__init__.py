@@ -10,6 +10,7 @@ import sys
 from .calibrate import add_calibrate
 from .design import add_design
 from .draw import add_plot, check_map, draw_map
+from .explore import add_explore
 from .export import add_export
 from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
 from .judge import add_judging
@@ -99,6 +100,7 @@ def parser() -> argparse.ArgumentParser:
     add_judging(commands)
     add_calibrate(commands)
     add_design(commands)
+    add_explore(commands)
     add_thesis(commands)
     return top
 

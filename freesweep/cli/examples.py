@@ -36,6 +36,7 @@ EXAMPLES = {
         'freesweep export quick.nc -o slice.csv --variable rotation --at "length=100 mm" "radius=4.76 mm" beta=-40',
         'freesweep export curves.nc --to c --variable blocked_force --at design=muscle pressure="50 kPa:150 kPa:21"',
     ),
+    "freesweep explore": ("freesweep explore quick.nc", "freesweep explore quick.nc --html explorer.html"),
     "freesweep lock": (f"freesweep lock {TUBE}",),
     "freesweep inflate": (
         f'freesweep inflate {TUBE} --material natural-latex --pressure 0 "15 psi" --steps 6 -o kept.nc',

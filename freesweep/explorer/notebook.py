@@ -1,0 +1,53 @@
+"""The explorer of an atlas from Python: in a notebook, or in the browser beside a script."""
+
+from os import PathLike
+
+from ..atlas.store import Atlas
+from ..faults import ActuatorError
+from ..given import described
+
+
+def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, port: int = 0):
+    """Explore an atlas in the browser; a notebook shows it below the cell.
+
+    Parameters
+    ----------
+    atlas : an :class:`freesweep.Atlas`, or the path of one
+    html : a path: write one file that needs no server, with a smaller table inside, instead of serving
+    port : of 127.0.0.1; 0: any free one
+
+    Returns the running explorer, whose ``url`` a browser opens and whose ``stop()`` ends it; or the path that was written.
+    Needs Bokeh: ``pip install 'freesweep[explore]'``. Raises :class:`freesweep.ActuatorError` for what is no atlas, and
+    ImportError.
+    """
+    check_bokeh()
+    if not isinstance(atlas, Atlas):
+        from ..atlas.store import open_atlas
+
+        if not hasattr(atlas, "__fspath__") and not isinstance(atlas, str):
+            raise ActuatorError([f"atlas: found {described(atlas)}; give what freesweep.open_atlas opens, or its path"])
+        atlas = open_atlas(atlas)
+    if html is None:
+        from .server import Explorer
+
+        return Explorer(atlas, port).start()
+    from pathlib import Path
+
+    from ..atlas.files import write_whole
+    from .desk import Desk
+    from .page import page_of
+    from .table import small_table
+
+    desk = Desk(atlas)
+    write_whole(html, page_of(desk, small_table(desk)).encode())
+    return Path(html)
+
+
+def check_bokeh():
+    """Raises ImportError with the remedy where Bokeh is missing."""
+    try:
+        import bokeh  # noqa: F401
+    except ImportError as error:
+        raise ImportError(
+            "the explorer draws with Bokeh, which is not here: pip install 'freesweep[explore]'"
+        ) from error
