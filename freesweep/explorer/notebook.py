@@ -1,13 +1,18 @@
 """The explorer of an atlas from Python: in a notebook, or in the browser beside a script."""
 
 from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..atlas.store import Atlas
 from ..faults import ActuatorError
 from ..given import described
 
+if TYPE_CHECKING:
+    from .server import Explorer
 
-def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, port: int = 0):
+
+def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, port: int = 0) -> "Explorer | Path":
     """Explore an atlas in the browser; a notebook shows it below the cell.
 
     Parameters
@@ -31,7 +36,6 @@ def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, p
         from .server import Explorer
 
         return Explorer(atlas, port).start()
-    from pathlib import Path
 
     from ..atlas.files import write_whole
     from .desk import Desk
