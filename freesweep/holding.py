@@ -22,6 +22,7 @@ from .results import dataset, near_stations
 from .scaling import problem_rows
 from .statics import inflate, is_solved_whole, read_course, undeformed
 from .thick_wall import thin_wall_attributes
+from .worst_places import with_own
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -159,7 +160,8 @@ def _hold(
         course = np.zeros((segments, 1, 3, 4))
         course[:, 0, :, 0] = row[:3]
         edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
-    unique, index = near_stations(tube, stations, whole)
+    every = with_own(tube, stations)
+    unique, index = near_stations(tube, every, whole)
     values, bounds = np.empty((count, 6)), np.empty((count, 6))
     codes = np.full(count, PENDING)
     stable, slack, paths = (np.empty(count, np.int64) for _ in range(3))
@@ -182,7 +184,7 @@ def _hold(
     profiles = fields.reshape(*shape, FIELDS, -1)[..., index]
     if tube.varies:  # whose angles at rest the kernels do not know
         at_rest = (codes == OK) & (pressures == 0.0) & (others == 0.0) & (values[:, 5] == 0.0)
-        profiles[at_rest.reshape(shape)] = undeformed(tube, stations, whole)
+        profiles[at_rest.reshape(shape)] = undeformed(tube, every, whole)
     scale = np.pi * r ** (2 if held_is_length else 3) * c10
     found = {
         "status": codes.reshape(shape),

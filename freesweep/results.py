@@ -8,14 +8,16 @@ from . import status
 from .atlas.schema import PROFILES, attributes
 from .scaling import OUTPUTS, output_scales, wall_volume_inside
 from .strain import warn_beyond_range
+from .worst_places import with_own, worst_places
 
 
 def dataset(tube, axes, stations, found, without=()):
     """The Dataset of one actuator.
 
     ``axes`` maps each dimension to its numbers, a single number to a scalar coordinate; ``found`` maps ``status``,
-    ``stable``, ``slack_fiber``, ``values``, ``bounds`` and ``fields`` to arrays over the axes; ``extra``, if there, to
-    further variables: name -> (dimensions, array). ``without`` names outputs that are coordinates here.
+    ``stable``, ``slack_fiber``, ``values``, ``bounds`` and ``fields`` to arrays over the axes, the last also over the
+    stations of :func:`with_own`; ``extra``, if there, to further variables: name -> (dimensions, array). ``without`` names
+    outputs that are coordinates here.
     """
     import xarray as xr
 
@@ -29,8 +31,10 @@ def dataset(tube, axes, stations, found, without=()):
         data[name] = (names, value - wall_volume_inside(tube.design()) if name == "volume" else value)
         data[f"{name}_error"] = (names, found["bounds"][..., k] * scale[name])
     data |= found.get("extra", {})
-    for name, array in profiles(tube, found["fields"], found["values"], found["bounds"], stations).items():
-        data[name] = ((*names, "x"), array)
+    every = with_own(tube, stations)
+    along = profiles(tube, found["fields"], found["values"], found["bounds"], every)
+    data |= {name: (names, array) for name, array in worst_places(tube, along, every, found["slack_fiber"]).items()}
+    data |= {name: ((*names, "x"), array[..., np.searchsorted(every, stations)]) for name, array in along.items()}
     coordinates = {name: (name, np.atleast_1d(value)) for name, value in axes.items()} | {"x": ("x", stations)}
     result = xr.Dataset(data, coordinates)
     result = result.isel({name: 0 for name, value in axes.items() if np.ndim(value) == 0})

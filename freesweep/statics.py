@@ -15,6 +15,7 @@ from .quantities import Names, Quantities
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .thick_wall import thin_wall_attributes
+from .worst_places import with_own
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -124,7 +125,8 @@ def _solve(tube, loads, stations, accuracy):
         course, error = read_course(tube, accuracy)
     else:
         course = in_two_halves(rows[0], BASE_CELLS // 2) if whole else uniform(BASE_CELLS)
-    unique, index = near_stations(tube, stations, whole)
+    every = with_own(tube, stations)
+    unique, index = near_stations(tube, every, whole)
     first = np.arange(count + 1, dtype=np.int64) * steps
     pressures = np.tile(pressure[order] / tube.material.c10, count)
     walks = walk_all(rows, first, pressures, course, accuracy - SENSITIVITY * error, unique, soon=True)
@@ -138,7 +140,7 @@ def _solve(tube, loads, stations, accuracy):
     fields = grid(walks.profiles)[..., index]
     force, torque, pressure = np.meshgrid(*(loads[name] for name in LOADS), indexing="ij")
     at_rest = (force == 0.0) & (torque == 0.0) & (pressure == 0.0)
-    fields[at_rest] = undeformed(tube, stations, whole)
+    fields[at_rest] = undeformed(tube, every, whole)
     limits = np.stack([walks.limits[:, 0], widened(walks.limits[:, 0], walks.limits[:, 1], error)], axis=-1)
     limits = limits.reshape(*shape[:2], 2) * tube.material.c10
     found = {

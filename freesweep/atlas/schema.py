@@ -101,8 +101,18 @@ FLAG_OF = {
     ),
 }
 
-# of single held actuators alone, which no atlas stores
-HELD_ALONE = {
+# of single actuators alone, which no atlas stores
+ALONE = {
+    "outer_radius": Variable("m", "largest outer radius along the tube"),
+    "largest_stretch": Variable("1", "largest stretch of the wall"),
+    "slack_alpha": Variable("1", "share of the length without a pull in the first family"),
+    "slack_beta": Variable("1", "share of the length without a pull in the second family"),
+    "least_tension_alpha": Variable(
+        "N", "least tension of the whole first family, negative where it would have to push"
+    ),
+    "least_tension_beta": Variable(
+        "N", "least tension of the whole second family, negative where it would have to push"
+    ),
     "held_path": Variable("1", "way by which the held state was found"),
     "least_buckled_pressure": Variable("Pa", "least pressure at which the buckled branch has a state"),
 }
@@ -132,6 +142,10 @@ SHORT = {
     "locked_strain_energy": "locked strain energy",
     **{"blocked_force": "blocked force", "blocked_torque": "blocked torque"},
     **{"ideal_blocked_force": "ideal blocked force", "ideal_blocked_torque": "ideal blocked torque"},
+    **{"outer_radius": "outer radius", "largest_stretch": "stretch of the wall"},
+    **{"slack_alpha": "slack share of family alpha", "slack_beta": "slack share of family beta"},
+    "least_tension_alpha": "least tension of alpha",
+    "least_tension_beta": "least tension of beta",
     **{"held_path": "way to the held state", "least_buckled_pressure": "least buckled pressure"},
     **{"deformed_radius": "fiber radius", "axial_position": "axial position", "twist": "rotation along x"},
     **{"alpha_deformed": "deformed alpha", "beta_deformed": "deformed beta"},
@@ -179,12 +193,12 @@ def attributes(name: str) -> dict:
         kind = "stable" if name.endswith("stable") else name
         return {"long_name": FLAG_OF[name][0], **flag_attributes(kind)}
     if name == "held_path":
-        return {"long_name": HELD_ALONE[name].long_name, **flag_attributes(name)}
+        return {"long_name": ALONE[name].long_name, **flag_attributes(name)}
     if name.endswith("_error"):
         of = name.removesuffix("_error")
-        units = PROFILES[of][0] if of in PROFILES else (VARIABLES | HELD_ALONE)[of].units
+        units = PROFILES[of][0] if of in PROFILES else (VARIABLES | ALONE)[of].units
         return {"units": units, "long_name": f"error bound of {of}"}
-    of = (VARIABLES | HELD_ALONE)[name]
+    of = (VARIABLES | ALONE)[name]
     return {"units": of.units, **_named(name, of.long_name)}
 
 

@@ -1,0 +1,121 @@
+"""What decides whether a tube fits, and lasts: the largest and the least along it, from its profiles.
+
+An incompressible layer of the undeformed radius rho has, under the meridional stretch lambda, the radius
+
+    r(rho)^2 = y^2 + (rho^2 - r_f^2)/lambda,   y the deformed and r_f the undeformed radius of the fiber surface
+
+and the stretches, in the surface, of ``[[r/rho, r psi], [0, lambda]]``; across it rho/(r lambda). The meridional stretch and
+the twist rate psi follow from the angles of the fibers: ``y (tan alpha - tan beta)/(r_f lambda)`` is the difference of their
+tangents after deformation. Families without tension, or that would have to push, are slack: over which share of the
+undeformed length, and how hard they would push.
+"""
+
+import numpy as np
+
+from .loads import STATIONS
+
+FAMILIES = ("alpha", "beta")
+CURVED = 1.0 / 8.0  # of a second difference: by how much a smooth curve passes the largest of its samples
+
+
+def with_own(tube, stations):
+    """The stations that are asked for [m], and evenly spaced ones, ascending, each once."""
+    return np.union1d(stations, np.linspace(0.0, tube.length, STATIONS))
+
+
+def worst_places(tube, profiles, stations, slack_fiber) -> dict:
+    """``outer_radius`` [m], ``largest_stretch``, ``slack_alpha``, ``slack_beta`` (0..1), ``least_tension_alpha`` and
+    ``least_tension_beta`` [N] with their ``_error``, from ``profiles`` (name -> array over loads and ``stations``).
+    """
+    own = np.searchsorted(stations, np.linspace(0.0, tube.length, STATIONS))
+    x = stations[own]
+    part = {name: array[..., own] for name, array in profiles.items()}
+    found = {}
+    for name, function in (("outer_radius", _outer_radius), ("largest_stretch", _largest_stretch)):
+        found |= _largest(name, *_with_error(function, tube, part, x / tube.length))
+    for bit, family in enumerate(FAMILIES, 1):
+        tension, error = part[f"fiber_tension_{family}"], part[f"fiber_tension_{family}_error"]
+        least = _largest(f"least_tension_{family}", -tension, error)
+        found |= {name: value if name.endswith("_error") else -value for name, value in least.items()}
+        found |= _share(f"slack_{family}", tension, (slack_fiber & bit) > 0, x)
+    return found
+
+
+def _kinematics(tube, deformed_radius, alpha_deformed, beta_deformed, share):
+    """``(meridional stretch, twist rate [1/m])`` from profiles [m, degree]."""
+    (ta, tb), (a, b) = np.tan(np.radians(tube.angles(share))), np.tan(np.radians([alpha_deformed, beta_deformed]))
+    y = deformed_radius / tube.fiber_surface
+    meridional = y * (ta - tb) / (a - b)
+    return meridional, (meridional * a / y - ta) / tube.fiber_surface
+
+
+def _layer(tube, deformed_radius, meridional, rho):
+    """Radius of a layer [m]."""
+    return np.sqrt(deformed_radius**2 + (rho**2 - tube.fiber_surface**2) / meridional)
+
+
+def _outer_radius(tube, y, alpha, beta, share):
+    meridional, _ = _kinematics(tube, y, alpha, beta, share)
+    return _layer(tube, y, meridional, tube.radius + tube.profile("wall").at(share))
+
+
+def _largest_stretch(tube, y, alpha, beta, share):
+    meridional, twist = _kinematics(tube, y, alpha, beta, share)
+    largest = np.zeros(np.shape(y))
+    for rho in (tube.radius, tube.radius + tube.profile("wall").at(share)):
+        r = _layer(tube, y, meridional, rho)
+        hoop, shear = r / rho, r * twist
+        # the larger singular value of [[hoop, shear], [0, meridional]]
+        square, area = hoop**2 + shear**2 + meridional**2, hoop * meridional
+        surface = np.sqrt(0.5 * (square + np.sqrt(np.maximum(square**2 - 4.0 * area**2, 0.0))))
+        largest = np.maximum(largest, np.maximum(surface, 1.0 / area))
+    return largest
+
+
+def _with_error(function, tube, part, share):
+    """A function of the profiles along the tube, and its bound from theirs."""
+    names = ("deformed_radius", "alpha_deformed", "beta_deformed")
+    at = [part[name] for name in names]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value, error = function(tube, *at, share), 0.0
+        for k, name in enumerate(names):
+            moved = [one + part[f"{name}_error"] if j == k else one for j, one in enumerate(at)]
+            error = error + np.abs(function(tube, *moved, share) - value)
+    return value, error
+
+
+def _largest(name, value, error):
+    """The largest along the last axis, with what its samples may miss."""
+    bend = np.abs(np.diff(value, n=2, axis=-1))
+    top = np.argmax(np.nan_to_num(value, nan=-np.inf), axis=-1)[..., None]
+    near = np.clip(top - 1 + np.arange(-1, 2), 0, bend.shape[-1] - 1)
+    missed = CURVED * np.max(np.take_along_axis(bend, near, axis=-1), axis=-1)
+    inside = (top[..., 0] > 0) & (top[..., 0] < value.shape[-1] - 1)  # at an end nothing lies beyond
+    bound = np.take_along_axis(np.broadcast_to(error, value.shape), top, axis=-1)[..., 0]
+    largest = np.take_along_axis(value, top, axis=-1)[..., 0]
+    return {name: largest, f"{name}_error": bound + np.where(inside, missed, 0.0)}
+
+
+def _share(name, tension, somewhere, x):
+    """Share of the length without a pull; between two stations the end of it lies where the pull is drawn on to zero, and at
+    most at the other one.
+    """
+    slack = (tension <= 0.0) & somewhere[..., None]
+    widths = np.diff(x) / (x[-1] - x[0])
+    before, after = tension[..., :-1], tension[..., 1:]
+    opens, closes = slack[..., :-1] & ~slack[..., 1:], ~slack[..., :-1] & slack[..., 1:]
+    beyond = np.concatenate([tension[..., 2:], 2.0 * after[..., -1:] - before[..., -1:]], axis=-1)
+    behind = np.concatenate([2.0 * before[..., :1] - after[..., :1], tension[..., :-2]], axis=-1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        pushes = np.where(opens, before < 0.0, after < 0.0)  # bonded fibers: the line between the two crosses zero
+        open_at = np.where(pushes, -before / (after - before), 1.0 - after / (beyond - after))
+        close_at = np.where(pushes, after / (after - before), 1.0 - before / (behind - before))
+    part = np.where(slack[..., :-1] & slack[..., 1:], 1.0, 0.0)
+    part = np.where(opens, np.clip(np.nan_to_num(open_at), 0.0, 1.0), part)
+    part = np.where(closes, np.clip(np.nan_to_num(close_at), 0.0, 1.0), part)
+    doubt = np.where(opens | closes, np.maximum(part, 1.0 - part), 0.0)
+    unknown = np.isnan(tension).any(axis=-1)
+    return {
+        name: np.where(unknown, np.nan, part @ widths),
+        f"{name}_error": np.where(unknown, np.nan, doubt @ widths),
+    }

@@ -1,0 +1,58 @@
+"""The largest and the least along a tube, against the formulas of its uniform middle and finer stations."""
+
+import numpy as np
+import pytest
+
+import freesweep as fs
+
+RUBBER = fs.MooneyRivlin(0.17e6, 0.08e6)
+SECTION = {"radius": 4.76e-3, "wall": 1.59e-3, "material": RUBBER}
+NAMES = ("outer_radius", "largest_stretch", "slack_alpha", "slack_beta", "least_tension_alpha", "least_tension_beta")
+
+
+@pytest.mark.parametrize("model", ["source", "physical"])
+def test_a_tube_at_rest_is_as_large_as_it_was_made_unstretched_and_nowhere_slack(model):
+    state = fs.inflate(fs.Actuator(alpha=0, beta=30, length=0.131, model=model, **SECTION), 0.0)
+    assert float(state.outer_radius) == pytest.approx(SECTION["radius"] + SECTION["wall"], abs=1e-12)
+    assert float(state.largest_stretch) == pytest.approx(1.0, abs=1e-9)
+    assert [float(state[name]) for name in NAMES[2:]] == [0.0] * 4
+
+
+@pytest.mark.parametrize("model", ["source", "physical"])
+def test_a_long_muscle_is_widest_in_its_uniform_middle_and_its_wall_keeps_its_volume(model):
+    tube = fs.Actuator(alpha=30, beta=-30, length=0.4, model=model, **SECTION)
+    state = fs.inflate(tube, 1e5, x=[0.0, 0.2])
+    axial = np.cos(np.radians(state.alpha_deformed[1])) / np.cos(np.radians(30))  # the fibers keep their length
+    fibers, inner, outer = tube.fiber_surface, tube.radius, tube.radius + tube.wall
+    at = {rho: np.sqrt(state.mid_radius**2 + (rho**2 - fibers**2) / axial) for rho in (inner, outer)}
+    assert float(state.outer_radius) == pytest.approx(float(at[outer]), abs=2 * float(state.outer_radius_error) + 1e-12)
+    assert float(axial * (at[outer] ** 2 - at[inner] ** 2)) == pytest.approx(outer**2 - inner**2)
+    assert float(state.largest_stretch) == pytest.approx(float(at[inner] / inner), rel=1e-6)
+
+
+def test_what_counts_along_the_tube_does_not_hang_on_the_stations_that_were_asked_for():
+    tube = fs.Actuator(alpha=0, beta=30, length=0.131, **SECTION)
+    whole, few = fs.inflate(tube, 3e4), fs.inflate(tube, 3e4, x=[0.02])
+    assert few.sizes["x"] == 1
+    for name in NAMES:
+        assert float(few[name]) == float(whole[name]), name
+
+
+@pytest.mark.parametrize("model", ["source", "physical"])
+def test_slack_shares_and_least_tensions_are_those_of_finer_stations(model):
+    tube = fs.Actuator(alpha=0, beta=30, length=0.131, model=model, **SECTION)
+    x = np.linspace(0.0, tube.length, 2001)
+    state = fs.inflate(tube, 3e4, x=x)
+    tension = state.fiber_tension_alpha.values
+    share = np.mean((tension <= 0.0)[1:-1])
+    assert 0.9 < share < 1.0
+    assert float(state.slack_alpha) == pytest.approx(share, abs=float(state.slack_alpha_error) + 1e-3)
+    assert float(state.slack_alpha_error) < 0.01
+    missed = float(state.least_tension_alpha) - tension.min()
+    assert abs(missed) <= float(state.least_tension_alpha_error + state.fiber_tension_alpha_error.max())
+
+
+def test_where_there_is_no_state_there_is_no_number():
+    state = fs.inflate(fs.Actuator(alpha=30, beta=-30, length=0.1, **SECTION), 1e4, force=-1000.0)
+    assert int(state.status) != 0
+    assert all(np.isnan(float(state[name])) for name in NAMES)
