@@ -9,9 +9,12 @@ from math import sqrt
 
 from ...jit import kernel
 from .. import lagrangian
+from .inlined import inlined
 from .nested import MIDDLE
 from .tangent import change_of, join, value_of
 from .vector import WIDTH, get, put, select, spread
+
+density, integrands = inlined(lagrangian.density), inlined(lagrangian.integrands)
 
 
 @kernel
@@ -44,9 +47,7 @@ def respond(x, y, n, cell, load, longer, ratio, inverse, moved):
     for j in range(n):
         x_right, y_right = get(x, j + 1), get(y, j + 1)
         h = (x_right - x_left) * longer
-        _, L_y, L_v, _, _, _ = lagrangian.density(
-            join(0.5 * (y_left + y_right), still), (y_right - y_left) / h, cell, load
-        )
+        _, L_y, L_v, _, _, _ = density(join(0.5 * (y_left + y_right), still), (y_right - y_left) / h, cell, load)
         half, flux = change_of(0.5 * h * L_y), change_of(L_v)
         if j > 0:
             b = g_left - half + flux - carried
@@ -71,7 +72,7 @@ def change(x, y, moved, n, cell, load, longer, row):
     for j in range(n):
         x_right, y_right = get(x, j + 1), join(get(y, j + 1), get(moved, j + 1))
         h = (x_right - x_left) * longer
-        s, v, t, w, _ = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
+        s, v, t, w, _ = integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
         length = length + change_of(h * s)
         volume = volume + change_of(h * v)
         twist = twist + change_of(h * t)
@@ -90,9 +91,9 @@ def middle(x, y, moved, n, base, u, cell, load, longer, long, share, room, row):
     ``u + (y_node - u)/cosh(depth)`` with ``depth = k (half - x_node)``.
     """
     still, flat = spread(0.0), join(spread(0.0), spread(0.0))
-    _, L_y, _, L_yy, _, _ = lagrangian.density(join(u, still), flat, cell, load)
+    _, L_y, _, L_yy, _, _ = density(join(u, still), flat, cell, load)
     even = join(u, -change_of(L_y) / value_of(L_yy))
-    _, _, _, L_yy, _, L_vv = lagrangian.density(even, flat, cell, load)
+    _, _, _, L_yy, _, L_vv = density(even, flat, cell, load)
     k = sqrt(L_yy / L_vv)
     for lane in range(WIDTH):
         i = int(room[0, lane]) * n // base

@@ -18,6 +18,7 @@ from .tangent import join
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
 TOLERANCE = 1e-12  # of Newton's last step, relative: a derivative takes its error many times
+LITTLE = 1e-2  # of the work of the loads, whose rounding the energy of a hardly strained wall carries
 ROUNDING = 1e-11  # of what a derivative is measured by
 
 
@@ -132,7 +133,8 @@ def solve(x, y, n, u, columns, changes, constants, active, accuracy, meshes, wor
         put(sizes, 0, scale[0])
         put(sizes, 1, scale[1])
         put(sizes, 2, scale[2])
-        put(sizes, 3, scale[3])
+        work_done = abs(load[3] * outputs[1]) + abs(load[4] * outputs[0]) + abs(load[5] * outputs[2])
+        put(sizes, 3, max(scale[3], LITTLE * work_done))
         put(sizes, 4, scale[4])
         largest = spread(0.0)
         for k in range(len(changes) + 1):
