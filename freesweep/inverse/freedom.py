@@ -64,9 +64,11 @@ class Space(NamedTuple):
         """The point of the unit box of ``values`` (p,)."""
         return (values - self.low) / (self.high - self.low)
 
-    def columns(self, u, choice) -> dict:
-        """Designs and loads at points u (n, p) with ``choice`` (n,): name -> (n,); of profiles, the middle's."""
-        values, count = self.values(u), len(u)
+    def columns(self, u, choice, values=None) -> dict:
+        """Designs and loads at points u (n, p) with ``choice`` (n,): name -> (n,); of profiles, the middle's. ``values``: of
+        what is free, if not these arrays but other numbers such as dual ones, p of them.
+        """
+        values, count = self.values(u).T if values is None else values, len(u)
         found = {name: np.full(count, value) for name, value in self.template.design().items()}
         found |= {name: np.zeros(count) for name in LOADS}
         for k, options in enumerate(self.choices):
@@ -77,7 +79,7 @@ class Space(NamedTuple):
                         found[constant] = np.where(own, getattr(value, constant), found[constant])
                 else:
                     found[name] = np.where(own, value, found[name])
-        found |= {name: values[:, k] for k, name in enumerate(self.names) if "[" not in name}
+        found |= {name: values[k] for k, name in enumerate(self.names) if "[" not in name}
         found |= {name: factor * found[other] for name, (factor, other) in self.ties.items() if other in found}
         place = self.template.fiber_radius or MODELS[self.template.model].fiber_radius
         if isinstance(place, str) and "fiber_radius" not in (*self.names, *self.ties):
