@@ -11,13 +11,12 @@ from ..derivative.request import SHAPE
 from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
 from .freedom import LOADS
-from .outputs import derived
+from .outputs import FOLLOWING, derived
 from .predict import state_of
 from .wishes import HELD
 
 ACCURACY = 1e-6  # of the slopes, in the unit box
 SAME = 1e-5  # relative: by how much a value may differ from the one that was predicted
-DERIVED = (*SHAPE, "stroke", "length_change", "outer_radius")
 
 
 def exact_slopes(space, wishes, u, choice, values):
@@ -36,7 +35,7 @@ def exact_slopes(space, wishes, u, choice, values):
     for k, wish in enumerate(wishes):
         if wish.kind == "design":
             slopes[:, k] = rows_of(columns, [wish.output], free + 1)[0, 1:-1].T
-        elif wish.output in (*DERIVED, *HELD) and wish.kind != "limit":
+        elif wish.output in (*SHAPE, *FOLLOWING, *HELD) and wish.kind != "limit":
             states.setdefault(state_of(wish), []).append(k)
     jobs = [(state, own, some) for state, own in states.items() for some in _shares(values[:, own])]
 

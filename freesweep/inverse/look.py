@@ -22,7 +22,7 @@ def look(misfit: Misfit, count, seed, atlas=None):
     if free == 0:
         return np.zeros((choices, 0)), np.arange(choices)
     known = [] if atlas is None else told(atlas, misfit.wishes)
-    most = ALIKE if space.is_alike or any(known) else ONE_BY_ONE
+    most = ALIKE if misfit.is_quick or any(known) else ONE_BY_ONE
     shown = np.random.default_rng(seed).permutation(choices)[: most // LEAST]
     total = int(np.ceil(np.log2(max(most, LEAST * len(shown)))))
     draws = qmc.Sobol(free, seed=np.random.default_rng(seed)).random_base2(total)

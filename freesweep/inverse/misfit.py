@@ -24,6 +24,13 @@ class Misfit(NamedTuple):
     goals: int
     tolerances: np.ndarray
 
+    @property
+    def is_quick(self) -> bool:
+        """Whether vectors tell all that is wished for."""
+        from .vectors import TOLD
+
+        return self.space.is_alike and all(wish.kind == "design" or wish.output in TOLD for wish in self.wishes)
+
     def residuals(self, values):
         """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""
         low = np.array([wish.low for wish in self.wishes])

@@ -4,6 +4,8 @@ import numpy as np
 
 from ..status import VALUED
 
+FOLLOWING = ("stroke", "length_change", "outer_radius")  # from what a state has
+
 
 def output(name, kind, found, design):
     """``(value, bound)`` of an output; ``found`` as the solvers give it, ``design`` name -> numbers; arrays broadcast."""
