@@ -16,6 +16,7 @@ from freesweep.cli import main
 from freesweep.inverse import look, wish_file
 from freesweep.inverse.wishes import Wish
 from freesweep.sweep.spec import parse
+from freesweep.thesis.prototypes import found_rotator
 
 ROOT = Path(__file__).parent.parent
 RUBBER = fs.MooneyRivlin(1.2e5, 6e4)
@@ -258,13 +259,7 @@ def test_a_rotator_beats_the_switch_of_the_source():
     """Section 2.5.1: 150 degrees at 0.14 MPa, within 0.1 mm of its length at every pressure on the way. Found by
     `freesweep design sweeps/wishes/pure-rotator.toml`, which takes some minutes.
     """
-    places = (0.0, 1 / 3, 2 / 3, 1.0)
-    rotator = tube(
-        alpha=list(zip(places, (5.50777916, 15.364258698, 62.316682009, 82.950193561))),
-        beta=list(zip(places, (-63.051602913, -56.877608903, -66.433401521, -54.015628784))),
-        length=0.2, radius=4.76e-3, wall=1.59e-3, rubber=fs.MooneyRivlin(0.1716e6, 0.08e6),
-    )  # fmt: skip
-    found = fs.inflate(rotator, np.linspace(0.0, 0.14e6, 57), x=0.0)
+    found = fs.inflate(found_rotator(), np.linspace(0.0, 0.14e6, 57), x=0.0)
     assert np.all(found["status"] == 0)
     assert found["rotation"].values[-1] > 149.9
     assert np.max(np.abs(found["deformed_length"] - 0.2)) < 0.1e-3

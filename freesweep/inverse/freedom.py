@@ -55,6 +55,7 @@ class Space(NamedTuple):
     ties: dict  # name -> (factor, other name)
     choices: list  # of dicts: name -> value
     knots: dict  # name -> number of knots
+    held: dict  # name -> number: the template's own
 
     def values(self, u):
         """Values of what is free at points u (n, p)."""
@@ -69,7 +70,7 @@ class Space(NamedTuple):
         what is free, if not these arrays but other numbers such as dual ones, p of them.
         """
         values, count = self.values(u).T if values is None else values, len(u)
-        found = {name: np.full(count, value) for name, value in self.template.design().items()}
+        found = {name: np.full(count, value) for name, value in self.held.items()}
         found |= {name: np.zeros(count) for name in LOADS}
         for k, options in enumerate(self.choices):
             own = choice == k
@@ -170,7 +171,7 @@ def read(template, free, faults):
     if len(faults) > before:
         return None
     choices = [{k: v for part in parts for k, v in part.items()} for parts in itertools.product(*lists)]
-    return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots)
+    return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots, template.design())
 
 
 def _read_range(key, given, faults):
