@@ -44,9 +44,9 @@ class Misfit(NamedTuple):
             missed = np.where(np.isfinite(values), above + below, np.where(values > 0, 0.0, np.nan))
         return missed / self.tolerances
 
-    def at(self, u, choice, accuracy=POLISHING):
+    def at(self, u, choice, accuracy=POLISHING, thorough=True):
         """``(what is predicted, residuals)`` at points u (n, p)."""
-        found = predict(self.space, self.wishes, u, choice, accuracy)
+        found = predict(self.space, self.wishes, u, choice, accuracy, thorough)
         return found, self.residuals(found.values)
 
     def slopes(self, u, choice, found):

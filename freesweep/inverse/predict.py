@@ -46,8 +46,10 @@ def state_of(wish) -> State:
     return State(wish.kind, wish.conditions, least)
 
 
-def predict(space: Space, wishes, u, choice, accuracy) -> Predicted:
-    """What the designs at points u (n, p) of the ``space``, with ``choice`` (n,), do."""
+def predict(space: Space, wishes, u, choice, accuracy, thorough=True) -> Predicted:
+    """What the designs at points u (n, p) of the ``space``, with ``choice`` (n,), do; if not ``thorough``, of those that
+    vectors can tell, where they tell any.
+    """
     from .singles import solve_singles
     from .vectors import TOLD, solve_vectors
 
@@ -63,7 +65,7 @@ def predict(space: Space, wishes, u, choice, accuracy) -> Predicted:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # designs on the way are nobody's
         quick = {state: names for state, names in asked.items() if space.is_alike and set(names) <= set(TOLD)}
-        answers = solve_vectors(space.template.energy, quick, columns, accuracy)
+        answers = solve_vectors(space.template.energy, quick, columns, accuracy, thorough)
         if len(quick) < len(asked):
             tubes = [space.actuator_or_none(one, k) for one, k in zip(u, choice)]
             rest = {state: names for state, names in asked.items() if state not in quick}

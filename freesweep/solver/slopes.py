@@ -3,7 +3,6 @@
 import numpy as np
 from numba import config
 
-from .lanes.seat import COLUMNS
 from .load_path import is_loaded, legs
 from .problem import LENGTH, MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, YEOH
 
@@ -22,7 +21,7 @@ def differentiate(problems, pressures, changes, accuracy):
     values, bounds = (np.full((count, directions + 1, OUTPUTS), np.nan) for _ in range(2))
     if count == 0 or config.DISABLE_JIT:
         return values, bounds
-    from .lanes.seat import PRESSURE
+    from .lanes.seat import COLUMNS, PRESSURE
     from .lanes.slopes import differentiate_lanes
 
     seats = np.zeros((count, directions, COLUMNS))
@@ -31,7 +30,7 @@ def differentiate(problems, pressures, changes, accuracy):
     yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
     for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
         stretches, cosines = uniform_stretches(problems, pressures, constants, np.flatnonzero(some))
-        rows = np.flatnonzero(some & np.isfinite(stretches))
+        rows = np.flatnonzero(some)  # one whose stretch is not known may be a straight cylinder
         order = rows[np.argsort(cosines[rows], kind="stable")]  # what shares a vector should need much the same work
         if len(order):
             differentiate_lanes(problems, pressures, stretches, order, seats, constants, BASE, accuracy, values, bounds)

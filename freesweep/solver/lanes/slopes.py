@@ -18,6 +18,7 @@ from .tangent import join
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
 TOLERANCE = 1e-12  # of Newton's last step, relative: a derivative takes its error many times
+STRAIGHT, SLIGHTLY = 1e-8, 1e-3  # of the loads that balance; swelling of the tube that tells a straight one's mesh
 LITTLE = 1e-2  # of the work of the loads, whose rounding the energy of a hardly strained wall carries
 ROUNDING = 1e-11  # of what a derivative is measured by
 
@@ -89,17 +90,18 @@ def at_mesh(x, y, n, base, u, columns, changes, constants, long, share, room, wo
 
 
 @kernel
-def solve(x, y, n, u, columns, changes, constants, active, accuracy, meshes, work, table, sizes, found, out):
-    """Solve the ``active`` lanes and differentiate them: ``found`` and ``out`` (2, OUTPUTS times directions and one, WIDTH)
-    take values and bounds, of lanes whose bounds meet the ``accuracy``, which are returned. Other arguments as of
-    :func:`nested.solve`.
+def solve(x, y, n, u, straight, columns, changes, constants, active, accuracy, meshes, work, table, sizes, found, out):
+    """Solve the ``active`` lanes, unless they are ``straight`` cylinders, and differentiate them: ``found`` and ``out`` (2,
+    OUTPUTS times directions and one, WIDTH) take values and bounds, of lanes whose bounds meet the ``accuracy``, which are
+    returned. Other arguments as of :func:`nested.solve`.
     """
     density = lagrangian.density
     cell, _, load = loads(columns, constants, SOURCE, 1)
     tolerance = max(TOLERANCE, SMALLEST_TOLERANCE)
     length = get(columns, LENGTH)
-    converged, error = newton.solve(density, x, y, n, True, cell, load, active, y, True, SMALL_STEP, tolerance, work)
-    todo = active & converged
+    bent = active & ~straight
+    converged, error = newton.solve(density, x, y, n, True, cell, load, bent, y, True, SMALL_STEP, tolerance, work)
+    todo = (bent & converged) | (active & straight)
     room = sizes[OUTPUTS:]
     long, share, _, _ = middle.node(x, y, n, u, cell, load, accuracy, room)
     at_mesh(x, y, n, n, u, columns, changes, constants, long, share, room, work, table[1])
@@ -111,9 +113,9 @@ def solve(x, y, n, u, columns, changes, constants, active, accuracy, meshes, wor
         put(here_x, i, get(x, i))
         put(here_y, i, get(y, i))
     converged, _ = newton.solve(
-        density, half_x, half_y, n // 2, True, cell, load, todo, y, False, SMALL_STEP, tolerance, work
+        density, half_x, half_y, n // 2, True, cell, load, todo & bent, y, False, SMALL_STEP, tolerance, work
     )
-    todo = todo & converged
+    todo = todo & (converged | straight)
     at_mesh(half_x, half_y, n // 2, n, u, columns, changes, constants, long, share, room, work, table[0])
     met, level, count = mask_of(0), 1, n
     while some(todo) and level <= LANE_DOUBLINGS:
@@ -123,9 +125,9 @@ def solve(x, y, n, u, columns, changes, constants, active, accuracy, meshes, wor
         count *= 2
         half_x, half_y, here_x, here_y, fine_x, fine_y = here_x, here_y, fine_x, fine_y, half_x, half_y
         converged, error = newton.solve(
-            density, here_x, here_y, count, True, cell, load, todo, here_y, False, SMALL_STEP, tolerance, work
+            density, here_x, here_y, count, True, cell, load, todo & bent, here_y, False, SMALL_STEP, tolerance, work
         )
-        todo = todo & converged
+        todo = todo & (converged | straight)
         row = table[level]
         at_mesh(here_x, here_y, count, n, u, columns, changes, constants, long, share, room, work, row)
         outputs = (get(row, 0), get(row, 1), get(row, 2), get(row, 3), get(row, 4))
@@ -147,12 +149,21 @@ def solve(x, y, n, u, columns, changes, constants, active, accuracy, meshes, wor
     return met
 
 
+@kernel
+def is_straight(cell, load):
+    """Where the undeformed cylinder is an equilibrium: what holds it may keep it from buckling, which loads alone do not."""
+    _, L_y, _, _, _, _ = lagrangian.density(spread(1.0), 0.0, cell, load)
+    size = (abs(load[3]) + abs(load[4]) + abs(load[5])) * (1.0 + cell[0] * cell[0] + cell[1] * cell[1])
+    return abs(L_y) <= STRAIGHT * size
+
+
 @entry_point
 def differentiate_lanes(problems, pressures, stretches, order, changes, constants, base, accuracy, values, bounds):
     """Values and bounds (rows, 1 + directions, OUTPUTS) of the rows in the given ``order``, WIDTH at a time: of outputs, and
     of their derivatives along the directions. NaN in rows that no vector could do.
 
-    Row i is a problem of its own under ``pressures[i]``, whose uniform tube has the stretch ``stretches[i]``; ``changes``
+    Row i is a problem of its own under ``pressures[i]``, whose uniform tube has the stretch ``stretches[i]``, NaN where that
+    is not known, unless it is a straight cylinder; ``changes``
     (rows, directions, COLUMNS) are what the columns of a seat (:mod:`seat`) change by.
     """
     size, directions = (base << LANE_DOUBLINGS) + 2, changes.shape[1]
@@ -179,10 +190,15 @@ def differentiate_lanes(problems, pressures, stretches, order, changes, constant
                     seats[k, i, lane] = changes[row, k, i]
         cell, _, load = loads(columns, constants, SOURCE, 1)
         u, half = get(start, 0), get(columns, LENGTH)
-        layer.begin(u, cell, load, half, base, work, meshes, x, y)
+        known = u == u
+        straight = is_straight(cell, load) & ~known
+        layer.begin(select(known, u, spread(1.0 + SLIGHTLY)), cell, load, half, base, work, meshes, x, y)
+        for i in range(base + 1):
+            put(y, i, select(straight, spread(1.0), get(y, i)))
+        active = mask_of((1 << count) - 1) & (known | straight)
         met = bits(solve(
-            x, y, base, u, columns, seats, constants, mask_of((1 << count) - 1), accuracy, meshes, work, table, sizes,
-            found, out,
+            x, y, base, select(known, u, spread(1.0)), straight, columns, seats, constants, active, accuracy, meshes, work,
+            table, sizes, found, out,
         ))  # fmt: skip
         for lane in range(count):
             if (met >> lane) & 1:
