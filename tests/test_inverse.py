@@ -187,7 +187,9 @@ def _missed(made, wish):
 def test_an_atlas_is_asked_for_the_first_look(tmp_path, monkeypatch):
     make(tmp_path / "atlas.nc", parse(ATLAS))
     looked = []
-    monkeypatch.setattr(look.Misfit, "at", lambda self, u, *rest: looked.append(len(u)) or AT(self, u, *rest))
+    monkeypatch.setattr(
+        look.Misfit, "at", lambda self, u, *rest, **named: looked.append(len(u)) or AT(self, u, *rest, **named)
+    )
     does = fs.inflate(tube(alpha=48.0, beta=-38.0), 5e4, x=0.0)
     wish = [fs.Goal(name, does[name].item(), pressure=5e4) for name in ("rotation", "deformed_length")]
     with fs.open_atlas(tmp_path / "atlas.nc") as atlas:

@@ -72,7 +72,7 @@ class Misfit(NamedTuple):
         step = STEP * np.eye(free)
         ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
         values = predict(
-            self.space, wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING
+            self.space, wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING, thorough=False
         ).values.reshape(count, 2 * free, -1)
         middle, there = middle[:, None], np.isfinite(values)
         values = np.where(there, values, middle)
