@@ -217,7 +217,8 @@ def _hold(
         )
     if not names:
         return result
-    from .derivative.attach import Asked, attach, shapes_of
+    from .derivative.asked import Asked
+    from .derivative.attach import attach
 
     asked = Asked(
         tube,
@@ -230,13 +231,13 @@ def _hold(
         tied,
         buckled,
     )
-    shapes = shapes_of(
-        asked,
-        lambda x, guess: _hold(tube, held_name, held, load_name, load, unknown, pressure, x, guess, buckled),
-    )
     at = [array.reshape(result["status"].shape) for array in (pressures, others, targets)]
     loads = {"pressure": at[0], load_name: at[1], unknown: result[unknown].values}
-    return attach(result, asked, loads, shapes, at[2])
+
+    def again(x, guess):
+        return _hold(tube, held_name, held, load_name, load, unknown, pressure, x, guess, buckled)
+
+    return attach(result, asked, loads, again, at[2])
 
 
 def corrected_torque(tube: Actuator, pressure: Quantities) -> Any:

@@ -46,7 +46,7 @@ def at_once(states, awaited, entry, *arguments) -> bool:
     """
     if not isinstance(awaited, Dispatcher) or awaited.signatures:
         return False
-    folder = cache_folder(awaited.py_func.__module__.split(".")[1])
+    folder = _folder(awaited)
     on_disk = stem(awaited.py_func) in compiled(folder)
     most, seconds = (FEWER, LESS) if on_disk else (FEW, SECONDS)
     spent = _spent.setdefault(awaited, [0, 0.0])
@@ -58,6 +58,15 @@ def at_once(states, awaited, entry, *arguments) -> bool:
         print(f"freesweep: compiling the kernels, {where}: half a minute to three", file=sys.stderr)
     spent[0] = NEVER
     return False
+
+
+def is_at_hand(entry) -> bool:
+    """Whether an entry point's machine code is there, or need only be loaded."""
+    return isinstance(entry, Dispatcher) and bool(entry.signatures or stem(entry.py_func) in compiled(_folder(entry)))
+
+
+def _folder(entry):
+    return cache_folder(entry.py_func.__module__.split(".")[1])
 
 
 def _is_done(entry, arguments, spent, seconds):

@@ -49,9 +49,9 @@ def cache_folder(room: str) -> str | None:
     return str(Path(base) / "freesweep" / "kernels" / f"{room}-{source_hash(room)}")
 
 
-def kernel(function):
+def kernel(function, **more):
     """Compile a kernel that other kernels call. Called from Python, as by a test, it hands on to one that has a door."""
-    inner = numba.njit(**{**_POLICY, **_INNER})(function)
+    inner = numba.njit(**{**_POLICY, **_INNER, **more})(function)
     if config.DISABLE_JIT:
         return inner
     ask = inner.get_call_template  # by another kernel, with the types of a call

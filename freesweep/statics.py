@@ -97,15 +97,15 @@ def _differentiated(result, tube, names, loads, accuracy):
     """A result with its derivatives by the parameters ``names``, if there are any."""
     if not names:
         return result
-    from .derivative.attach import Asked, attach, shapes_of
+    from .derivative.asked import Asked
+    from .derivative.attach import attach
 
     course, error = read_course(tube, accuracy) if tube.varies else (None, 0.0)
     asked = Asked(tube, names, accuracy, course, error)
-    shapes = shapes_of(asked, lambda stations, guess: _solve(tube, loads, stations, guess))
     dims = result["status"].dims
     grid = dict(zip(dims, np.meshgrid(*(loads[name] for name in dims), indexing="ij")))
     at = {name: grid.get(name, np.full(result["status"].shape, loads[name])) for name in LOADS}
-    return attach(result, asked, at, shapes)
+    return attach(result, asked, at, lambda stations, guess: _solve(tube, loads, stations, guess))
 
 
 def _solve(tube, loads, stations, accuracy):

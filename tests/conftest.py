@@ -38,7 +38,9 @@ none = np.zeros((0, 11)), np.zeros(0), find.HELD_LENGTH, np.zeros(1, np.int64), 
 hold_batch.hold_all(*none, batch.uniform(24), 1e-6, lanes=False)
 """
 FREE = """
+import numpy as np
 from freesweep.sweep import kernels
+fs.inflate(alike, np.linspace(1e4, 2e4, 70), derivatives="alpha")
 fs.inflate(varying, 1e4)
 fs.inflate(alike, 1e4)
 kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes", "seek_lanes", "query"])

@@ -1,9 +1,12 @@
 """Derivatives of scalar outputs: closed forms, symmetries of Maxwell's, scaling, and differences of the solver itself."""
 
+import time
+
 import numpy as np
 import pytest
 
 import freesweep as fs
+from freesweep.derivative import asked, attach
 
 RUBBER = fs.MooneyRivlin(c10=0.11e6, c01=0.06e6)
 TUBE = {"alpha": 30, "beta": -50, "length": 0.12, "radius": 4.76e-3, "wall": 1.59e-3, "material": RUBBER}
@@ -102,6 +105,40 @@ def judge(way, state, names):
             least = 1e-6 * abs(float(found[output])) / SIZES[name]
             assert abs(exact - difference) <= max(1e-6 * max(abs(exact), least), bound), (output, name)
             assert bound <= 1e-5 * max(abs(exact), 1e3 * least), (output, name)
+
+
+@pytest.mark.parametrize("way", ["inflate", "lock", "blocked_force", "blocked_torque"])
+def test_vectors_tell_what_one_state_at_a_time_tells(way, monkeypatch):
+    """Compiled tangents on the solver's meshes against dual numbers in NumPy on others, within both bounds."""
+    tube = fs.Actuator(**TUBE | {"fiber_radius": "outer", "fiber_extension": 1.003})
+    pressures = () if way == "lock" else ([2e4, 1e5],)
+    names = ["beta", "length", "wall", "c01", "fiber_extension", *(["pressure"] if pressures else [])]
+    found = []
+    for vectors in (True, False):
+        monkeypatch.setattr(attach, "is_worth_vectors", lambda count, own=vectors: own)
+        if vectors:  # not one of them is left to the other way
+            monkeypatch.setattr(asked.Asked, "state", None)
+        found.append(getattr(fs, way)(tube, *pressures, x=[0.0], derivatives=names))
+        monkeypatch.undo()
+    quick, slow = found
+    derivatives = [name for name in quick if name.startswith("d_") and not name.endswith("_error")]
+    assert len(derivatives) == 5 * len(names)
+    for name in derivatives:
+        assert np.all(np.abs(quick[name] - slow[name]) <= quick[f"{name}_error"] + slow[f"{name}_error"]), name
+        assert np.all(np.isfinite(quick[name]))
+
+
+def test_derivatives_of_many_states_cost_little_more_than_the_states():
+    """Machine code at hand: twice the states' own time, and half a second for what is done once."""
+    tube, pressures = fs.Actuator(**TUBE), np.linspace(1e4, 1e5, 300)
+    took = []
+    for names in (None, ["alpha", "beta", "pressure"]):
+        fs.inflate(tube, pressures, x=[0.0], derivatives=names)
+        begun = time.process_time()
+        found = fs.inflate(tube, pressures, x=[0.0], derivatives=names)
+        took.append(time.process_time() - begun)
+    assert not np.any(np.isnan(found["d_rotation_d_alpha"]))
+    assert took[1] < 3.0 * took[0] + 0.5
 
 
 def test_loads_work_on_each_other_s_displacements_alike():

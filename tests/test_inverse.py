@@ -16,6 +16,7 @@ from freesweep.cli import main
 from freesweep.inverse import look, wish_file
 from freesweep.inverse.wishes import Wish
 from freesweep.sweep.spec import parse
+from freesweep.thesis.prototypes import found_rotator
 
 ROOT = Path(__file__).parent.parent
 RUBBER = fs.MooneyRivlin(1.2e5, 6e4)
@@ -186,7 +187,9 @@ def _missed(made, wish):
 def test_an_atlas_is_asked_for_the_first_look(tmp_path, monkeypatch):
     make(tmp_path / "atlas.nc", parse(ATLAS))
     looked = []
-    monkeypatch.setattr(look.Misfit, "at", lambda self, u, *rest: looked.append(len(u)) or AT(self, u, *rest))
+    monkeypatch.setattr(
+        look.Misfit, "at", lambda self, u, *rest, **named: looked.append(len(u)) or AT(self, u, *rest, **named)
+    )
     does = fs.inflate(tube(alpha=48.0, beta=-38.0), 5e4, x=0.0)
     wish = [fs.Goal(name, does[name].item(), pressure=5e4) for name in ("rotation", "deformed_length")]
     with fs.open_atlas(tmp_path / "atlas.nc") as atlas:
@@ -258,13 +261,7 @@ def test_a_rotator_beats_the_switch_of_the_source():
     """Section 2.5.1: 150 degrees at 0.14 MPa, within 0.1 mm of its length at every pressure on the way. Found by
     `freesweep design sweeps/wishes/pure-rotator.toml`, which takes some minutes.
     """
-    places = (0.0, 1 / 3, 2 / 3, 1.0)
-    rotator = tube(
-        alpha=list(zip(places, (5.50777916, 15.364258698, 62.316682009, 82.950193561))),
-        beta=list(zip(places, (-63.051602913, -56.877608903, -66.433401521, -54.015628784))),
-        length=0.2, radius=4.76e-3, wall=1.59e-3, rubber=fs.MooneyRivlin(0.1716e6, 0.08e6),
-    )  # fmt: skip
-    found = fs.inflate(rotator, np.linspace(0.0, 0.14e6, 57), x=0.0)
+    found = fs.inflate(found_rotator(), np.linspace(0.0, 0.14e6, 57), x=0.0)
     assert np.all(found["status"] == 0)
     assert found["rotation"].values[-1] > 149.9
     assert np.max(np.abs(found["deformed_length"] - 0.2)) < 0.1e-3
@@ -287,6 +284,81 @@ def test_what_no_design_has_a_state_for_is_refused():
 def test_the_smallest_tube_without_a_goal_is_at_its_bound():
     found = fs.design(tube(), bounds("radius"), [], minimize="radius", count=1)
     assert found["radius"].item() == pytest.approx(3e-3)
+
+
+def test_a_hidden_force_stroke_curve_with_noise_is_met_within_it(tmp_path):
+    """From a CSV file with units in its header; the noise of 2 % is the tolerance."""
+    secret = tube(alpha=35.0, beta=-35.0, radius=6e-3)
+    lengths = np.linspace(0.12, 0.148, 9)
+    exact = fs.blocked_force(secret, 1.5e5, lengths, x=0.0)["force"].values
+    noise = 0.02 * np.max(np.abs(exact))
+    measured = exact + noise * np.random.default_rng(5).standard_normal(9)
+    rows = [f"{1e3 * a!r},{b!r},{float(noise)!r}" for a, b in zip(lengths.tolist(), measured.tolist())]
+    path = tmp_path / "force-stroke.csv"
+    path.write_text("\n".join(["deformed_length [mm],force [N],force_sigma [N]", *rows]))
+    found = fs.design(
+        tube(beta=-30.0), bounds("radius") | {"alpha": (10, 60), "beta": "-alpha"},
+        fs.Goal("force", path, pressure="1.5 bar"), count=1,
+    )  # fmt: skip
+    assert found.sizes["goal"] == 9
+    np.testing.assert_allclose(found["goal_value"].values[0], exact, atol=1.5 * noise)
+    assert found["misfit"].item() <= np.linalg.norm((measured - exact) / noise)  # a best fit is no worse than the truth
+
+
+@pytest.mark.parametrize(
+    ("text", "output", "words"),
+    [
+        ("pressure [kPa],rotation [deg]\n10,3\n", "force", "no column 'force'; found pressure, rotation"),
+        ("pressure [kPa],rotation [deg],force [N]\n10,3,4\n", "force", "'rotation' is no state of force"),
+        ("pressure [kPa],force\n10,3\n", "force", "names no unit"),
+    ],
+)
+def test_a_curve_file_that_tells_no_curve_is_refused(tmp_path, text, output, words):
+    path = tmp_path / "curve.csv"
+    path.write_text(text)
+    with pytest.raises(fs.ActuatorError, match=re.escape(words)):
+        fs.Goal(output, path)
+
+
+def test_a_stiffness_is_wished_for_and_is_that_of_the_tube(hidden):
+    """A free end's stiffness, and that of one that is held, against the solver's own differences."""
+    goals = [
+        fs.Goal("stiffness", 900, pressure=1e5, deformed_length=0.145),
+        fs.Goal("torsional_stiffness", 2e-3, pressure=1e5),
+    ]
+    found = fs.design(tube(), bounds("alpha", "beta", "radius"), goals, count=1)
+    assert found["met"].item()
+    (made,) = made_by(found)
+    force = fs.blocked_force(made, 1e5, [0.1449, 0.1451], x=0.0, accuracy=1e-9)["force"].values
+    turned = fs.inflate(made, 1e5, torque=[-1e-3, 1e-3], x=0.0, accuracy=1e-9)["rotation"].values
+    assert np.diff(force).item() / 2e-4 == pytest.approx(900, rel=1e-3)
+    assert 2e-3 / np.diff(turned).item() == pytest.approx(2e-3, rel=1e-3)
+
+
+def test_candidates_spread_under_tolerances_as_their_tubes_do():
+    tolerances = {"alpha": "1 deg", "wall": 5e-5, "pressure": 500}
+    found = fs.design(
+        tube(), bounds("alpha", "beta"), fs.Goal("rotation", 90, pressure=1e5),
+        fs.Limit("radius", at_most=6e-3), count=1, tolerances=tolerances,
+    )  # fmt: skip
+    (made,) = made_by(found)
+    told = fs.tolerance(made, 1e5, alpha=1.0, wall=5e-5, pressure_tolerance=500)
+    assert found["goal_spread"].item() == pytest.approx(told["rotation_deviation"].item(), rel=1e-5)
+    assert found["limit_spread"].item() == 0.0
+    with pytest.raises(fs.ActuatorError) as fault:
+        fs.design(tube(), bounds("alpha"), [], minimize="radius", tolerances={"gamma": 1.0, "wall": -1.0})
+    assert len(fault.value.faults) == 2
+
+
+def test_what_a_bound_or_a_limit_costs_is_said():
+    """F = pi r^2 P (2 cot^2 - 1): at 60 N, 10 N less let a muscle be r/(2 F) 10 N slimmer."""
+    muscle = tube(beta=-30.0)
+    least = fs.design(muscle, bounds("radius"), fs.Goal("force", at_least=60, pressure=2e5), minimize="radius", count=1)
+    saved = least["radius"].item() / 120 * 6
+    assert least.attrs["prices"].startswith("least radius: 6 N less of force at pressure 200000 Pa would save")
+    assert float(least.attrs["prices"].split()[-2]) == pytest.approx(saved, rel=0.05)
+    short = fs.design(muscle, {"radius": (3e-3, 4e-3)}, fs.Goal("force", at_least=60, pressure=2e5), count=1)
+    assert "0.0001 m more of radius would buy" in short.attrs["summary"]
 
 
 def test_a_limit_is_a_range():

@@ -172,6 +172,9 @@ def test_exact_torque_leaves_the_formula_at_the_critical_pressure():
 
 
 def test_rotator_turns_and_keeps_its_length():
+    assert line("2-16-found", "found rotation").get_ydata()[-1] > 149.9
+    assert np.max(np.abs(line("2-16-found", "found length_change").get_ydata())) < 0.1  # [mm]
+    assert np.max(line("2-16-found", "switch length_change").get_ydata()) > 1.2
     assert line("2-16", "switch principal rotation").get_ydata()[-1] == pytest.approx(142.7, abs=0.1)
     assert line("2-16", "line principal rotation").get_ydata()[-1] == pytest.approx(117.0, abs=0.5)
     alpha, beta = line("2-14", "alpha"), line("2-14", "beta")

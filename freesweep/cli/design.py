@@ -35,6 +35,8 @@ def _run(options):
     else:
         print(table(found))
         print(found.attrs["summary"])
+        if found.attrs.get("prices"):
+            print(found.attrs["prices"])
         print(lines(found))
     if options.out:
         content = csv(found).encode() if options.out.endswith(".csv") else found.to_netcdf(engine="netcdf4")

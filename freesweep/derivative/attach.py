@@ -6,92 +6,14 @@ import numpy as np
 
 from .. import status
 from ..profiles import SENSITIVITY
-from . import grid
-from .course import Course
 from .equilibrium import NotFound
-from .nested import Found, solve
-from .physical import PhysicalTube
-from .physics import OWN, Physics
-from .request import SHAPE, attributes, sizes
-from .rest import at_rest, is_at_rest
+from .request import attributes
+from .rest import is_at_rest
 
 GUESS = 1e-4  # accuracy of shapes to begin from
-SHARE = 0.01  # of the accuracy asked for: what a derivative's bound has to meet, scaled
 SAME = 1e-7  # scaled, beside the bounds: by how much a state may differ from the one that was found
+MANY = 64  # states for which it is worth to compile vectors
 LOST = "derivatives: {count} of {all} states were not met again on meshes of their own; theirs are NaN"
-
-
-class Asked:
-    """What is asked of one actuator: names of ``parameters``; ``held`` and ``unknown``, what is held and the load that does
-    it; ``course``: ``(course, edges, places)`` of a tube that varies, with the ``error`` of its splines.
-    """
-
-    def __init__(
-        self, tube, parameters, accuracy, course=None, error=0.0, held=None, unknown=None, tied=False, whole=False
-    ):
-        self.tube, self.parameters, self.accuracy, self.error = tube, parameters, accuracy, error
-        self.held, self.unknown, self.tied = held, unknown, tied
-        self.course = None if course is None else Course(course[0], course[2])
-        self.half = self.course is None and not whole
-        places = [0.0, 0.5] if self.half else [0.0, 0.5, 1.0]
-        self.segments = np.array(places) if self.course is None else self.course.places
-        radii = tube.length / tube.fiber_surface
-        self.x = grid.first_places(self.segments[:1] if self.half else self.segments, radii, self.half)
-        own = [name for name in parameters if name != held]
-        self.seeds = own if unknown is None else [unknown, *own]
-        shape = [name for name in SHAPE if name != held]
-        self.outputs = shape if unknown is None else [unknown, *shape]
-
-    def stations(self):
-        """Where shapes to begin from have to be known [m]."""
-        return np.minimum(self.x * self.tube.length, self.tube.length)
-
-    def table(self, made, physics):
-        """(outputs, 1 + parameters) from one mesh's outputs as dual numbers."""
-        count = len(self.seeds)
-        rows = {name: number_of(value, count) for name, value in made.items()}
-        if self.unknown is None:
-            return np.array([rows[name] for name in self.outputs])
-        rows[self.unknown] = np.array([physics.load, 1.0, *np.zeros(count - 1)])
-        held = rows[self.held]
-        by = {}  # of the load that holds, by each parameter
-        for k, name in enumerate(self.seeds[1:]):
-            by[name] = (float(self.tied and name == "length") - held[2 + k]) / held[1]
-        by[self.held] = 1.0 / held[1]
-        table = np.zeros((len(self.outputs), 1 + len(self.parameters)))
-        for i, output in enumerate(self.outputs):
-            own = rows[output]
-            table[i, 0] = own[0]
-            for j, name in enumerate(self.parameters):
-                direct = 0.0 if name == self.held or output == self.unknown else own[1 + self.seeds.index(name)]
-                table[i, 1 + j] = direct + own[1] * by[name]
-        return table
-
-    def state(self, loads, target, y) -> Found:
-        """Outputs and derivatives of one state whose stretches at :meth:`stations` are ``y``."""
-        kind = PhysicalTube if self.tube.is_thick or self.tube.is_loose else Physics
-        known = kind(self.tube, self.course, loads, self.seeds[:1] if self.unknown else ())
-        wanted = kind(self.tube, self.course, loads, self.seeds)
-
-        def finish(made, physics):
-            rows = self.table(made, physics)
-            return self.outputs, rows, np.maximum(np.abs(rows), self.units(loads, rows))
-
-        if is_at_rest(loads, self.held, target, self.tube):
-            rows = self.table(at_rest(wanted, 0.5 * (self.x[1:] + self.x[:-1]), np.diff(self.x), self.half), wanted)
-            return Found(self.outputs, rows, 0.0 * rows)
-        held = None if self.held is None else (self.held, target)
-        return solve(known, wanted, self.x, y, self.half, held, self.segments, finish, SHARE * self.accuracy)
-
-    def units(self, loads, rows):
-        """What outputs and derivatives are measured by."""
-        return sizes(self.tube, loads, self.outputs, self.parameters, rows[:, 0])
-
-
-def number_of(value, count):
-    """Value and parts of a dual number of one place."""
-    parts = np.zeros(count) if value.parts is None else value.parts[OWN:, 0]
-    return np.concatenate([np.broadcast_to(value.value, 1), parts])
 
 
 def shapes_of(asked, solve):
@@ -102,35 +24,72 @@ def shapes_of(asked, solve):
     return shapes["deformed_radius"].values / asked.tube.fiber_surface
 
 
-def attach(result, asked, loads, shapes, target=None):
+def attach(result, asked, loads, solve, target=None):
     """Add derivatives to a ``result``: ``loads``, name -> array over its dimensions (those of ``status``), in SI units;
-    ``shapes``: stretches at the stations of ``asked``, along one more axis; ``target``: what is held, likewise.
+    ``solve(stations, accuracy)`` gives shapes to begin from; ``target``: what is held, like the loads.
     """
-    tube, dims, shape = asked.tube, result["status"].dims, result["status"].shape
-    table = np.full((*shape, len(asked.outputs), 1 + len(asked.parameters)), np.nan)
-    bounds, lost, valued = table.copy(), 0, np.isin(result["status"].values, status.VALUED)
-    for at in np.ndindex(*shape):
-        if not valued[at]:
-            continue
-        own = {name: float(value[at]) for name, value in loads.items()}
-        held = None if target is None else float(target[at])
+    dims, shape = result["status"].dims, result["status"].shape
+    todo = np.flatnonzero(np.isin(result["status"].values, status.VALUED))
+    loads = {name: np.ravel(value)[todo] for name, value in loads.items()}
+    target = None if target is None else np.ravel(target)[todo]
+    known = np.array([np.ravel(result[name].values)[todo] for name in asked.outputs])
+    near = np.array([np.ravel(result[f"{name}_error"].values)[todo] for name in asked.outputs])
+    values = np.full((len(asked.outputs), 1 + len(asked.parameters), len(todo)), np.nan)
+    bounds, units = values.copy(), asked.units(loads)
+    if asked.is_alike and len(todo) and is_worth_vectors(len(todo)):
+        found = asked.states(loads, target)
+        same = _are_same(found, known, near, units)
+        values[..., same], bounds[..., same] = found[0][..., same], found[1][..., same]
+    else:
+        same = np.zeros(len(todo), bool)
+    shapes, lost = None, 0
+    for i in np.flatnonzero(~same):
+        own, held = _at(loads, i), None if target is None else float(target[i])
+        rest = is_at_rest(own, asked.held, held, asked.tube)
+        if shapes is None and not rest:
+            shapes = shapes_of(asked, solve)
+            shapes = shapes.reshape(-1, shapes.shape[-1])
         try:
-            found = asked.state(own, held, shapes[at])
-            known = np.array([float(result[name].values[at]) for name in asked.outputs])
-            near = np.array([float(result[f"{name}_error"].values[at]) for name in asked.outputs])
-            unit = asked.units(own, found.values)[:, 0]
-            same = np.abs(found.values[:, 0] - known) <= near + found.bounds[:, 0] + SAME * unit
-            if not np.all(same | np.isnan(found.values[:, 0])):
+            found = asked.at_rest(own) if rest else asked.state(own, held, shapes[todo[i]])
+            found = tuple(array[..., None] for array in found)
+            here = slice(i, i + 1)
+            if not np.all(_are_same(found, known[:, here], near[:, here], units[:, here])):
                 raise NotFound
         except NotFound:
             lost += 1
             continue
-        table[at], bounds[at] = found.values, found.bounds + SENSITIVITY * asked.error * np.abs(found.values)
+        values[..., i], bounds[..., i] = found[0][..., 0], found[1][..., 0]
     if lost:
-        warnings.warn(LOST.format(count=lost, all=np.count_nonzero(valued)), stacklevel=4)
+        warnings.warn(LOST.format(count=lost, all=len(todo)), stacklevel=4)
+    bounds += SENSITIVITY * asked.error * np.abs(values)
+    return result.assign(dict(_variables(asked, values, bounds, todo, dims, shape)))
+
+
+def is_worth_vectors(count):
+    """Whether so many states are worth the compiler's time, or it was spent already."""
+    from ..interpret import is_at_hand
+    from ..solver.lanes.slopes import differentiate_lanes
+
+    return count >= MANY or is_at_hand(differentiate_lanes)
+
+
+def _at(loads, i):
+    return {name: float(value[i]) for name, value in loads.items()}
+
+
+def _are_same(found, known, near, units):
+    """Which states (n,) have the outputs that are ``known``, within both bounds."""
+    values, bounds = found[0][:, 0], found[1][:, 0]
+    return np.all((np.abs(values - known) <= near + bounds + SAME * units) | np.isnan(known), axis=0)
+
+
+def _variables(asked, values, bounds, todo, dims, shape):
+    """(name, variable) of each derivative and its bound."""
+    whole = np.full((2, *values.shape[:2], int(np.prod(shape))), np.nan)
+    whole[0][..., todo], whole[1][..., todo] = values, bounds
     for i, output in enumerate(asked.outputs):
         for j, name in enumerate(asked.parameters):
-            one, about = f"d_{output}_d_{name}", attributes(output, name, tube)
-            result[one] = dims, table[..., i, 1 + j], about
-            result[f"{one}_error"] = dims, bounds[..., i, 1 + j], about | {"long_name": f"error bound of {one}"}
-    return result
+            one, about = f"d_{output}_d_{name}", attributes(output, name, asked.tube)
+            value, bound = (array[i, 1 + j].reshape(shape) for array in whole)
+            yield one, (dims, value, about)
+            yield f"{one}_error", (dims, bound, about | {"long_name": f"error bound of {one}"})

@@ -74,7 +74,8 @@ class Dual:
         """The value in ``some`` cells."""
         if np.size(self.value) == 1:
             return self
-        return Dual(self.value[some], None if self.parts is None or self.parts.shape[1] == 1 else self.parts[:, some])
+        alike = self.parts is None or self.parts.shape[1] == 1
+        return Dual(self.value[some], self.parts if alike else self.parts[:, some])
 
 
 def _value(number):
@@ -143,4 +144,5 @@ _UFUNCS = {
     np.degrees: lambda x: x * np.degrees(1.0),
     np.tan: _tan,
     np.sqrt: sqrt,
+    np.maximum: maximum,
 }  # where the array, or the number of NumPy's, comes first

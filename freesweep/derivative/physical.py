@@ -21,6 +21,7 @@ from .physics import Physics
 from .twins import twin
 
 STEPS, CHANGES = 60, 30
+FIRST_CELLS = 48  # in which the kernel tells where they settle; their neighbours begin there
 SETTLED = 1e-13  # of what is sought
 SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves
 BEYOND = 1e-12  # by which a family may be beyond its reach, or a multiplier negative, of the load
@@ -54,8 +55,9 @@ class Settled(NamedTuple):
         """A first guess in other cells."""
         if np.array_equal(share, self.share):
             return self
-        near = np.clip(np.searchsorted(0.5 * (self.share[1:] + self.share[:-1]), share), 0, len(self.share) - 1)
-        four = np.stack([np.interp(share, self.share, row) for row in self.four])
+        known, own = np.unique(self.share, return_index=True)  # of several meshes
+        near = own[np.clip(np.searchsorted(0.5 * (known[1:] + known[:-1]), share), 0, len(known) - 1)]
+        four = np.stack([np.interp(share, known, row[own]) for row in self.four])
         return Settled(share, four, self.alpha[near], self.beta[near])
 
 
@@ -149,8 +151,9 @@ class PhysicalTube(Physics):
         return local, e, area, four, alpha, beta, low, T
 
     def _first(self, place, y, v, share, H, D, gg, T, m, area, rubber, wall):
-        """From the kernel itself, cell by cell."""
-        four, taut = np.zeros((4, len(y))), np.ones((2, len(y)), bool)
+        """From the kernel itself, in some cells."""
+        some = np.unique(np.linspace(0, len(y) - 1, min(len(y), FIRST_CELLS)).astype(int))
+        four, taut = np.zeros((4, len(some))), np.ones((2, len(some)), bool)
 
         def at(number, j):
             number = number.value if isinstance(number, Dual) else np.asarray(number)
@@ -158,11 +161,11 @@ class PhysicalTube(Physics):
 
         gamma = float(np.sqrt(gg[0]))
         numbers = tuple(at(c, 0) for c in rubber), tuple(at(c, 0) for c in wall)
-        for j in range(len(y)):
+        for k, j in enumerate(some):
             cell = at(H, j), at(D, j), at(area, j)
             load = (gamma, *numbers, 0.0, 0.0, float(m[j]), 1.0)
-            _, four[0, j], four[1, j], taut[0, j], taut[1, j] = place(float(y[j]), float(v[j]), float(T[j]), cell, load)
-        return Settled(share, four, taut[0], taut[1])
+            _, four[0, k], four[1, k], taut[0, k], taut[1, k] = place(float(y[j]), float(v[j]), float(T[j]), cell, load)
+        return Settled(share[some], four, taut[0], taut[1])
 
     def _newton(self, plain, v, low, four, alpha, beta, area, rubber, wall):
         energy = walls()[0]
@@ -222,15 +225,20 @@ class PhysicalTube(Physics):
             w = [np.broadcast_to(one.value, n) for one in W]
         stored = _with(W[0], w[2], w[3], moved)
         room = np.minimum(G_1 - low, np.broadcast_to(tension.value, n))
-        return room, L_y, L_v, (s, y * y * s, twist, stored)
+        self.seen = s, y * y * s, twist, stored
+        return room, L_y, L_v
+
+    def integrands(self, y, v, share):
+        """As of :class:`Physics`."""
+        return self.seen
 
     def begin(self, other):
         """As of :class:`Physics`."""
         self.settled = other.settled
 
-    def kinks(self, segments):
+    def kinks(self, segments, cells=slice(None)):
         """As of :class:`Physics`: where the multiplier of the family that goes slack vanishes, seen from its taut side."""
-        share, four, *taut = self.settled
+        share, four, *taut = (part[..., cells] for part in self.settled)
         found = []
         for family, mu in zip(taut, four[2:]):
             for j in np.flatnonzero(family[1:] != family[:-1]):

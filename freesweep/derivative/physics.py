@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from ..elastomer import Yeoh
-from ..scaling import output_scales, problem_columns, wall_volume_inside
+from ..scaling import OUTPUTS, output_scales, problem_columns, wall_volume_inside
 from ..tube_model import FIBER_PLACES, fiber_place
 from .dual import Dual
 from .request import constants, place_of_fibers
@@ -26,6 +26,15 @@ def membranes():
     return twin(membrane.density), twin(membrane.integrands)
 
 
+def outputs_of(design, numbers) -> dict:
+    """Outputs in SI units and degrees from dimensionless ones of half a tube, in the order of kernels: length, volume,
+    twist, energy, stretch in the middle.
+    """
+    scales = output_scales(design)
+    made = {name: number * scales[name] for name, number in zip(OUTPUTS, numbers)}
+    return made | {"volume": made["volume"] - wall_volume_inside(design)}
+
+
 class Physics:
     """A tube's state under given loads, whose derivatives by some ``parameters`` are wanted.
 
@@ -42,7 +51,7 @@ class Physics:
         if place in FIBER_PLACES:
             thinnest = float(np.min(tube.profile("wall").samples()))
             self.design["fiber_radius"] = fiber_place(place, self.design["radius"], self._seed("wall", thinnest))
-        self.is_locked = bool(np.isinf(loads["pressure"]))
+        self.is_locked = bool(np.all(np.isinf(loads["pressure"])))
         if self.is_locked:
             self.design["pressure"] = 0.0 * self.design["length"]
         self.length = self.design["length"] / self.design["fiber_radius"]
@@ -54,21 +63,6 @@ class Physics:
             return Dual(value)
         parts[OWN + self.parameters.index(name)] = 1.0
         return Dual(value, parts)
-
-    @property
-    def load(self):
-        """The load that is the first parameter, which holds something, in its own unit."""
-        return float(self.design[self.parameters[0]].value[0])
-
-    @load.setter
-    def load(self, value):
-        self.design[self.parameters[0]] = self._seed(self.parameters[0], value)
-
-    @property
-    def unit(self):
-        """What that load is measured by."""
-        r, c10 = self.design["fiber_radius"].value[0], self.design["c10"].value[0]
-        return np.pi * r ** (2 if self.parameters[0] == "force" else 3) * c10
 
     def properties(self, share):
         """``(cell, load)`` as kernels take them, for cells whose middles lie at places x/l."""
@@ -95,28 +89,23 @@ class Physics:
     def outputs(self, integrals, middle, half):
         """The outputs in SI units and degrees from dimensionless dual numbers, of ``half`` the tube or all of it."""
         share = 1.0 if half else 0.5
-        length, volume, twist, energy = (share * integral for integral in integrals)
-        scale = output_scales(self.design)
-        return {
-            "deformed_length": length * scale["deformed_length"],
-            "rotation": twist * scale["rotation"],
-            "mid_radius": middle * scale["mid_radius"],
-            "volume": volume * scale["volume"] - wall_volume_inside(self.design),
-            "strain_energy": energy * scale["strain_energy"],
-        }
+        return outputs_of(self.design, [*(share * integral for integral in integrals), middle])
 
     def local(self, y, v, share):
-        """``(room, L_y, L_v, the four integrands)`` in all cells, at their middles."""
+        """``(room, L_y, L_v)`` in all cells, at their middles."""
         cell, load = self.properties(share)
-        density, integrands = membranes()
-        room, L_y, L_v, _, _, _ = density(y, v, cell, load)
-        return room.value, L_y, L_v, integrands(y, v, cell, load)[:4]
+        room, L_y, L_v, _, _, _ = membranes()[0](y, v, cell, load)
+        return room.value, L_y, L_v
+
+    def integrands(self, y, v, share):
+        """What the outputs integrate, in the cells of which :meth:`local` was asked last."""
+        return membranes()[1](y, v, *self.properties(share))[:4]
 
     def begin(self, other):
         """Take over from another one of the same state what helps to find it."""
 
-    def kinks(self, segments):
-        """Places x/l, other than where segments meet, at which the kind of cell changed that was seen last."""
+    def kinks(self, segments, cells=slice(None)):
+        """Places x/l, other than where segments meet, at which the kind of the ``cells`` changed that were seen last."""
         return np.zeros(0)
 
     def axial(self, y, v, share):

@@ -10,6 +10,7 @@ from ..tube_model import MODELS
 
 SHAPE = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension")
+LITTLE = 1e-2  # of the work of the loads, whose rounding the energy of a hardly strained wall carries
 ANGLE = 57.3  # [degree], what angles and rotations are measured by
 
 
@@ -68,19 +69,27 @@ def attributes(output, parameter, tube) -> dict:
     return {"units": units, "long_name": f"derivative of {output} with respect to {parameter}"}
 
 
-def sizes(tube, loads, outputs, parameters, values):
-    """What each output, and each of its derivatives, is measured by: (outputs, 1 + parameters); ``values`` (outputs,)."""
+def measures(tube, loads) -> dict:
+    """What each output and parameter is measured by, by name; loads may be arrays."""
     design = tube.design()
     r, c10 = design["fiber_radius"], design["c10"]
-    area, size = np.pi * r**2, np.zeros(3)
-    size[:] = loads["pressure"] if np.isfinite(loads["pressure"]) else c10, abs(loads["force"]) / area, 0.0
-    pressure = max(size.max(), abs(loads["torque"]) / (area * r), 1e-3 * c10)
+    area = np.pi * r**2
+    own = np.where(np.isfinite(loads["pressure"]), loads["pressure"], c10)
+    pressure = np.maximum.reduce(
+        [own, np.abs(loads["force"]) / area, np.abs(loads["torque"]) / (area * r), 1e-3 * c10 + 0.0 * own]
+    )
     natural = {
         "deformed_length": tube.length, "rotation": ANGLE, "mid_radius": r, "volume": area * tube.length,
-        "strain_energy": 0.0, "pressure": pressure, "force": pressure * area, "torque": pressure * area * r,
+        "strain_energy": LITTLE * pressure * area * tube.length,
+        "pressure": pressure, "force": pressure * area, "torque": pressure * area * r,
         "alpha": ANGLE, "beta": ANGLE, "fiber_extension": 1.0, **{name: c10 for name in constants(tube.material)},
     }  # fmt: skip
-    natural |= {name: design[name] for name in ("length", "radius", "wall", "fiber_radius")}
+    return natural | {name: design[name] for name in ("length", "radius", "wall", "fiber_radius")}
+
+
+def sizes(tube, loads, outputs, parameters, values):
+    """What each output, and each of its derivatives, is measured by: (outputs, 1 + parameters); ``values`` (outputs,)."""
+    natural = measures(tube, loads)
     above = [max(natural[name], abs(value)) for name, value in zip(outputs, values)]
     below = [1.0, *(natural[name] for name in parameters)]
     return np.array(above)[:, None] / np.array(below)

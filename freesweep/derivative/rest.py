@@ -35,7 +35,9 @@ def at_rest(physics, share, widths, half):
     else:
         seeds = np.zeros((count, 1))
         seeds[BY_Y] = 1.0
-        _, L_y, _, integrands = physics.local(Dual(ones, seeds), Dual(0.0 * ones), share)
+        y, v = Dual(ones, seeds), Dual(0.0 * ones)
+        _, L_y, _ = physics.local(y, v, share)
+        integrands = physics.integrands(y, v, share)
         slopes = np.broadcast_to(L_y.parts, (count, len(share)))
         for k in first:
             moved = -slopes[OWN + k] / slopes[BY_Y]

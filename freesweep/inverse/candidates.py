@@ -6,13 +6,13 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..status import STATUSES, VALUED
+from .deviation import deviations
 from .misfit import Misfit
 from .predict import predict
-from .wishes import DESIGN, UNITS
+from .wishes import DESIGN
+from .words import sentence
 
 ACCURACY = 1e-7
-FIGHT = -0.3  # cosine of two gradients: goals that pull against each other
-NOTHING = 1e-6  # tolerances that a goal changes over all that is free: it cannot be moved
 FIELDS = (*DESIGN, "pressure", "force", "torque")
 
 
@@ -23,8 +23,8 @@ class Found(NamedTuple):
     tubes: list
 
 
-def gather(misfit: Misfit, u, choice, slopes, objectives=0) -> Found:
-    """The candidates at points u (n, p), in the order given."""
+def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> Found:
+    """The candidates at points u (n, p), in the order given; ``tolerances`` of manufacture, if any, spread what they do."""
     import xarray as xr
 
     space, wishes = misfit.space, misfit.wishes
@@ -70,6 +70,11 @@ def gather(misfit: Misfit, u, choice, slopes, objectives=0) -> Found:
     if objectives:
         data["objective"] = (("candidate", "minimized"), found.values[:, last:])
         data["objective_error"] = (("candidate", "minimized"), found.bounds[:, last:])
+    if tolerances:
+        spreads = deviations(tubes, wishes[:last], columns, tolerances)
+        data["goal_spread"] = (("candidate", "goal"), spreads[:, :asked])
+        if last > asked:
+            data["limit_spread"] = (("candidate", "limit"), spreads[:, asked:])
     coordinates = {
         "candidate": np.arange(len(u)),
         "goal": [wish.title for wish in wishes[:asked]],
@@ -82,6 +87,9 @@ def gather(misfit: Misfit, u, choice, slopes, objectives=0) -> Found:
     result = xr.Dataset(data, coordinates)
     result["goal_missed"].attrs["long_name"] = "tolerances by which a goal is missed"
     result["slope"].attrs["long_name"] = "change of the goal's output by one unit of what is free"
+    for name in ("goal_spread", "limit_spread"):
+        if name in result:
+            result[name].attrs["long_name"] = "standard deviation under the given tolerances"
     result["status"].attrs = {
         "flag_values": [status.value for status in STATUSES], "flag_meanings": " ".join(s.meaning for s in STATUSES)
     }  # fmt: skip
@@ -98,56 +106,3 @@ def _slopes(misfit, slopes):
     """From tolerances along the unit box to units of output per unit of parameter."""
     space = misfit.space
     return slopes * misfit.tolerances[:, None] / np.where(space.high > space.low, space.high - space.low, 1.0)
-
-
-def sentence(misfit: Misfit, result, u, slopes) -> str:
-    """How many candidates do it; if none: what the nearest one misses, and which goals fight."""
-    count = int(np.sum(result["met"].values))
-    if count:
-        return f"{count} of {len(u)} candidates meet every goal and keep every limit"
-    missed = np.abs(result["goal_missed"].values[0])
-    worst = int(np.argmax(np.nan_to_num(missed, nan=np.inf)))
-    wish, value = misfit.wishes[worst], result["goal_value"].values[0, worst]
-    wanted = _range(wish)
-    unit = UNITS.get(wish.output) or PARAMETERS[wish.output].units
-    said = (
-        f"no design that is allowed does it; the nearest one has {wish.title} of {value:.6g} {unit} instead of {wanted}"
-    )
-    if not np.any(missed > 1.0):
-        broken = [str(name) for name, kept in zip(result["limit"].values, result["limit_kept"].values[0]) if not kept]
-        return f"no design that is allowed meets the goals and keeps the limits: {', '.join(broken)}"
-    if np.all(np.abs(slopes[0][worst]) < NOTHING * max(missed[worst], 1.0)):
-        return f"{said}: nothing that is free changes it"
-    pulls = slopes[0] * result_signs(misfit, result)[:, None]
-    for other in np.argsort(-missed):
-        a, b = pulls[worst], pulls[other]
-        size = np.linalg.norm(a) * np.linalg.norm(b)
-        if other != worst and missed[other] > 0.0 and size > 0.0 and a @ b < FIGHT * size:
-            return f"{said}: it fights with {misfit.wishes[other].title}"
-    held = [
-        f"{name} at {end:g} {PARAMETERS[name.partition('[')[0]].units}"
-        for name, at, pull, low, high in zip(
-            misfit.space.names, u[0], pulls[worst], misfit.space.low, misfit.space.high
-        )
-        for end, stops in ((low, at <= 0.0 and pull > 0.0), (high, at >= 1.0 and pull < 0.0))
-        if stops
-    ]
-    return f"{said}: the bounds {', '.join(held)} stop it" if held else said
-
-
-def result_signs(misfit, result):
-    """The sense in which each wish is missed (w,): 1 where the value is too large."""
-    signs = np.zeros(len(misfit.wishes))
-    signs[: misfit.goals] = np.sign(np.nan_to_num(result["goal_missed"].values[0]))
-    return signs
-
-
-def _range(wish):
-    unit = UNITS.get(wish.output) or PARAMETERS[wish.output].units
-    if wish.low == wish.high:
-        return f"{wish.low:g} {unit}"
-    if np.isinf(wish.high):
-        return f"at least {wish.low:g} {unit}"
-    if np.isinf(wish.low):
-        return f"at most {wish.high:g} {unit}"
-    return f"{wish.low:g} to {wish.high:g} {unit}"

@@ -13,11 +13,13 @@ from ..options import read_count
 from ..quantities import Names
 from . import freedom, wishes
 from .candidates import Found, gather
+from .deviation import read_tolerances
 from .least import front, least, multipliers
 from .look import look, spread
 from .misfit import make
 from .polish import polish
 from .wishes import Goal, Limit
+from .words import prices
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,6 +38,7 @@ def design(
     count: int = 10,
     atlas: Atlas | None = None,
     seed: int = 0,
+    tolerances: Mapping[str, Any] | None = None,
 ) -> "xr.Dataset":
     """Tubes that do what is wished for, the best ones first.
 
@@ -52,16 +55,18 @@ def design(
     atlas : an :class:`freesweep.Atlas` to ask in the first look, where it holds such tubes: it makes the look of physical
         tubes as wide as that of the source's
     seed : of the first look; the same seed gives the same candidates
+    tolerances : standard deviations of manufacture by the names of parameters (``{"alpha": 1.0, "wall": 5e-5}``): adds
+        ``goal_spread`` and ``limit_spread``, the standard deviation of what each candidate does
 
     Returns a Dataset along ``candidate``: parameters by name, ``goal_value``, ``goal_error`` (bound), ``goal_met``,
     ``limit_value``, ``limit_kept``, ``misfit`` (root of the sum of squares, in tolerances), ``slope`` (change of each
     goal's output by what is free), ``status``, ``met``, ``python`` (the line that makes it); ``attrs["summary"]`` says in a
     sentence whether it can be done and, if not, what stands against it. Raises :class:`ActuatorError` for invalid input.
     """
-    return find(template, free, goals, limits, minimize, count, atlas, seed).data
+    return find(template, free, goals, limits, minimize, count, atlas, seed, tolerances).data
 
 
-def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, seed=0) -> Found:
+def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, seed=0, tolerances=None) -> Found:
     """The same, with the actuators of the candidates."""
     faults = []
     space = freedom.read(template, free, faults)
@@ -75,6 +80,7 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
         faults.append(f"atlas: found {described(atlas)}; give what freesweep.open_atlas opens, or None")
     if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
         faults.append(f"seed: found {described(seed)}; give a whole number, 0 or more")
+    allowed = read_tolerances(tolerances, template, faults) if space is not None else {}
     if space is not None:
         missing = [w.title for w in (*asked, *kept, *objectives) if _needs_pressure(w) and "pressure" not in free]
         faults += [f"{title}: give its pressure, or let 'pressure' be free" for title in missing]
@@ -89,10 +95,10 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
         )
     u, _, residuals, slopes = polish(misfit, u, choice)
     if objectives:
-        return _with_least(misfit, objectives, u, choice, residuals, count)
+        return _with_least(misfit, objectives, u, choice, residuals, count, allowed)
     cost = np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf)
     best = spread(space, u, choice, _order(cost), count, DIFFERENT)
-    return gather(misfit, u[best], choice[best], slopes[best])
+    return gather(misfit, u[best], choice[best], slopes[best], allowed)
 
 
 def _order(cost):
@@ -124,14 +130,14 @@ def _objectives(minimize, faults):
     return found
 
 
-def _with_least(misfit, objectives, u, choice, residuals, count):
+def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
     """Candidates among those that do it with the least of the objectives."""
     number = len(objectives)
     good = np.all(np.abs(np.nan_to_num(residuals, nan=np.inf)) <= MISSED, axis=1)
     if not np.any(good):
         best = _order(np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf))[:count]
         _, _, _, slopes = polish(misfit, u[best], choice[best])
-        return gather(misfit, u[best], choice[best], slopes)
+        return gather(misfit, u[best], choice[best], slopes, tolerances)
     u, choice = u[good][:count], choice[good][:count]
     whole = misfit._replace(
         wishes=[*misfit.wishes, *objectives], tolerances=np.append(misfit.tolerances, [1.0] * number)
@@ -147,17 +153,18 @@ def _with_least(misfit, objectives, u, choice, residuals, count):
     missed = np.any(np.abs(residuals[:, :-number]) > MISSED, axis=1)
     order = np.lexsort((found.values[:, -number], missed))
     best = spread(misfit.space, u, choice, order, count, DIFFERENT)
-    made = gather(whole, u[best], choice[best], slopes[best], number)
+    made = gather(whole, u[best], choice[best], slopes[best], tolerances, number)
     result = made.data
     if number == 1:
-        prices = [multipliers(whole, u[i], slopes[i], found.values[i], number) for i in best]
+        costs = [multipliers(whole, u[i], slopes[i], found.values[i], number) for i in best]
         span = misfit.space.high - misfit.space.low
         asked = misfit.goals
-        result["goal_price"] = (("candidate", "goal"), np.array([price[0][:asked] for price in prices]))
+        result["goal_price"] = (("candidate", "goal"), np.array([price[0][:asked] for price in costs]))
         if len(misfit.wishes) > asked:
-            result["limit_price"] = (("candidate", "limit"), np.array([price[0][asked:] for price in prices]))
-        result["bound_price"] = (("candidate", "parameter"), np.array([price[1] / span for price in prices]))
+            result["limit_price"] = (("candidate", "limit"), np.array([price[0][asked:] for price in costs]))
+        result["bound_price"] = (("candidate", "parameter"), np.array([price[1] / span for price in costs]))
         for name in ("goal_price", "limit_price", "bound_price"):
             if name in result:
                 result[name].attrs["long_name"] = "change of what is minimized by one unit of what holds it"
+        result.attrs["prices"] = prices(result, whole.wishes, misfit.space.names)
     return made

@@ -55,6 +55,7 @@ class Space(NamedTuple):
     ties: dict  # name -> (factor, other name)
     choices: list  # of dicts: name -> value
     knots: dict  # name -> number of knots
+    held: dict  # name -> number: the template's own
 
     def values(self, u):
         """Values of what is free at points u (n, p)."""
@@ -64,10 +65,12 @@ class Space(NamedTuple):
         """The point of the unit box of ``values`` (p,)."""
         return (values - self.low) / (self.high - self.low)
 
-    def columns(self, u, choice) -> dict:
-        """Designs and loads at points u (n, p) with ``choice`` (n,): name -> (n,); of profiles, the middle's."""
-        values, count = self.values(u), len(u)
-        found = {name: np.full(count, value) for name, value in self.template.design().items()}
+    def columns(self, u, choice, values=None) -> dict:
+        """Designs and loads at points u (n, p) with ``choice`` (n,): name -> (n,); of profiles, the middle's. ``values``: of
+        what is free, if not these arrays but other numbers such as dual ones, p of them.
+        """
+        values, count = self.values(u).T if values is None else values, len(u)
+        found = {name: np.full(count, value) for name, value in self.held.items()}
         found |= {name: np.zeros(count) for name in LOADS}
         for k, options in enumerate(self.choices):
             own = choice == k
@@ -77,7 +80,7 @@ class Space(NamedTuple):
                         found[constant] = np.where(own, getattr(value, constant), found[constant])
                 else:
                     found[name] = np.where(own, value, found[name])
-        found |= {name: values[:, k] for k, name in enumerate(self.names) if "[" not in name}
+        found |= {name: values[k] for k, name in enumerate(self.names) if "[" not in name}
         found |= {name: factor * found[other] for name, (factor, other) in self.ties.items() if other in found}
         place = self.template.fiber_radius or MODELS[self.template.model].fiber_radius
         if isinstance(place, str) and "fiber_radius" not in (*self.names, *self.ties):
@@ -168,7 +171,7 @@ def read(template, free, faults):
     if len(faults) > before:
         return None
     choices = [{k: v for part in parts for k, v in part.items()} for parts in itertools.product(*lists)]
-    return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots)
+    return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots, template.design())
 
 
 def _read_range(key, given, faults):

@@ -17,12 +17,12 @@ def look(misfit: Misfit, count, seed, atlas=None):
     """
     from scipy.stats import qmc
 
-    space = misfit.space
+    space, misfit = misfit.space, glanced(misfit)
     free, choices = len(space.names), len(space.choices)
     if free == 0:
         return np.zeros((choices, 0)), np.arange(choices)
     known = [] if atlas is None else told(atlas, misfit.wishes)
-    most = ALIKE if space.is_alike or any(known) else ONE_BY_ONE
+    most = ALIKE if misfit.is_quick or any(known) else ONE_BY_ONE
     shown = np.random.default_rng(seed).permutation(choices)[: most // LEAST]
     total = int(np.ceil(np.log2(max(most, LEAST * len(shown)))))
     draws = qmc.Sobol(free, seed=np.random.default_rng(seed)).random_base2(total)
@@ -31,7 +31,9 @@ def look(misfit: Misfit, count, seed, atlas=None):
         values = ask(atlas, misfit.wishes, space.columns(draws, choice), known)
         residuals = np.where(known, misfit.residuals(values), 0.0)
     else:
-        _, residuals = misfit.at(draws, choice, LOOKING)
+        _, residuals = misfit.at(draws, choice, LOOKING, False)
+        if not np.any(np.all(np.isfinite(residuals), axis=1)):
+            _, residuals = misfit.at(draws, choice, LOOKING)
     goals = np.abs(residuals)
     middles = np.array([np.median(some[np.isfinite(some)]) if np.any(np.isfinite(some)) else 0.0 for some in goals.T])
     scale = np.where(middles > 0.0, middles, 1.0)
@@ -40,6 +42,20 @@ def look(misfit: Misfit, count, seed, atlas=None):
     order = known[np.argsort(cost[known], kind="stable")]
     picked = spread(space, draws, choice, order, count, APART)
     return draws[picked], choice[picked]
+
+
+def glanced(misfit: Misfit) -> Misfit:
+    """The misfit of which a curve is seen by its ends and its middle only."""
+    curves = {}
+    for k, wish in enumerate(misfit.wishes):
+        names = tuple(name for name, _ in wish.conditions)
+        curves.setdefault((k < misfit.goals, wish.output, names), []).append(k)
+    kept = sorted({k for own in curves.values() for k in (own[0], own[len(own) // 2], own[-1])})
+    return misfit._replace(
+        wishes=[misfit.wishes[k] for k in kept],
+        goals=sum(k < misfit.goals for k in kept),
+        tolerances=misfit.tolerances[kept],
+    )
 
 
 def spread(space, u, choice, order, count, apart):

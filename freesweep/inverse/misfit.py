@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .exact import exact_slopes
 from .predict import predict
 from .wishes import RELATIVE
 
@@ -23,6 +24,13 @@ class Misfit(NamedTuple):
     goals: int
     tolerances: np.ndarray
 
+    @property
+    def is_quick(self) -> bool:
+        """Whether vectors tell all that is wished for."""
+        from .vectors import TOLD
+
+        return self.space.is_alike and all(wish.kind == "design" or wish.output in TOLD for wish in self.wishes)
+
     def residuals(self, values):
         """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""
         low = np.array([wish.low for wish in self.wishes])
@@ -36,31 +44,44 @@ class Misfit(NamedTuple):
             missed = np.where(np.isfinite(values), above + below, np.where(values > 0, 0.0, np.nan))
         return missed / self.tolerances
 
-    def at(self, u, choice, accuracy=POLISHING):
+    def at(self, u, choice, accuracy=POLISHING, thorough=True):
         """``(what is predicted, residuals)`` at points u (n, p)."""
-        found = predict(self.space, self.wishes, u, choice, accuracy)
+        found = predict(self.space, self.wishes, u, choice, accuracy, thorough)
         return found, self.residuals(found.values)
 
     def slopes(self, u, choice, found):
-        """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: central differences, one-sided
-        where the other side has no state.
+        """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: exact ones where vectors give them,
+        else central differences, one-sided where the other side has no state.
         """
+        slopes = exact_slopes(self.space, self.wishes, u, choice, found.values)
+        there = np.isfinite(found.values)
+        missing = there & np.any(np.isnan(slopes), axis=2)
+        rows, wishes = np.any(missing, axis=1), np.any(missing, axis=0)
+        if np.any(rows):
+            own = [wish for wish, lost in zip(self.wishes, wishes) if lost]
+            values = found.values[np.ix_(rows, wishes)]
+            table = np.ix_(rows, wishes)
+            slopes[table] = np.where(
+                np.isnan(slopes[table]), self._differences(own, u[rows], choice[rows], values), slopes[table]
+            )
+        return np.nan_to_num(slopes) / self.tolerances[:, None]
+
+    def _differences(self, wishes, u, choice, middle):
+        """Central differences (n, wishes, p) about points with the values ``middle`` (n, wishes)."""
         count, free = u.shape
-        if free == 0:
-            return np.zeros((count, len(self.wishes), 0))
         step = STEP * np.eye(free)
         ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
         values = predict(
-            self.space, self.wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING
+            self.space, wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING, thorough=False
         ).values.reshape(count, 2 * free, -1)
-        middle, there = found.values[:, None], np.isfinite(values)
+        middle, there = middle[:, None], np.isfinite(values)
         values = np.where(there, values, middle)
         along = np.arange(free)
         width = ends[:, :free][:, along, along] - ends[:, free:][:, along, along]
         halved = np.where(there[:, :free] & there[:, free:], 1.0, 0.5)  # one side has a state
         with np.errstate(invalid="ignore"):
             slope = (values[:, :free] - values[:, free:]) / (halved * width[..., None])
-        return np.nan_to_num(np.moveaxis(slope, 1, 2)) / self.tolerances[:, None]
+        return np.moveaxis(slope, 1, 2)
 
 
 def make(space, goals, limits) -> Misfit:

@@ -4,23 +4,39 @@ import numpy as np
 
 from ..status import VALUED
 
+FOLLOWING = ("stroke", "length_change", "outer_radius")  # from what a state has
+
 
 def output(name, kind, found, design):
     """``(value, bound)`` of an output; ``found`` as the solvers give it, ``design`` name -> numbers; arrays broadcast."""
     if kind == "limit":
         none = np.isnan(found["limit_pressure"]) & np.isin(found["status"], VALUED)
         return np.where(none, np.inf, found["limit_pressure"]), np.where(none, 0.0, found["limit_pressure_error"])
+    value = derived(name, found, design)
     if name == "stroke":
-        length, bound = found["deformed_length"], found["deformed_length_error"]
-        return 1.0 - length / design["length"], bound / design["length"]
+        return value, found["deformed_length_error"] / design["length"]
     if name == "length_change":
-        return found["deformed_length"] - design["length"], found["deformed_length_error"]
+        return value, found["deformed_length_error"]
     if name == "outer_radius" and "outer_radius" not in found:
-        return _outer_radius(found["mid_radius"], found["mid_radius_error"], design)
-    return found[name], found[f"{name}_error"]
+        bound = found["mid_radius_error"]
+        with np.errstate(invalid="ignore"):
+            wider = derived(name, {"mid_radius": found["mid_radius"] + bound}, design)
+        return value, np.maximum(np.abs(wider - value), bound)
+    return value, found[f"{name}_error"]
 
 
-def _outer_radius(middle, bound, design):
+def derived(name, found, design):
+    """An output from those ``found``, in plain arithmetic: of arrays, or of dual numbers."""
+    if name == "stroke":
+        return 1.0 - found["deformed_length"] / design["length"]
+    if name == "length_change":
+        return found["deformed_length"] - design["length"]
+    if name == "outer_radius" and "outer_radius" not in found:
+        return _outer_radius(found["mid_radius"], design)
+    return found[name]
+
+
+def _outer_radius(middle, design):
     """The largest outer radius of a tube that bulges or necks in its middle: the wall keeps its volume, ``r_o^2 = r^2 +
     (r_o0^2 - r_0^2)/lambda_1`` outside the fibers (theory, section 11).
     """
@@ -35,8 +51,7 @@ def _outer_radius(middle, bound, design):
         return np.sqrt(r * r + outside / np.sqrt(squared))
 
     with np.errstate(invalid="ignore"):
-        here = outer(middle)
-        return np.maximum(here, outer(r0)), np.maximum(np.abs(outer(middle + bound) - here), bound)
+        return np.maximum(outer(middle), outer(r0))
 
 
 def widest(tube, found):

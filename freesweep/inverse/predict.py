@@ -46,10 +46,12 @@ def state_of(wish) -> State:
     return State(wish.kind, wish.conditions, least)
 
 
-def predict(space: Space, wishes, u, choice, accuracy) -> Predicted:
-    """What the designs at points u (n, p) of the ``space``, with ``choice`` (n,), do."""
+def predict(space: Space, wishes, u, choice, accuracy, thorough=True) -> Predicted:
+    """What the designs at points u (n, p) of the ``space``, with ``choice`` (n,), do; if not ``thorough``, of those that
+    vectors can tell, where they tell any.
+    """
     from .singles import solve_singles
-    from .vectors import solve_vectors
+    from .vectors import TOLD, solve_vectors
 
     shape, accuracy = (len(u), len(wishes)), space.accuracy(accuracy)
     found = Predicted(np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, INVALID))
@@ -62,11 +64,12 @@ def predict(space: Space, wishes, u, choice, accuracy) -> Predicted:
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # designs on the way are nobody's
-        if space.is_alike:
-            answers = solve_vectors(space.template.energy, asked, columns, accuracy)
-        else:
+        quick = {state: names for state, names in asked.items() if space.is_alike and set(names) <= set(TOLD)}
+        answers = solve_vectors(space.template.energy, quick, columns, accuracy, thorough)
+        if len(quick) < len(asked):
             tubes = [space.actuator_or_none(one, k) for one, k in zip(u, choice)]
-            answers = solve_singles(tubes, asked, columns, accuracy)
+            rest = {state: names for state, names in asked.items() if state not in quick}
+            answers |= solve_singles(tubes, rest, columns, accuracy)
     for k, (wish, state) in enumerate(zip(wishes, states)):
         if state in answers:
             found.values[:, k], found.bounds[:, k] = answers[state][wish.output]

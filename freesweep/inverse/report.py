@@ -20,6 +20,8 @@ def columns_of(found):
             title = found[group].values[k]
             yield f"{title}", found[f"{group}_value"].values[:, k]
             yield f"{title}: error", found[f"{group}_error"].values[:, k]
+            if f"{group}_spread" in found:
+                yield f"{title}: spread", found[f"{group}_spread"].values[:, k]
     for k in range(found.sizes.get("minimized", 0)):
         yield f"least {found['minimized'].values[k]}", found["objective"].values[:, k]
 
@@ -48,7 +50,11 @@ def table(found) -> str:
         for k in range(found.sizes.get(group, 0)):
             marks = ["" if fine else " !" for fine in done.values[:, k]]
             values = found[f"{group}_value"].values[:, k]
-            columns.append((found[group].values[k], [f"{value:.6g}{mark}" for value, mark in zip(values, marks)]))
+            spreads = [""] * len(values)
+            if f"{group}_spread" in found:
+                spreads = [f" +- {spread:.2g}" for spread in found[f"{group}_spread"].values[:, k]]
+            texts = [f"{value:.6g}{spread}{mark}" for value, spread, mark in zip(values, spreads, marks)]
+            columns.append((found[group].values[k], texts))
     for k in range(found.sizes.get("minimized", 0)):
         columns.append((f"least {found['minimized'].values[k]}", [f"{v:.6g}" for v in found["objective"].values[:, k]]))
     widths = [max(len(heading), *map(len, values)) for heading, values in columns]

@@ -9,7 +9,8 @@ from ..faults import ActuatorError
 from ..holding import blocked_force, blocked_torque
 from ..statics import inflate, lock
 from ..status import INVALID, OK
-from .outputs import output, widest
+from .outputs import FOLLOWING, output, widest
+from .stiff import derivatives_for, stiffness_of
 from .vectors import HARDLY
 
 
@@ -47,20 +48,18 @@ def solve_single(tube, asked, design, accuracy) -> dict:
         pressures, places = np.unique(own, return_inverse=True)
         names = {name for state in states for name in asked[state]}
         x = None if "outer_radius" in names else 0.0
-        force, torque = given["force"], given["torque"]
-        if kind == "locked":
-            found = lock(tube, x=x, accuracy=accuracy).expand_dims("pressure")
-        elif kind == "force":
-            length = dict(rest).get("deformed_length")
-            found = blocked_force(tube, pressures, length, torque, x=x, accuracy=accuracy)
-        elif kind == "torque":
-            found = blocked_torque(tube, pressures, dict(rest).get("rotation", 0.0), force, x=x, accuracy=accuracy)
-        else:
-            found = inflate(tube, pressures, force, torque, x=x, accuracy=accuracy)
+        more = {"accuracy": accuracy, "derivatives": derivatives_for(names, kind)}
+        found = states_of(tube, kind, rest, pressures, given, x, **more)
         numbers = {name: v.values for name, v in found.data_vars.items() if "x" not in v.dims}
+        numbers |= stiffness_of(numbers, names, kind)
         for name in names:
             seen = (name, kind, numbers, given)
-            value, bound = widest(tube, found) if name == "outer_radius" and name not in numbers else output(*seen)
+            if name == "outer_radius" and name not in numbers:
+                value, bound = widest(tube, found)
+            elif name in (*numbers, *FOLLOWING):
+                value, bound = output(*seen)
+            else:  # of other tubes than this one
+                value, bound = np.nan, np.nan
             value, bound = np.broadcast_to(value, len(pressures)), np.broadcast_to(bound, len(pressures))
             for state, place in zip(states, places):
                 if name in asked[state]:
@@ -68,3 +67,14 @@ def solve_single(tube, asked, design, accuracy) -> dict:
         for state, place in zip(states, places):
             answers[state]["status"] = OK if kind == "limit" else int(numbers["status"][place])
     return answers
+
+
+def states_of(tube, kind, rest, pressures, given, x, **more):
+    """The Dataset of a tube's states of a ``kind`` at ``pressures``; ``rest``: other conditions, ``given``: all loads."""
+    if kind == "locked":
+        return lock(tube, x=x, **more).expand_dims("pressure")
+    if kind == "force":
+        return blocked_force(tube, pressures, dict(rest).get("deformed_length"), given["torque"], x=x, **more)
+    if kind == "torque":
+        return blocked_torque(tube, pressures, dict(rest).get("rotation", 0.0), given["force"], x=x, **more)
+    return inflate(tube, pressures, given["force"], given["torque"], x=x, **more)

@@ -2,27 +2,33 @@
 
 import numpy as np
 
+from ..derivative.request import SHAPE
 from ..query.exact import solve
 from ..query.reference import COLUMNS, LENGTH_HELD, LOADED, LOCKED, ROTATION_HELD
 from ..status import INVALID, OK
 from .outputs import output
-from .wishes import HELD
+from .stiff import stiffness
+from .wishes import HELD, STIFF
 
 KINDS = {"free": LOADED, "locked": LOCKED, "force": LENGTH_HELD, "torque": ROTATION_HELD, "limit": LOADED}
+TOLD = (*SHAPE, "stroke", "length_change", "outer_radius", "limit_pressure", *HELD, *STIFF)  # outputs
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
 
 
-def solve_vectors(energy, asked, columns, accuracy) -> dict:
-    """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound)."""
+def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
+    """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound).
+    Not ``thorough``: what vectors cannot do has no value.
+    """
     answers, count = {}, len(columns["alpha"])
     for kind in dict.fromkeys(state.kind for state in asked):
         states = [state for state in asked if state.kind == kind]
         parts = [_points(state, columns, count) for state in states]
         points = np.concatenate([np.column_stack([part[name] for name in COLUMNS]) for part in parts])
         most = max(part["pressure"].max() for part in parts) if kind == "limit" else None
-        found = solve(KINDS[kind], points, energy, accuracy, most)
+        found = solve(KINDS[kind], points, energy, accuracy, most, thorough=thorough)
         for k, (state, part) in enumerate(zip(states, parts)):
             own = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
+            own |= stiffness(asked[state], kind, own, part, energy)
             answers[state] = {name: output(name, kind, own, part) for name in asked[state]}
             limit = np.where(own["status"] == INVALID, INVALID, OK)
             answers[state]["status"] = limit if kind == "limit" else own["status"]

@@ -12,13 +12,15 @@ beta = "-alpha"                     # a tie
 # alpha = {start = "0 deg", stop = "85 deg", knots = 5}                # a profile along the tube
 [[goals]]
 output = "rotation"
-value = "90 deg"                    # or at_least, at_most, between = ["80 deg", "100 deg"]
+value = "90 deg"                    # or a path, "force-stroke.csv", or at_least, at_most, between = ["80 deg", "100 deg"]
 pressure = "100 kPa"
 tolerance = "1 deg"
 [[limits]]
 output = "outer_radius"
 at_most = "7.5 mm"
 pressure = "100 kPa"
+[tolerances]                        # of manufacture: standard deviations
+alpha = "1 deg"
 [search]
 minimize = "radius"                 # or {output = "strain_energy", pressure = "100 kPa"}, or two of them
 count = 10
@@ -26,6 +28,7 @@ seed = 0
 """
 
 from dataclasses import fields
+from pathlib import Path
 
 from ..actuator import Actuator
 from ..elastomer import rubber_of
@@ -33,11 +36,13 @@ from ..faults import ActuatorError
 from ..given import numbers
 from ..material_library import material
 from ..sweep import toml_guard
+from .curve_file import is_path
 from .freedom import CONSTANTS, Profile
 from .wishes import Goal, Limit, _Asked
 
 PLACES = {"alpha": 40.0, "beta": -20.0, "length": 0.1, "radius": 5e-3, "wall": 1e-3}  # of what is free, until it is not
-SECTIONS = ("title", "actuator", "free", "goals", "limits", "search")
+KINDS = {"actuator": dict, "free": dict, "goals": list, "limits": list, "tolerances": dict, "search": dict}
+SECTIONS = ("title", *KINDS)
 SEARCH = ("minimize", "count", "seed")
 
 
@@ -46,7 +51,14 @@ def read(path) -> dict:
     document = toml_guard.load(toml_guard.read_text(path), str(path))
     faults = [f"{key}: unknown; a wish has {', '.join(SECTIONS)}" for key in document if key not in SECTIONS]
     tables = {}
-    for key, kind in (("actuator", dict), ("free", dict), ("goals", list), ("limits", list), ("search", dict)):
+    for key, kind in (
+        ("actuator", dict),
+        ("free", dict),
+        ("goals", list),
+        ("limits", list),
+        ("tolerances", dict),
+        ("search", dict),
+    ):
         tables[key] = document.get(key, kind())
         if not isinstance(tables[key], kind) or (
             kind is list and not all(isinstance(one, dict) for one in tables[key])
@@ -55,7 +67,8 @@ def read(path) -> dict:
             tables[key] = kind()
     free = {key: _free(value, f"free.{key}", faults) for key, value in tables["free"].items()}
     tube = _actuator(tables["actuator"], free, faults)
-    goals = [_asked(Goal, one, f"goals[{k}]", faults) for k, one in enumerate(tables["goals"])]
+    beside = Path(path).parent
+    goals = [_asked(Goal, _found(one, beside), f"goals[{k}]", faults) for k, one in enumerate(tables["goals"])]
     limits = [_asked(Limit, one, f"limits[{k}]", faults) for k, one in enumerate(tables["limits"])]
     search = tables["search"]
     faults += [f"search.{key}: unknown; it has {', '.join(SEARCH)}" for key in search if key not in SEARCH]
@@ -63,6 +76,7 @@ def read(path) -> dict:
     if faults:
         raise ActuatorError([f"{path}: {fault}" for fault in faults])
     more = {key: search[key] for key in ("count", "seed") if key in search}
+    more |= {"tolerances": tables["tolerances"]} if tables["tolerances"] else {}
     return {"template": tube, "free": free, "goals": goals, "limits": limits, "minimize": minimize} | more
 
 
@@ -103,6 +117,11 @@ def _actuator(given, free, faults):
     except (ActuatorError, ValueError) as error:
         faults += [f"actuator: {fault}" for fault in getattr(error, "faults", [str(error)])]
     return None
+
+
+def _found(given, folder):
+    """The same with the path of a curve as it is seen from the file of wishes."""
+    return given | {"value": folder / given["value"]} if is_path(given.get("value")) else given
 
 
 def _asked(kind, given, where, faults):

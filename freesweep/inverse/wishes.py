@@ -5,25 +5,30 @@ wish leaves out is free, if ``free`` names it, else 0; a held tube is held as it
 """
 
 import math
+import os
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from ..atlas import schema
 from ..atlas.schema import PARAMETERS
 from ..faults import ActuatorError
 from ..given import described, numbers, read_number
 from ..quantities import Quantities, Quantity
+from .curve_file import columns_of, is_path
 
-UNITS = {
-    "deformed_length": "m", "rotation": "degree", "volume": "m3", "mid_radius": "m", "strain_energy": "J",
+FREE = {name: each.units for name, each in schema.VARIABLES.items() if each.without == schema.HELD}  # of a free state
+UNITS = FREE | {
     "force": "N", "torque": "N m", "stroke": "1", "length_change": "m", "outer_radius": "m", "limit_pressure": "Pa",
+    "stiffness": "N/m", "torsional_stiffness": "N m/degree",
 }  # fmt: skip
 CONDITIONS = {"pressure": "Pa", "force": "N", "torque": "N m", "deformed_length": "m", "rotation": "degree"}
 HELD = {
     "force": ("deformed_length", "torque"),
     "torque": ("rotation", "force"),
 }  # what is held, what may work on the rest
+STIFF = {"stiffness": "force", "torsional_stiffness": "torque"}  # of a free tube, or of one held by that load
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "c10", "c01", "c20", "c30")
 RELATIVE = 1e-4  # of a goal's value, or of its natural size: what counts as met where no tolerance is given
 
@@ -45,6 +50,8 @@ class Wish(NamedTuple):
             return "design"
         if self.output in HELD:
             return self.output
+        if self.output in STIFF and HELD[STIFF[self.output]][0] in dict(self.conditions):
+            return STIFF[self.output]
         if self.output == "limit_pressure":
             return "limit"
         return "locked" if math.isinf(dict(self.conditions).get("pressure", 0.0)) else "free"
@@ -56,19 +63,22 @@ class _Asked:
 
     Parameters
     ----------
-    output : what a solved state has (``deformed_length`` [m], ``rotation`` [degree], ``volume`` [m3], ``mid_radius`` [m],
-        ``strain_energy`` [J]), what holds one (``force`` [N] at a held deformed length, ``torque`` [N m] at a held
-        rotation), or what follows from them: ``stroke`` (1 - deformed_length/length), ``length_change`` [m],
-        ``outer_radius`` [m] (the largest of the deformed tube), ``limit_pressure`` [Pa]; or a parameter of the design
-    value : the number wished for, or an array: a curve over arrays of the same length among the conditions
+    output : any scalar of :func:`freesweep.inflate` (``deformed_length`` [m], ``rotation`` [degree], ``volume`` [m3],
+        ``mid_radius`` [m], ``strain_energy`` [J], ...), what holds a tube (``force`` [N] at a held deformed length,
+        ``torque`` [N m] at a held rotation), or what follows from them: ``stroke`` (1 - deformed_length/length),
+        ``length_change`` [m], ``outer_radius`` [m] (the largest of the deformed tube), ``limit_pressure`` [Pa],
+        ``stiffness`` [N/m] and ``torsional_stiffness`` [N m/degree] of a free tube's end, or of one held at a
+        ``deformed_length`` or ``rotation`` that is given; or a parameter of the design
+    value : the number wished for, or an array: a curve over arrays of the same length among the conditions; or the path of a
+        CSV file (``pressure [kPa],deformed_length [mm],force [N]``): its columns are the output and conditions
     at_least, at_most, between : a range instead
-    tolerance : by how much a goal may be missed; default 1e-4 of it
+    tolerance : by how much a goal may be missed; default 1e-4 of it, or what a column ``<output>_sigma`` of the file says
     pressure, force, torque : the loads [Pa, N, N m]; a pressure of infinity is the locked shape
     deformed_length, rotation : what is held, for the outputs ``force`` and ``torque`` [m, degree]
     """
 
     output: str
-    value: Quantities | None = None
+    value: "Quantities | os.PathLike | None" = None
     at_least: Quantities | None = None
     at_most: Quantities | None = None
     between: tuple[Quantities, Quantities] | None = None
@@ -93,17 +103,24 @@ class _Asked:
             return []
         before = len(faults)
         unit = units[self.output]
-        low, high = self._range(unit, faults, where)
-        given = {}
+        value, given, tolerance = self.value, {}, np.full(1, math.nan)
+        if is_path(value):
+            curve = columns_of(value, self.output, self._conditions(), faults, where)
+            if curve is None:
+                return []
+            value, given, sigma = curve
+            tolerance = tolerance if sigma is None else sigma
+        low, high = self._range(value, unit, faults, where)
         for name in CONDITIONS:
             if getattr(self, name) is not None:
-                if (found := _column(f"{where}: {name}", getattr(self, name), CONDITIONS[name], faults)) is not None:
+                if name in given:
+                    faults.append(f"{where}: {name}: a column of the file, and given beside it; keep one")
+                elif (found := _column(f"{where}: {name}", getattr(self, name), CONDITIONS[name], faults)) is not None:
                     given[name] = found
         self._check(given, faults, where)
-        tolerance = math.nan
         if self.tolerance is not None:
-            tolerance = read_number(f"{where}: tolerance", self.tolerance, unit, faults, positive=True)
-        columns = [low, high, *given.values()]
+            tolerance = np.full(1, read_number(f"{where}: tolerance", self.tolerance, unit, faults, positive=True))
+        columns = [low, high, tolerance, *given.values()]
         sizes = {len(column) for column in columns if len(column) > 1}
         if len(sizes) > 1:
             faults.append(
@@ -114,11 +131,11 @@ class _Asked:
         count = max(len(column) for column in columns)
         columns = [np.broadcast_to(column, count).tolist() for column in columns]
         return [
-            Wish(self.output, tuple(zip(given, conditions)), a, b, tolerance, _title(self.output, given, conditions))
-            for a, b, *conditions in zip(*columns)
+            Wish(self.output, tuple(zip(given, conditions)), a, b, allowed, _title(self.output, given, conditions))
+            for a, b, allowed, *conditions in zip(*columns)
         ]
 
-    def _range(self, unit, faults, where):
+    def _range(self, value, unit, faults, where):
         ways = [name for name in ("value", "at_least", "at_most", "between") if getattr(self, name) is not None]
         if len(ways) != 1 and ways != ["at_least", "at_most"]:
             found = ", ".join(ways) or "none"
@@ -131,7 +148,7 @@ class _Asked:
                 return np.zeros(1), np.zeros(1)
             ends = pair
         elif ways == ["value"]:
-            ends = self.value, self.value
+            ends = value, value
         else:
             ends = self.at_least, self.at_most
         none = (np.full(1, -np.inf), np.full(1, np.inf))
@@ -144,14 +161,23 @@ class _Asked:
             faults.append(f"{where}: between: give the lower number first")
         return low, high
 
+    def _conditions(self) -> tuple:
+        """What may be said of a state with this output."""
+        if self.output in DESIGN or self.output == "pressure":
+            return ()
+        if self.output == "limit_pressure":
+            return ("force", "torque")
+        if self.output in HELD:
+            return ("pressure", *HELD[self.output])
+        held = HELD[STIFF[self.output]][:1] if self.output in STIFF else ()
+        return ("pressure", "force", "torque", *held)
+
     def _check(self, given, faults, where):
         """Conditions that belong to no state with this output."""
-        held = HELD.get(self.output)
-        allowed = ("pressure", *held) if held else ("pressure", "force", "torque")
-        if self.output in DESIGN or self.output == "pressure":
-            allowed = ()
-        if self.output == "limit_pressure":
-            allowed = ("force", "torque")
+        allowed = self._conditions()
+        if self.output in STIFF and HELD[STIFF[self.output]][0] in given:
+            allowed = ("pressure", *HELD[STIFF[self.output]])
+        held = self.output in (*HELD, *STIFF)
         for name in given:
             if name not in allowed:
                 can = f"give {', '.join(allowed)}" if allowed else "it is no matter of a state"

@@ -4,9 +4,11 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+from numba import config
 
 from ..actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
 from ..scaling import OUTPUTS, output_scales, problem_rows, wall_volume_inside
+from ..solver.status import PENDING
 from ..status import DEGENERATE, INVALID, NOT_CONVERGED, VALUED
 from ..tube_model import MODELS
 from . import reference
@@ -16,11 +18,12 @@ CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
 SHARE = 512  # points that one thread solves at a time
 
 
-def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["source"], cells=CELLS):
+def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["source"], cells=CELLS, thorough=True):
     """States of a kind at points (n, 15) of tubes of a ``model``: name -> (n,) of numbers and ``_error`` bounds, ``status``
     and flags, on base meshes of so many ``cells``.
 
-    With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``.
+    With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``. Not ``thorough``: what
+    vectors leave to the scalar kernels, a thousand times dearer, is left out.
     """
     count = len(points)
     design = {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(COLUMNS)}
@@ -43,9 +46,10 @@ def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["s
     def part(begin):
         some = slice(begin, begin + SHARE)
         if held:
-            return _held(kind, rows[some], {name: column[some] for name, column in own.items()}, accuracy, cells)
+            part = {name: column[some] for name, column in own.items()}
+            return _held(kind, rows[some], part, accuracy, cells, thorough)
         most = None if largest_pressure is None else largest_pressure / own["c10"][some]
-        return _free(rows[some], pressure[some], most, accuracy, cells)
+        return _free(rows[some], pressure[some], most, accuracy, cells, thorough or most is not None)
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         parts = list(pool.map(part, range(0, len(good), SHARE)))
@@ -80,33 +84,43 @@ def _scales(kind, own):
     return output_scales(own)
 
 
-def _free(rows, pressure, most, accuracy, cells):
+def _free(rows, pressure, most, accuracy, cells, thorough):
     """Free states of problems (k, ...), each at its own pressure, and followed to ``most`` (k,) if that is given."""
-    from ..solver.batch import uniform, walk_all
+    from ..solver import batch
 
     count = len(rows)
     steps = 1 if most is None else 2
     pressures = pressure if most is None else np.column_stack([pressure, np.maximum(most, pressure)]).ravel()
     first = steps * np.arange(count + 1, dtype=np.int64)
-    walks = walk_all(
-        np.ascontiguousarray(rows), first, np.ascontiguousarray(pressures), uniform(cells), accuracy, soon=True
-    )
+    rows, pressures = np.ascontiguousarray(rows), np.ascontiguousarray(pressures)
+    if thorough or config.DISABLE_JIT:
+        walks = batch.walk_all(rows, first, pressures, batch.uniform(cells), accuracy, soon=True)
+    else:
+        walks = batch._nothing(count, len(pressures), batch.NOTHING)
+        batch._walk_lanes(rows, first, pressures, cells, accuracy, batch.NOTHING, walks)
+        walks.status[walks.status == PENDING] = NOT_CONVERGED
     own = slice(0, None, steps)
     return walks.values[own], walks.bounds[own], walks.status[own], walks.slack[own], walks.limits
 
 
-def _held(kind, rows, own, accuracy, cells):
+def _held(kind, rows, own, accuracy, cells, thorough):
     """Held states of problems (k, ...), each at its own pressure."""
+    from ..solver import hold_batch
     from ..solver.batch import uniform
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
-    from ..solver.hold_batch import hold_all
     from ..solver.problem import LENGTH
 
     count = len(rows)
     length = kind == reference.LENGTH_HELD
     targets = own["held"] * rows[:, LENGTH] if length else np.radians(own["held"])
-    found = hold_all(
+    asked = (
         np.ascontiguousarray(rows), targets, HELD_LENGTH if length else HELD_ROTATION, np.arange(count + 1),
-        own["pressure"] / own["c10"], uniform(cells), accuracy, soon=True,
+        own["pressure"] / own["c10"],
     )  # fmt: skip
+    if thorough or config.DISABLE_JIT:
+        found = hold_batch.hold_all(*asked, uniform(cells), accuracy, soon=True)
+    else:
+        found = hold_batch._pending(count)
+        hold_batch._hold_lanes(*asked, cells, accuracy, found)
+        found.status[found.status == PENDING] = NOT_CONVERGED
     return found.values[:, None], found.bounds[:, None], found.status, np.zeros(count, np.int64), found.stable

@@ -1,4 +1,4 @@
-"""Every figure of the source with content of the model, by its number."""
+"""Every figure of the source with content of the model, by its number; and one beyond it, "found"."""
 
 from . import locked, muscles, rotating, sleeve, space, torque, varying
 
@@ -18,6 +18,7 @@ FIGURES = {
     "2-14": varying.figure_2_14,
     "2-15": varying.figure_2_15,
     "2-16": varying.figure_2_16,
+    "2-16-found": varying.figure_2_16_found,
     "2-17": varying.figure_2_17,
     "3-6": sleeve.figure_3_6,
     "3-7": sleeve.figure_3_7,

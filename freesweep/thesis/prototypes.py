@@ -23,6 +23,10 @@ RUBBER = MooneyRivlin(c10=0.17e6, c01=0.08e6)
 ROTATOR_RUBBER = MooneyRivlin(c10=0.1716e6, c01=0.08e6)
 TABLE_1 = MooneyRivlin(c10=0.11e6, c01=0.06e6)
 SWITCH = 0.125  # width of the rotator's change of angles, over its length: the profile is not printed
+FOUND = {
+    "alpha": (5.50777916, 15.364258698, 62.316682009, 82.950193561),
+    "beta": (-63.051602913, -56.877608903, -66.433401521, -54.015628784),
+}  # by the search for one that keeps its length
 SLEEVE_LENGTH, SLEEVE_EXTENSION = 0.640, 1.0075  # [m]
 SHELL_RADIUS, SHELL_HEIGHT = 42.8e-3, 99.2e-3  # [m]
 ENERGIES = ("principal", "full")
@@ -63,6 +67,15 @@ def rotator(profile="switch", energy="principal") -> Actuator:
     else:
         angles = {"alpha": list(zip((0.0, 1.0), alpha)), "beta": list(zip((0.0, 1.0), beta))}
     return source_tube(**angles, length=0.2, radius=RADIUS, wall=WALL, material=ROTATOR_RUBBER, energy=energy)
+
+
+@functools.cache
+def found_rotator() -> Actuator:
+    """The purely rotating actuator of the same length, section and rubber that `freesweep design
+    sweeps/wishes/pure-rotator.toml` finds in some minutes: angles [degree] at four places.
+    """
+    angles = {name: list(zip((0.0, 1 / 3, 2 / 3, 1.0), values)) for name, values in FOUND.items()}
+    return source_tube(**angles, length=0.2, radius=RADIUS, wall=WALL, material=ROTATOR_RUBBER)
 
 
 @functools.cache

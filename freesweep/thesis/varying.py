@@ -8,7 +8,7 @@ from ..plot.tubes import shape_plot, size_of
 from ..statics import inflate, lock
 from .drawing import Drawing, Numbers, key, line, panels
 from .locked import profile_rows, shapes
-from .prototypes import ENERGIES, rotator, two_walls
+from .prototypes import ENERGIES, found_rotator, rotator, two_walls
 from .rotating import ENERGY_LINES
 
 PRESSURE = 0.14e6  # [Pa]
@@ -82,6 +82,45 @@ def figure_2_16() -> Drawing:
         label_ends(ax, drawn[::2], ["angles switch\nhalf way", "angles change\nevenly"])
     key(figure, ENERGY_LINES)
     note = "The course of the angles between the ends is not printed; it decides the rotation."
+    return Drawing(figure, numbers, note)
+
+
+def figure_2_16_found() -> Drawing:
+    """A rotator that was searched for and keeps its length at every pressure, beside the source's switch of angles."""
+    figure, axes = panels(style.PAGE, 85.0, 1, 3)
+    numbers, share = Numbers(), np.linspace(0.0, 1.0, 201)
+    tubes = {"found": (found_rotator(), style.SERIES[1]), "switch": (rotator("switch", "full"), style.SERIES[0])}
+    with style.context():
+        for name, (tube, colour) in tubes.items():
+            state = inflate(tube, PRESSURES, x=0.0)
+            state["length_change"] = state["deformed_length"] - tube.length
+            state["length_change_error"] = state["deformed_length_error"]
+            numbers.add(pressure=PRESSURES, tube=name, **{
+                one: state[one].values for of in ("rotation", "length_change") for one in (of, f"{of}_error")
+            }, status=state["status"].values)  # fmt: skip
+            how = {"color": colour, "linewidth": style.THICK}
+            axes[0].plot(1e-3 * PRESSURES, state["rotation"].values, gid=f"{name} rotation", **how)
+            axes[1].plot(1e-3 * PRESSURES, 1e3 * state["length_change"].values, gid=f"{name} length_change", **how)
+            for family, angles, dashes in zip(("alpha", "beta"), tube.angles(share), ("-", "--")):
+                axes[2].plot(1e3 * tube.length * share, angles, linestyle=dashes, gid=f"{name} {family}", **how)
+        style.dress(axes[0], "pressure [kPa]", "rotation of the free end [degree]", "Rotation")
+        style.dress(axes[1], "pressure [kPa]", "change of length [mm]", "Length")
+        style.dress(
+            axes[2], "distance from the fixed end [mm]", "fiber angle [degree]", r"$\alpha$ (full), $\beta$ (dashed)"
+        )
+        for ax in axes:
+            ax.margins(x=0.0)
+    key(
+        figure,
+        [
+            ("found by freesweep design", {"color": style.SERIES[1]}),
+            ("the source's switch", {"color": style.SERIES[0]}),
+        ],
+    )
+    note = (
+        "Asked for: as much rotation as can be at 0.14 MPa with no more than 0.1 mm of length change on the way, for the"
+        " strain energy of the whole tensor; angles linear between four places, from sweeps/wishes/pure-rotator.toml."
+    )
     return Drawing(figure, numbers, note)
 
 

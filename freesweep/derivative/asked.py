@@ -1,0 +1,116 @@
+"""What is asked of one actuator, and how its states are differentiated: in vectors, or one by one."""
+
+import numpy as np
+
+from . import grid
+from .course import Course
+from .nested import solve
+from .physical import PhysicalTube
+from .physics import Physics
+from .request import SHAPE, measures, sizes
+from .rest import at_rest
+from .table import Held, rows_of
+from .vectors import differentiated
+
+SHARE = 0.01  # of the accuracy asked for: what a derivative's bound has to meet, scaled
+TURNS, SETTLED = 4, 1e-10  # of finding the load that holds, relative
+
+
+class Asked:
+    """What is asked of one actuator: names of ``parameters``; ``held`` and ``unknown``, what is held and the load that does
+    it; ``course``: ``(course, edges, places)`` of a tube that varies, with the ``error`` of its splines.
+    """
+
+    def __init__(
+        self, tube, parameters, accuracy, course=None, error=0.0, held=None, unknown=None, tied=False, whole=False
+    ):
+        self.tube, self.parameters, self.accuracy, self.error = tube, parameters, accuracy, error
+        self.held, self.unknown = held, unknown
+        self.course = None if course is None else Course(course[0], course[2])
+        self.half = self.course is None and not whole
+        places = [0.0, 0.5] if self.half else [0.0, 0.5, 1.0]
+        self.segments = np.array(places) if self.course is None else self.course.places
+        radii = tube.length / tube.fiber_surface
+        self.x = grid.first_places(self.segments[:1] if self.half else self.segments, radii, self.half)
+        own = [name for name in parameters if name != held]
+        self.seeds = own if unknown is None else [unknown, *own]
+        self.holding = None if unknown is None else Held(held, unknown, parameters, SHAPE, self.seeds, tied)
+        self.outputs = SHAPE if unknown is None else self.holding.outputs
+
+    @property
+    def is_physical(self):
+        """Whether the wall is thick or fibers are loose."""
+        return self.tube.is_thick or self.tube.is_loose
+
+    @property
+    def is_alike(self):
+        """Whether vectors can do it: a tube of the source's that is the same all along, solved by its half."""
+        return self.half and not self.is_physical
+
+    def stations(self):
+        """Where shapes to begin from have to be known [m]."""
+        return np.minimum(self.x * self.tube.length, self.tube.length)
+
+    def states(self, loads, target):
+        """Values and bounds (outputs, 1 + parameters, n) of n states in vectors: ``loads`` and what is held, (n,) each."""
+
+        def under(loads, seeds):
+            design = Physics(self.tube, None, loads, seeds).design
+            design["pressure"].value[...] = loads["pressure"]  # infinite, of a locked shape
+            natural = measures(self.tube, loads)
+            sizes = np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in seeds])
+            return differentiated(design, self.tube.energy, sizes, SHAPE, SHARE * self.accuracy)
+
+        if self.unknown is None:
+            return under(loads, self.seeds)
+        for _ in range(TURNS):
+            value, slope = self.holding.at(under(loads, self.seeds[:1])[0])
+            loads, before = loads | {self.unknown: loads[self.unknown] + (target - value) / slope}, loads[self.unknown]
+            if not np.any(np.abs(loads[self.unknown] - before) > SETTLED * np.abs(before)):
+                break
+        return self.holding.table(loads[self.unknown], *under(loads, self.seeds))
+
+    def state(self, loads, target, y):
+        """Values and bounds (outputs, 1 + parameters) of one state whose stretches at :meth:`stations` are ``y``."""
+        for _ in range(TURNS):
+            found = self._under(loads, y)
+            if self.unknown is None:
+                return found
+            value, slope = self.holding.at(found.values)
+            change, load = (target - value) / slope, loads[self.unknown]
+            if not abs(change) > SETTLED * abs(load):
+                break
+            loads = loads | {self.unknown: load + change}
+        table = self.holding.table(np.array([load]), *(array[..., None] for array in found))
+        return tuple(array[..., 0] for array in table)
+
+    def _physics(self, loads, seeds):
+        kind = PhysicalTube if self.is_physical else Physics
+        return kind(self.tube, self.course, loads, seeds)
+
+    def _under(self, loads, y):
+        """As :meth:`state`, with nothing held."""
+        count = len(self.seeds)
+
+        def finish(made, physics):
+            rows = np.moveaxis(rows_of(made, SHAPE, count), -1, 0)
+            units = sizes(self.tube, loads, SHAPE, self.seeds, rows[-1, :, 0])
+            return rows, np.maximum(np.abs(rows[-1]), units)
+
+        known, wanted = self._physics(loads, ()), self._physics(loads, self.seeds)
+        return solve(known, wanted, self.x, y, self.half, self.segments, finish, SHARE * self.accuracy)
+
+    def at_rest(self, loads):
+        """As :meth:`state`, of the undeformed tube, with bounds of 0."""
+        wanted = self._physics(loads, self.seeds)
+        made = at_rest(wanted, 0.5 * (self.x[1:] + self.x[:-1]), np.diff(self.x), self.half)
+        rows = rows_of(made, SHAPE, len(self.seeds))
+        found = rows, 0.0 * rows
+        if self.unknown is not None:
+            found = self.holding.table(np.array([loads[self.unknown]]), *found)
+        return tuple(array[..., 0] for array in found)
+
+    def units(self, loads):
+        """What outputs are measured by, under loads (n,): (outputs, n)."""
+        natural = measures(self.tube, loads)
+        return np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in self.outputs])

@@ -1,0 +1,47 @@
+"""Derivatives of many states of the source's tubes that are the same all along, in compiled vectors of states."""
+
+import numpy as np
+
+from ..scaling import OUTPUTS, output_scales, problem_columns
+from ..solver.problem import FORCE, PROBLEM_SIZE, TORQUE
+from .dual import Dual
+from .physics import OWN, outputs_of
+from .table import rows_of
+
+
+def differentiated(design, energy, sizes, names, accuracy):
+    """Rows and bounds (outputs ``names``, 1 + seeds, n) of n free states, NaN where vectors have no answer.
+
+    ``design``: name -> dual number, or array, of design and loads in SI units and degrees; the locked shape's pressure is
+    infinite. ``sizes`` (seeds, n or 1): what each seed is measured by.
+    """
+    from ..solver.slopes import differentiate
+
+    design = {name: number if isinstance(number, Dual) else Dual(np.asarray(number)) for name, number in design.items()}
+    seeds, sizes = len(sizes), np.concatenate([np.ones_like(sizes[:1]), sizes]) if len(sizes) else np.ones((1, 1))
+    n = max(np.size(number.value) for number in design.values())
+    locked = np.broadcast_to(np.isinf(design["pressure"].value), n)
+    design["pressure"] = Dual(np.where(locked, 0.0, design["pressure"].value), design["pressure"].parts)
+    columns = (*problem_columns(design, energy), design["pressure"] / design["c10"])
+    problems, changes = np.zeros((n, len(columns))), np.zeros((n, seeds, len(columns)))
+    for k, column in enumerate(columns):
+        if not isinstance(column, Dual):
+            problems[:, k] = column
+            continue
+        problems[:, k] = column.value
+        if column.parts is not None:
+            changes[..., k] = (column.parts[OWN:] * sizes[1:]).T
+    for k in (FORCE, TORQUE, PROBLEM_SIZE):
+        problems[locked, k], changes[locked, :, k] = 0.0, 0.0
+    pressures = np.where(locked, np.inf, problems[:, PROBLEM_SIZE])
+    problems = np.ascontiguousarray(problems[:, :PROBLEM_SIZE])
+    values, bounds = differentiate(problems, pressures, changes, accuracy)  # (n, 1 + seeds, 5)
+    none = np.zeros((OWN, n))
+    values, bounds = (np.moveaxis(array, (2, 1), (0, 1)) / sizes for array in (values, bounds))  # (5, 1 + seeds, n)
+    numbers = [Dual(own[0], np.concatenate([none, own[1:]])) for own in values]
+    made = outputs_of(design, numbers)
+    scales = rows_of(output_scales(design), names, seeds)  # (outputs, 1 + seeds, 1 or n)
+    doubts = bounds[[OUTPUTS.index(name) for name in names]]
+    found = np.abs(scales[:, :1]) * doubts
+    found[:, 1:] += np.abs(scales[:, 1:]) * doubts[:, :1]
+    return rows_of(made, names, seeds), found

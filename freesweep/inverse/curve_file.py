@@ -1,0 +1,34 @@
+"""Curves that are wished for, from CSV files: columns and units as :func:`freesweep.read_measurements` reads them."""
+
+import os
+from pathlib import Path
+
+from ..calibration.csv_file import SIGMA, _read
+from ..faults import ActuatorError
+
+
+def is_path(value) -> bool:
+    """Whether a wished-for value is the path of a CSV file."""
+    return isinstance(value, Path) or (isinstance(value, str) and value.lower().endswith(".csv"))
+
+
+def columns_of(path, output, conditions, faults, where):
+    """``(values, name -> condition, sigma)`` of a curve, arrays (points,); sigma None where the file has none."""
+    try:
+        columns = _read(Path(os.fspath(path)))
+    except (OSError, ActuatorError) as error:
+        words = getattr(error, "faults", None) or [f"{path}: {getattr(error, 'strerror', error)}"]
+        faults += [f"{where}: {word if str(path) in word else f'{Path(path).name}: {word}'}" for word in words]
+        return None
+    if output not in columns:
+        faults.append(f"{where}: {Path(path).name}: no column {output!r}; found {', '.join(columns)}")
+        return None
+    sigma = columns.pop(f"{output}{SIGMA}", None)
+    values = columns.pop(output)
+    unknown = [name for name in columns if name not in conditions]
+    if unknown:
+        faults.append(
+            f"{where}: {Path(path).name}: column {unknown[0]!r} is no state of {output}; those are {', '.join(conditions)}"
+        )
+        return None
+    return values, columns, sigma

@@ -1,0 +1,104 @@
+"""Exact derivatives of what is wished for, along what is free: of the source's tubes that are the same all along."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from ..derivative.dual import Dual
+from ..derivative.physics import OWN
+from ..derivative.request import SHAPE
+from ..derivative.table import rows_of
+from ..derivative.vectors import differentiated
+from .freedom import LOADS
+from .outputs import FOLLOWING, derived
+from .predict import state_of
+from .wishes import HELD
+
+ACCURACY = 1e-6  # of the slopes, in the unit box
+SAME = 1e-5  # relative: by how much a value may differ from the one that was predicted
+
+
+def exact_slopes(space, wishes, u, choice, values):
+    """Derivatives (n, wishes, p) of the ``values`` (n, wishes) along points u (n, p), NaN where there are none here: no
+    state, a limit pressure, a tube that varies, or one of which vectors find no derivative, or another state.
+    """
+    count, free = u.shape
+    slopes = np.full((count, len(wishes), free), np.nan)
+    if not space.is_alike or count == 0 or free == 0:
+        return slopes
+    parts = np.zeros((free, OWN + free + 1, 1))  # along each that is free, and a load that holds something
+    parts[np.arange(free), OWN + np.arange(free), 0] = space.high - space.low
+    columns = space.columns(u, choice, [Dual(value, part) for value, part in zip(space.values(u).T, parts)])
+    columns = {name: number if isinstance(number, Dual) else Dual(number) for name, number in columns.items()}
+    states = {}
+    for k, wish in enumerate(wishes):
+        if wish.kind == "design":
+            slopes[:, k] = rows_of(columns, [wish.output], free + 1)[0, 1:-1].T
+        elif wish.output in (*SHAPE, *FOLLOWING, *HELD) and wish.kind != "limit":
+            states.setdefault(state_of(wish), []).append(k)
+    jobs = [(state, own, some) for state, own in states.items() for some in _shares(values[:, own])]
+
+    def solve(job):
+        state, own, some = job
+        return _state(space, state, [wishes[k].output for k in own], columns, values[np.ix_(some, own)], some, free)
+
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        for (_, own, some), found in zip(jobs, pool.map(solve, jobs)):
+            slopes[np.ix_(some, own)] = found
+    return slopes
+
+
+def _shares(values):
+    """Rows that have all values, a share for each thread."""
+    rows = np.flatnonzero(np.all(np.isfinite(values), axis=1))
+    return [some for some in np.array_split(rows, os.cpu_count() or 1) if len(some)]
+
+
+def _state(space, state, outputs, columns, values, some, free):
+    """Derivatives (n, outputs, free) in one state of designs ``some`` of the ``columns``."""
+    given = dict(state.conditions)
+    design = {name: number.take(some) for name, number in columns.items()}
+    held = HELD[state.kind][0] if state.kind in HELD else None
+    design |= {name: Dual(np.array([given[name]])) for name in LOADS if name in given}
+    if state.kind == "locked":
+        design["pressure"] = Dual(np.array([np.inf]))
+    if held is not None:
+        load = np.zeros((OWN + free + 1, 1))
+        load[-1] = 1.0
+        design[state.kind] = Dual(values[:, 0], load)
+    rows, _ = differentiated(design, space.template.energy, _sizes(design, state, len(some), free), SHAPE, ACCURACY)
+    if held is not None:
+        target = (
+            Dual(np.array([given[held]])) if held in given else design["length"] if held == "deformed_length" else None
+        )
+        moved = np.zeros((free, 1)) if target is None or target.parts is None else target.parts[OWN:-1]
+        wanted = 0.0 if target is None else target.value
+        own = rows[SHAPE.index(held)]
+        same = np.abs(own[0] - wanted) <= SAME * np.maximum(np.abs(wanted), _least(held, design))
+        found = np.where(same, (moved - own[1:-1]) / own[-1], np.nan)
+        return np.repeat(found.T[:, None], len(outputs), axis=1)
+    none = np.zeros((OWN, len(some)))
+    made = {name: Dual(row[0], np.concatenate([none, row[1:]])) for name, row in zip(SHAPE, rows)}
+    found = np.array([rows_of({"one": derived(name, made, design)}, ["one"], free + 1)[0, :-1] for name in outputs])
+    same = np.abs(found[:, 0] - values.T) <= SAME * np.maximum(
+        np.abs(values.T), [_least(name, design) for name in outputs]
+    )
+    return np.moveaxis(np.where(same[:, None], found[:, 1:], np.nan), -1, 0)
+
+
+def _sizes(design, state, count, free):
+    """What each direction is measured by: the unit box, and the natural size of a load that holds."""
+    sizes = np.ones((free + 1, count))
+    if state.kind in HELD:
+        power = 2 if state.kind == "force" else 3
+        sizes[-1] = np.pi * design["fiber_radius"].value ** power * design["c10"].value
+    return sizes
+
+
+def _least(name, design):
+    """By what the difference of an output is measured where it is near 0, (n,)."""
+    size = {"deformed_length": "length", "length_change": "length", "mid_radius": "radius", "outer_radius": "radius"}
+    if name in size:
+        return design[size[name]].value + 0.0 * design["alpha"].value
+    return np.full_like(design["alpha"].value + 0.0 * design["length"].value, 1.0 if name == "rotation" else 1e-2)

@@ -1,0 +1,124 @@
+"""What was found, in sentences: whether it can be done, what stands against it, and what that costs."""
+
+import numpy as np
+
+from ..atlas.schema import PARAMETERS
+from .wishes import UNITS
+
+FIGHT = -0.3  # cosine of two gradients: goals that pull against each other
+NOTHING = 1e-6  # tolerances that a goal changes over all that is free, or a share of what is minimized: it is not moved
+SHARE = 0.1  # of a range or a level: what is offered to be given up
+
+
+def sentence(misfit, result, u, slopes) -> str:
+    """How many candidates do it; if none: what the nearest one misses, and which goals fight."""
+    count = int(np.sum(result["met"].values))
+    if count:
+        return f"{count} of {len(u)} candidates meet every goal and keep every limit"
+    missed = np.abs(result["goal_missed"].values[0])
+    worst = int(np.argmax(np.nan_to_num(missed, nan=np.inf)))
+    wish, value = misfit.wishes[worst], result["goal_value"].values[0, worst]
+    wanted = _range(wish)
+    unit = unit_of(wish.output)
+    said = (
+        f"no design that is allowed does it; the nearest one has {wish.title} of {value:.6g} {unit} instead of {wanted}"
+    )
+    if not np.any(missed > 1.0):
+        broken = [str(name) for name, kept in zip(result["limit"].values, result["limit_kept"].values[0]) if not kept]
+        return f"no design that is allowed meets the goals and keeps the limits: {', '.join(broken)}"
+    if np.all(np.abs(slopes[0][worst]) < NOTHING * max(missed[worst], 1.0)):
+        return f"{said}: nothing that is free changes it"
+    pulls = slopes[0] * result_signs(misfit, result)[:, None]
+    for other in np.argsort(-missed):
+        a, b = pulls[worst], pulls[other]
+        size = np.linalg.norm(a) * np.linalg.norm(b)
+        if other != worst and missed[other] > 0.0 and size > 0.0 and a @ b < FIGHT * size:
+            return f"{said}: it fights with {misfit.wishes[other].title}"
+    held = [f"{name} at {end:g} {unit_of(name)}" for name, end, _ in _stopping(misfit, u[0], pulls[worst])]
+    if not held:
+        return said
+    return f"{said}: the bounds {', '.join(held)} stop it{_bought(misfit, u[0], pulls[worst], slopes[0][worst], worst)}"
+
+
+def _stopping(misfit, u, pulls):
+    """(name, its bound, its place) of what is free and at the bound at which it misses least."""
+    space = misfit.space
+    for i, (name, at) in enumerate(zip(space.names, u)):
+        if at <= 0.0 and pulls[i] > 0.0:
+            yield name, space.low[i], i
+        elif at >= 1.0 and pulls[i] < 0.0:
+            yield name, space.high[i], i
+
+
+def _bought(misfit, u, pulls, slopes, worst):
+    """What the bound that stops a goal most would buy if it were moved."""
+    space, wish = misfit.space, misfit.wishes[worst]
+    name, _, i = max(_stopping(misfit, u, pulls), key=lambda one: abs(pulls[one[2]]))
+    amount = round_amount(SHARE * (space.high[i] - space.low[i]))
+    won = abs(slopes[i]) * misfit.tolerances[worst] * amount / (space.high[i] - space.low[i])
+    more = "more" if u[i] >= 1.0 else "less"
+    return f"; {amount:g} {unit_of(name)} {more} of {name} would buy {won:.3g} {unit_of(wish.output)}"
+
+
+def prices(result, wishes, names) -> str:
+    """What holds the best candidate's minimized number, dearest first, in one sentence; "" if nothing does.
+
+    ``wishes``: goals, limits and what is minimized; ``names`` of what is free.
+    """
+    objective, found = wishes[-1], []
+    held = [(wish.title, wish.output, _level(wish)) for wish in wishes[:-1]]
+    costs = [result[f"{group}_price"].values[0] for group in ("goal", "limit") if f"{group}_price" in result]
+    for (title, output, level), price in zip(held, np.concatenate(costs)):
+        amount = round_amount(SHARE * level)
+        found.append(
+            (abs(price) * amount, f"{amount:g} {unit_of(output)} {'less' if price > 0 else 'more'} of {title}")
+        )
+    for name, price, end in zip(names, result["bound_price"].values[0], _ends(result, names)):
+        if name == objective.output:
+            continue  # that goes without saying
+        amount = round_amount(SHARE * abs(end))
+        found.append((abs(price) * amount, f"{amount:g} {unit_of(name)} {'less' if price > 0 else 'more'} of {name}"))
+    unit, least = unit_of(objective.output), NOTHING * abs(result["objective"].values[0, 0])
+    words = [f"{what} would save {won:.2g} {unit}" for won, what in sorted(found, reverse=True) if won > least]
+    return f"least {objective.title}: {'; '.join(words)}" if words else ""
+
+
+def _level(wish):
+    """By what a wish's range is measured."""
+    return max((abs(end) for end in (wish.low, wish.high) if np.isfinite(end)), default=0.0) or 1.0
+
+
+def _ends(result, names):
+    """What is free of the best candidate, as numbers."""
+    for name in names:
+        own, _, knot = name.partition("[")
+        values = result[own].values[0]
+        yield float(values[int(knot[:-1])] if knot else values)
+
+
+def round_amount(size):
+    """A round number of about a size: its first digit."""
+    return float(f"{size:.0e}") if size > 0.0 else 1.0
+
+
+def unit_of(name) -> str:
+    """Unit of an output or a parameter; of a profile's knot, too."""
+    return UNITS.get(name) or PARAMETERS[name.partition("[")[0]].units
+
+
+def result_signs(misfit, result):
+    """The sense in which each wish is missed (w,): 1 where the value is too large."""
+    signs = np.zeros(len(misfit.wishes))
+    signs[: misfit.goals] = np.sign(np.nan_to_num(result["goal_missed"].values[0]))
+    return signs
+
+
+def _range(wish):
+    unit = unit_of(wish.output)
+    if wish.low == wish.high:
+        return f"{wish.low:g} {unit}"
+    if np.isinf(wish.high):
+        return f"at least {wish.low:g} {unit}"
+    if np.isinf(wish.low):
+        return f"at most {wish.high:g} {unit}"
+    return f"{wish.low:g} to {wish.high:g} {unit}"

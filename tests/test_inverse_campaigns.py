@@ -1,0 +1,155 @@
+"""Inverse design of many random wishes that have an answer: hidden tubes, measured curves, limits. A few here, many in
+`-m long`.
+"""
+
+import time
+import warnings
+
+import numpy as np
+import pytest
+
+import freesweep as fs
+
+RUBBER = fs.MooneyRivlin(1.2e5, 6e4)
+RANGES = {
+    "alpha": (0, 85), "beta": (-85, 85), "radius": (3e-3, 12e-3), "length": (0.05, 0.3), "wall": (3e-4, 2e-3),
+    "pressure": (2e4, 3e5),
+}  # fmt: skip
+OUTPUTS = ("rotation", "deformed_length", "mid_radius", "volume", "force")
+
+
+def tube(values):
+    design = {name: values[name] for name in RANGES if name != "pressure"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of thick walls
+        return fs.Actuator(**design, material=RUBBER, model="source")
+
+
+def does(made, output, pressure, *held):
+    """An output of a tube, NaN where it has no state."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        way = fs.blocked_force if output == "force" else fs.inflate
+        return way(made, pressure, *held, x=0.0)[output].values
+
+
+def designed(*given, **named):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return fs.design(*given, **named)
+
+
+def hidden(rng):
+    """``(template, free, goals, the tube itself)`` of a random tube that nobody knows, with two or three goals and two to
+    four free parameters.
+    """
+    while True:
+        values = {name: rng.uniform(*RANGES[name]) for name in RANGES}
+        free = list(rng.choice(list(RANGES), rng.integers(2, 5), replace=False))
+        pressures = rng.uniform(*RANGES["pressure"], 3)
+        outputs = rng.choice(OUTPUTS, min(rng.integers(2, 4), len(free)))
+        if abs(values["alpha"] - values["beta"]) < 3.0:
+            continue
+        goals = []
+        for k, (output, pressure) in enumerate(zip(outputs, pressures)):
+            at_free = k == 0 and "pressure" in free
+            value = float(does(tube(values), output, values["pressure"] if at_free else pressure))
+            if not np.isfinite(value) or (output == "rotation" and abs(value) < 1.0):
+                break
+            goals.append(fs.Goal(str(output), value, pressure=None if at_free else pressure))
+        else:
+            start = {name: np.mean(RANGES[name]) if name in free else values[name] for name in RANGES}
+            start["beta"] -= 5.0 if abs(start["alpha"] - start["beta"]) < 1.0 else 0.0
+            return tube(start), {str(name): RANGES[name] for name in free}, goals, tube(values)
+
+
+def found_again(count, seed):
+    """Which of so many hidden tubes were met, and the time [s] that each took."""
+    rng, met, times = np.random.default_rng(seed), [], []
+    for _ in range(count):
+        template, free, goals, _ = hidden(rng)
+        begun = time.perf_counter()
+        met.append(bool(designed(template, free, goals)["met"].values[0]))
+        times.append(time.perf_counter() - begun)
+    return np.array(met), np.array(times)
+
+
+def test_hidden_tubes_are_found_again():
+    met, _ = found_again(3, seed=11)
+    assert np.all(met)
+
+
+@pytest.mark.long
+def test_nearly_all_hidden_tubes_are_found_again():
+    met, times = found_again(200, seed=1)
+    assert np.count_nonzero(met) >= 195
+    assert np.median(times) < 3.0  # on two cores, warm
+    assert np.max(times) < 10.0
+
+
+def noisy_curve(rng):
+    """``(exact forces, noise, what is found)`` of force-stroke data of a hidden muscle with 2 % noise."""
+    values = {"alpha": rng.uniform(15, 45), "radius": rng.uniform(4e-3, 1e-2), "length": 0.15, "wall": 1e-3}
+    values["beta"] = -values["alpha"]
+    secret, pressure = tube(values), rng.uniform(5e4, 2e5)
+    lengths = np.linspace(0.85, 1.0, 8) * 0.15
+    exact = does(secret, "force", pressure, lengths)
+    if np.any(np.isnan(exact)):
+        return noisy_curve(rng)
+    noise = 0.02 * np.max(np.abs(exact))
+    measured = exact + noise * rng.standard_normal(len(exact))
+    goal = fs.Goal("force", measured, pressure=pressure, deformed_length=lengths, tolerance=noise)
+    free = {"alpha": (5, 60), "beta": "-alpha", "radius": (3e-3, 12e-3)}
+    return exact, noise, designed(tube(values | {"alpha": 30.0, "beta": -30.0, "radius": 5e-3}), free, goal, count=1)
+
+
+def within_noise(count, seed):
+    """How many of so many noisy curves are told within their noise."""
+    rng = np.random.default_rng(seed)
+    curves = [noisy_curve(rng) for _ in range(count)]
+    return sum(bool(np.max(np.abs(found["goal_value"].values[0] - exact)) <= noise) for exact, noise, found in curves)
+
+
+def test_noisy_curves_are_told_within_their_noise():
+    assert within_noise(3, seed=2) == 3
+
+
+@pytest.mark.long
+def test_nearly_all_noisy_curves_are_told_within_their_noise():
+    assert within_noise(60, seed=3) >= 57
+
+
+def broken_limits(count, seed):
+    """By how many bounds of their error limits are broken at most, by candidates that are said to keep them; and how many
+    candidates there are.
+    """
+    rng, worst, kept = np.random.default_rng(seed), 0.0, 0
+    for _ in range(count):
+        template, free, goals, secret = hidden(rng)
+        pressure = rng.uniform(*RANGES["pressure"])
+        radius, length = (float(does(secret, output, pressure)) for output in ("mid_radius", "deformed_length"))
+        if np.isnan(radius):
+            continue
+        limits = [
+            fs.Limit("mid_radius", at_most=radius * rng.uniform(1.0, 1.05), pressure=pressure),
+            fs.Limit("deformed_length", at_least=length * rng.uniform(0.9, 1.0), pressure=pressure),
+        ]
+        found = designed(template, free, goals, limits, count=4)
+        own = found.isel(candidate=found["met"].values)
+        beyond = np.maximum(own["limit_value"] - own["limit_high"], own["limit_low"] - own["limit_value"])
+        worst = max(worst, float((beyond / (own["limit_error"] + 1e-300)).max()) if own.sizes["candidate"] else 0.0)
+        kept += own.sizes["candidate"]
+    return worst, kept
+
+
+def test_limits_are_kept():
+    worst, kept = broken_limits(2, seed=4)
+    assert worst <= 1.0
+    assert kept > 0
+
+
+@pytest.mark.long
+def test_limits_are_never_broken_by_more_than_their_bounds():
+    worst, kept = broken_limits(50, seed=5)
+    assert worst <= 1.0
+    assert kept > 50
