@@ -103,3 +103,13 @@ def _branch(along):
 def _interpolated(at, places, table):
     order = np.argsort(places, kind="stable")
     return np.column_stack([np.interp(at, places[order], column[order]) for column in table.T])
+
+
+def hysteresis_of(measurements) -> dict:
+    """Half of what parts the branches of loops, root mean square, by quantity."""
+    found = {}
+    for measurement in measurements:
+        for name, half in measurement.half_width.items():
+            found.setdefault(name, []).append(half[np.isfinite(half)])
+    joined = {name: np.concatenate(parts) for name, parts in found.items()}
+    return {name: float(np.sqrt(np.mean(array**2))) for name, array in joined.items() if len(array)}
