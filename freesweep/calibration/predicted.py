@@ -9,7 +9,7 @@ from ..holding import blocked_force, blocked_torque
 from ..statics import inflate
 from .measured import BENCHES, Measurement
 from .parameters import Setup
-from .states import Forces, free_states, held_torques, model_of, points_of
+from .states import Forces, free_states, held_torques, model_of, points_of, rough_states
 
 ACCURACY = 1e-8  # of the scalar solver, scaled
 
@@ -29,10 +29,14 @@ class Predictor:
         self.measurements = measurements
         starts = np.concatenate([[0], np.cumsum([len(m) for m in measurements])])
         self.rows = [np.arange(a, b) for a, b in itertools.pairwise(starts)]
-        self.forces = Forces(starts[-1])
+        forces = [m.force if "force" in m.measured else np.zeros(len(m)) for m in measurements]
+        self.forces = Forces(np.concatenate(forces))
 
-    def predict(self, many) -> list:
-        """For each list of setups in ``many``: the model's (n, measured) of each measurement, NaN where it has no state."""
+    def predict(self, many, rough=False) -> list:
+        """For each list of setups in ``many``: the model's (n, measured) of each measurement, NaN where it has no state.
+
+        ``rough``: uniform membranes stand for physical tubes.
+        """
         asked = [[self._asked(m, setup) for m, setup in zip(self.measurements, setups)] for setups in many]
         found = [[np.full((len(m), len(m.measured)), np.nan) for m in self.measurements] for _ in many]
         groups = {}
@@ -44,7 +48,7 @@ class Predictor:
                 else:
                     groups.setdefault(key, []).append((t, k))
         for key, members in groups.items():
-            self._solve_group(key, members, asked, found)
+            self._solve_group(key, members, asked, found, rough)
         for t, states in enumerate(asked):
             for k, state in enumerate(states):
                 _as_read(self.measurements[k], state.setup, found[t][k])
@@ -77,10 +81,12 @@ class Predictor:
             return None
         return load or "free", tube.energy, model_of(tube), () if load else measured
 
-    def _solve_group(self, key, members, asked, found):
+    def _solve_group(self, key, members, asked, found, rough):
         kind, energy, model, names = key
         points = np.concatenate([_points(self.measurements[k], asked[t][k]) for t, k in members])
-        if kind == "free":
+        if rough and model.is_physical:
+            values = rough_states(kind, points, names)
+        elif kind == "free":
             values = free_states(points, energy, model, names)
         elif kind == "torque":
             values = held_torques(points, energy, model)[:, None]

@@ -30,7 +30,7 @@ class Problem:
         self.slack = _flat(measurements, lambda m, name: m.slack & (name == "force")).astype(bool)
         self.sigma = _flat(measurements, lambda m, name: m.sigma.get(name, np.full(len(m), np.nan)))
 
-    def models(self, thetas):
+    def models(self, thetas, rough=False):
         """What the model says (t, values), continued over its gaps, and where it has states (t, values), of each theta."""
         filled = np.full((len(thetas), len(self.measured)), np.nan)
         there = np.zeros(filled.shape, bool)
@@ -41,7 +41,7 @@ class Problem:
                 rows.append(k)
             except ActuatorError:  # fibers that cannot meet the clamped ends
                 continue
-        for k, setups, found in zip(rows, many, self.predictor.predict(many)):
+        for k, setups, found in zip(rows, many, self.predictor.predict(many, rough)):
             full = [continued(m, setup, array) for m, setup, array in zip(self.measurements, setups, found)]
             filled[k] = np.concatenate([array.ravel() for array in full])
             there[k] = np.isfinite(np.concatenate([array.ravel() for array in found]))
@@ -142,7 +142,7 @@ class Problem:
             if extensions.any():
                 trials += [np.where(extensions, e, scaled) for e in SCAN_EXTENSION]
         trials = [np.clip(trial, self.low, self.high) for trial in trials]
-        models = self.models(trials)
+        models = self.models(trials, rough=True)
         misfits = [np.sum((self.residuals(*found) / sigma) ** 2) for found in zip(*models)]
         misfits = np.where(np.isfinite(misfits), misfits, np.inf)
         if not np.isfinite(misfits).any():

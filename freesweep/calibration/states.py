@@ -6,15 +6,19 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from ..query import reference
-from ..query.exact import solve
+from ..query.exact import CELLS, solve
 from ..query.reference import COLUMNS, FIBERS, FORCE, HELD, LENGTH, LENGTH_HELD, LOADED, PRESSURE, ROTATION_HELD
+from ..scaling import problem_rows
+from ..status import VALUED
 from ..tube_model import TubeModel
 
 ACCURACY = {False: 1e-8, True: 1e-7}  # of the solver, scaled; of physical tubes
 SPLIT = 48  # states that are worth a thread
 FAR = 44.0  # fiber radii: from here on the ends of a tube do not feel each other
-FORCES = np.linspace(0.0, 1.0, 10) ** 1.5  # shares of a range of forces, denser where the muscle is nearly free
-TURNS = 6  # of secants
+NEAR = 1e-3  # of the length: a difference that tells a slope
+LOWEST = -0.3  # of pressure times section: a push from which a search begins, at most
+PUSH = -0.02  # of pressure times section: what was measured below it is a push
+TURNS = 8  # of secants
 SETTLED = 1e-8  # of the length
 
 
@@ -47,9 +51,13 @@ class Forces:
 
     A short tube, whose ends feel each other, would often be left to the scalar kernels. Its length is told from two long
     ones, ``l = lambda L + e``, and ``correction`` (n,), what that misses of the length, is found now and then (``refresh``).
+    Where a bench did not measure a push, a push is told from the slope at no force: near where walls would have to be
+    pushed, such states are dear, and nobody asks for them.
     """
 
-    def __init__(self, count):
+    def __init__(self, measured):
+        self.measured = measured
+        count = len(measured)
         self.correction = np.zeros(count)  # [m]
         self.force = np.full(count, np.nan)
         self.slope = np.full(count, np.nan)  # [m/N]
@@ -71,17 +79,21 @@ class Forces:
     def _sought(self, points, energy, model, own):
         target = points[:, HELD] * points[:, LENGTH] - self.correction[own]
         force, slope = self.force[own].copy(), self.slope[own].copy()
-        force, slope, done = _secants(points, energy, model, target, force, slope)
+        thrust = np.pi * points[:, FIBERS] ** 2 * points[:, PRESSURE]
+        floor = np.where(self.measured[own] < PUSH * thrust, -thrust, 0.0)
+        force, slope, done = _secants(points, energy, model, target, force, slope, floor)
         if not done.all():
             anew = np.flatnonzero(~done)
-            first = _first_forces(points[anew], energy, model, target[anew])
-            force[anew], slope[anew], done[anew] = _secants(points[anew], energy, model, target[anew], *first)
+            first = _first_forces(points[anew], target[anew])
+            found = _secants(points[anew], energy, model, target[anew], *first, floor[anew])
+            force[anew], slope[anew], done[anew] = found
         self.force[own[done]], self.slope[own[done]] = force[done], slope[done]
         return np.where(done, force, np.nan)
 
     def refresh(self, points, energy, model, own):
         """Correct lengths of short tubes by exact solutions at the forces found; the largest change that makes [N]."""
         short = (points[:, LENGTH] < FAR * points[:, FIBERS]) & np.isfinite(self.force[own])
+        short &= (self.force[own] >= 0.0) | (self.measured[own] < 0.0)
         if not (model.is_physical and short.any()):
             return 0.0
         points, own = points[short].copy(), own[short]
@@ -99,65 +111,82 @@ def _lengths(points, energy, model):
     short = np.flatnonzero(points[:, LENGTH] < far)
     both = np.concatenate([points, points[short]])
     both[:, LENGTH] = np.concatenate([far, 2.0 * far[short]])
-    found = _shared(LOADED, both, energy, model)["deformed_length"]
+    found = _by_vectors(both, energy, model)
     one, two = found[: len(points)], found[len(points) :]
     stretch = (two - one[short]) / far[short]
     one[short] += stretch * (points[short, LENGTH] - far[short])
     return one
 
 
-def _first_forces(points, energy, model, target):
-    """Forces and slopes to begin with, from lengths at forces over the whole range."""
-    thrust = np.pi * points[:, FIBERS] ** 2 * points[:, PRESSURE]
-    ta, tb = (np.tan(np.radians(points[:, COLUMNS.index(name)])) for name in ("alpha", "beta"))
-    with np.errstate(divide="ignore"):
-        blocked = -thrust * (1.0 + 2.0 / (ta * tb))
-    wall = np.pi * ((points[:, reference.RADIUS] + points[:, reference.WALL]) ** 2 - points[:, reference.RADIUS] ** 2)
-    rubber = 6.0 * (points[:, reference.C10] + points[:, reference.C01]) * wall
-    stretched = np.maximum(points[:, HELD] - 0.95, 0.05)
-    top = np.maximum(np.where(np.isfinite(blocked), blocked, 20.0 * thrust), 0.0) * 1.1 + 4.0 * rubber * stretched
-    low = -0.7 * thrust
-    tried = low[:, None] + (top - low)[:, None] * FORCES
-    grid = np.repeat(points, len(FORCES), axis=0)
-    grid[:, FORCE] = tried.ravel()
-    lengths = _lengths(grid, energy, model).reshape(tried.shape)
-    force, slope = np.full(len(points), np.nan), np.full(len(points), np.nan)
-    for i, (own, found) in enumerate(zip(tried, lengths)):
-        there = np.flatnonzero(np.isfinite(found))
-        if len(there) < 2:
-            continue
-        at = np.clip(np.searchsorted(found[there], target[i]), 1, len(there) - 1)
-        a, b = there[at - 1], there[at]
-        if found[b] > found[a] and (target[i] >= found[a] or a == 0 or not np.isfinite(found[a - 1])):
-            slope[i] = (found[b] - found[a]) / (own[b] - own[a])
-            force[i] = own[a] + (target[i] - found[a]) / slope[i]
-    return force, slope
+def _by_vectors(points, energy, model):
+    """Deformed lengths (n,) of free states as vectors have them; NaN where there is none, and where they leave it open."""
+    from ..solver import batch
+
+    design = dict(zip(COLUMNS, points.T))
+    rows = problem_rows(design, energy, model.is_thick, model.is_loose)
+    first, count = np.arange(len(points) + 1), len(points)
+    found = batch._nothing(count, count, batch.NOTHING)
+    pressures, _ = batch.next_to_nothing(rows, first, points[:, PRESSURE] / points[:, reference.C10])
+    batch._walk_lanes(rows, first, pressures, CELLS, ACCURACY[True], batch.NOTHING, found)
+    there = np.isin(found.status, VALUED)
+    return np.where(there, 2.0 * points[:, FIBERS] * found.values[:, 0], np.nan)
 
 
-def _secants(points, energy, model, target, force, slope):
+def rough_states(kind, points, names):
+    """The same of uniform membranes (n, names), for a first look at physical tubes far from what is measured."""
+    own = {"free": LOADED, "force": LENGTH_HELD, "torque": ROTATION_HELD}[kind]
+    u = np.full((len(points), reference.UNIFORM), np.nan)
+    reference.uniform_states(own, np.ascontiguousarray(points), 1.0, u)
+    r, length = points[:, FIBERS], points[:, LENGTH]
+    scale = np.pi * points[:, reference.C10]
+    with np.errstate(invalid="ignore"):
+        found = {
+            "deformed_length": length * u[:, 4], "rotation": np.degrees(length / r * u[:, 5]),
+            "mid_radius": r * np.sqrt(u[:, 3]), "force": u[:, 7] * scale * r**2, "torque": u[:, 7] * scale * r**3,
+        }  # fmt: skip
+    return np.column_stack([found[name] for name in names or (kind,)])
+
+
+def _first_forces(points, target):
+    """Forces and slopes of the uniform membrane, to begin with: what the ends and the wall change is left to secants."""
+    found = []
+    for ratio in (target / points[:, LENGTH], target / points[:, LENGTH] + NEAR):
+        held, out = points.copy(), np.full((len(points), reference.UNIFORM), np.nan)
+        held[:, HELD] = ratio
+        reference.uniform_states(LENGTH_HELD, held, 1.0, out)
+        found.append(out[:, 7] * np.pi * points[:, FIBERS] ** 2 * points[:, reference.C10])
+    force = np.maximum(found[0], LOWEST * np.pi * points[:, FIBERS] ** 2 * points[:, PRESSURE])
+    with np.errstate(all="ignore"):
+        return force, NEAR * points[:, LENGTH] / (found[1] - found[0])
+
+
+def _secants(points, energy, model, target, force, slope, floor):
     """Forces, slopes and whether they are found (n,)."""
-    points, done = points.copy(), np.zeros(len(points), bool)
+    points, done, force = points.copy(), np.zeros(len(points), bool), np.maximum(force, floor)
     thrust = np.pi * points[:, FIBERS] ** 2 * points[:, PRESSURE] + np.abs(np.nan_to_num(force))
-    before_force, before = np.full(len(points), np.nan), np.full(len(points), np.nan)
+    known_force, known = np.full(len(points), np.nan), np.full(len(points), np.nan)
     todo = np.flatnonzero(np.isfinite(force) & (slope > 0.0))
     for _ in range(TURNS):
         if len(todo) == 0:
             break
         points[todo, FORCE] = force[todo]
-        length = np.full(len(points), np.nan)
-        length[todo] = _lengths(points[todo], energy, model)
+        length = _lengths(points[todo], energy, model)
+        there = np.isfinite(length)
         with np.errstate(all="ignore"):
-            secant = (length - before) / (force - before_force)
-            slope = np.where(secant > 0.0, secant, slope)
-        miss = target - length
-        settled = np.abs(miss) <= SETTLED * points[:, LENGTH]
-        done[todo] = settled[todo]
-        before_force, before = np.where(done, before_force, force), length
-        with np.errstate(all="ignore"):
-            step = np.clip(miss / slope, -thrust, thrust)
-        todo = todo[~settled[todo] & np.isfinite(step[todo])]
-        force = force.copy()
-        force[todo] += step[todo]
+            secant = (length - known[todo]) / (force[todo] - known_force[todo])
+        slope[todo] = np.where(secant > 0.0, secant, slope[todo])
+        miss = target[todo] - length
+        below = (force[todo] <= floor[todo]) & (miss < 0.0) & (floor[todo] == 0.0)
+        settled = (np.abs(miss) <= SETTLED * points[todo, LENGTH]) | below
+        done[todo] = settled
+        half = 0.5 * (force[todo] + np.where(np.isfinite(known_force[todo]), known_force[todo], 0.0))
+        ahead = force[todo] + np.clip(miss / slope[todo], -thrust[todo], thrust[todo])
+        known_force[todo[there]], known[todo[there]] = force[todo[there]], length[there]
+        ahead = np.where(there, ahead, half)  # no state: back to where there was one
+        force[todo] = np.where(
+            below, miss / slope[todo], np.where(settled, force[todo], np.maximum(ahead, floor[todo]))
+        )
+        todo = todo[~settled]
     return force, slope, done
 
 
