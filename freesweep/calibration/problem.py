@@ -125,7 +125,7 @@ class Problem:
 
         inside = np.clip(theta, self.low + 1e-9, self.high - 1e-9)[free]
         bounds = (self.low[free], self.high[free])
-        found = least_squares(residuals, inside, slopes, bounds, xtol=1e-9, ftol=1e-11, gtol=1e-12)
+        found = least_squares(residuals, inside, slopes, bounds, xtol=1e-8, ftol=1e-10, gtol=1e-12)
         at = whole(found.x)
         at = np.where(at - self.low < AT_BOUND, self.low, at)
         return np.where(self.high - at < AT_BOUND, self.high, at)

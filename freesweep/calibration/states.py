@@ -111,7 +111,12 @@ def _lengths(points, energy, model):
     short = np.flatnonzero(points[:, LENGTH] < far)
     both = np.concatenate([points, points[short]])
     both[:, LENGTH] = np.concatenate([far, 2.0 * far[short]])
-    found = _by_vectors(both, energy, model)
+    cores = os.cpu_count() or 1
+    parts = min(cores, max(len(both) // SPLIT, 1))
+    found = np.empty(len(both))
+    with ThreadPoolExecutor(parts) as pool:
+        for k, part in enumerate(pool.map(lambda k: _by_vectors(both[k::parts], energy, model), range(parts))):
+            found[k::parts] = part
     one, two = found[: len(points)], found[len(points) :]
     stretch = (two - one[short]) / far[short]
     one[short] += stretch * (points[short, LENGTH] - far[short])
