@@ -47,6 +47,7 @@ class Calibration:
         curve only)
     hysteresis : half of what parts the branches of loops, root mean square, by quantity
     dead_length, threshold_pressure : of the bench [m, Pa]
+    quantile : Student's, of the intervals; ``parameters`` : how theta becomes actuators
     """
 
     names: tuple
@@ -67,6 +68,19 @@ class Calibration:
     hysteresis: dict = field(default_factory=dict)
     dead_length: float = 0.0
     threshold_pressure: float = 0.0
+    quantile: float = 1.96
+    parameters: object = field(default=None, repr=False)
+
+    def band(self, quantity, pressure, *, actuator=0, **imposed):
+        """What the bench would read in a load case, with the band in which 95 % of readings are expected, as a Dataset.
+
+        ``quantity`` is deformed_length, rotation, force ... under ``pressure`` [Pa] and what is ``imposed`` (force, torque,
+        deformed_length, contraction, stroke, rotation), as in a :class:`Measurement`, number or array, on the actuator of
+        the measurement of that place. Raises :class:`ActuatorError`.
+        """
+        from .band import band_of
+
+        return band_of(self, quantity, pressure, actuator, **imposed)
 
     @property
     def standard_errors(self) -> np.ndarray:
@@ -295,6 +309,8 @@ def _result(problem, theta, sigma, rows, unknown, notes):
         "widening": judged.widening,
         "leave_one_out": judged.leave_one_out,
         "hysteresis": hysteresis_of(problem.measurements),
+        "quantile": float(student.ppf(0.975, freedom)),
+        "parameters": parameters,
         "dead_length": setups[0].dead,
         "threshold_pressure": setups[0].threshold,
     }

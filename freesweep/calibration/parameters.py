@@ -73,6 +73,10 @@ class Parameters:
         if faults:
             raise ActuatorError(faults)
         self.all = made
+        keys = [
+            (_bare(m.tube), m.tube.fiber_extension, [one.owners[k] for one in made]) for k, m in enumerate(measurements)
+        ]
+        self.twins = [keys.index(key) for key in keys]  # the first measurement of the same actuator
         self.labels = tuple(one.label for one in made)
         for field in ("start", "low", "high", "unit", "offset", "mean", "sigma"):
             setattr(self, field, np.array([getattr(one, field) for one in made]))
@@ -149,8 +153,9 @@ class Parameters:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what is odd about a tube was said where it was made
             for k, measurement in enumerate(self.measurements):
+                twin = self.twins[k]
                 own = {one.name: value for one, value in zip(self.all, values) if one.owners[k]}
-                made.append(self._setup(measurement.tube, own))
+                made.append(made[twin] if twin < k else self._setup(measurement.tube, own))
         return made
 
     def _setup(self, tube, own):

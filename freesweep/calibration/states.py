@@ -47,7 +47,7 @@ def held_torques(points, energy, model):
 
 
 class Forces:
-    """Forces (n,) that hold lengths. Vectors of physical tubes know free states only: secants through those find the force.
+    """Forces (n,) that hold lengths: secants through free states, which vectors solve, find them.
 
     A short tube, whose ends feel each other, would often be left to the scalar kernels. Its length is told from two long
     ones, ``l = lambda L + e``, and ``correction`` (n,), what that misses of the length, is found now and then (``refresh``).
@@ -68,10 +68,6 @@ class Forces:
         rest = (points[:, PRESSURE] == 0.0) & (points[:, HELD] <= 1.0 + 1e-12)  # a thread cannot be pushed
         found[rest & (points[:, HELD] >= 1.0 - 1e-12)] = 0.0
         todo = np.flatnonzero(~rest)
-        if not model.is_physical:
-            if len(todo):
-                found[todo] = _shared(LENGTH_HELD, points[todo], energy, model)["force"]
-            return found
         if len(todo):
             found[todo] = self._sought(points[todo], energy, model, own[todo])
         return found
@@ -88,13 +84,13 @@ class Forces:
             found = _secants(points[anew], energy, model, target[anew], *first, floor[anew])
             force[anew], slope[anew], done[anew] = found
         self.force[own[done]], self.slope[own[done]] = force[done], slope[done]
-        return np.where(done, force, np.nan)
+        return np.where(done & (force > -thrust), force, np.nan)  # beyond, the wall would have to be pushed
 
     def refresh(self, points, energy, model, own):
         """Correct lengths of short tubes by exact solutions at the forces found; the largest change that makes [N]."""
         short = (points[:, LENGTH] < FAR * points[:, FIBERS]) & np.isfinite(self.force[own])
         short &= (self.force[own] >= 0.0) | (self.measured[own] < 0.0)
-        if not (model.is_physical and short.any()):
+        if not short.any():
             return 0.0
         points, own = points[short].copy(), own[short]
         points[:, FORCE] = self.force[own]
@@ -132,7 +128,7 @@ def _by_vectors(points, energy, model):
     first, count = np.arange(len(points) + 1), len(points)
     found = batch._nothing(count, count, batch.NOTHING)
     pressures, _ = batch.next_to_nothing(rows, first, points[:, PRESSURE] / points[:, reference.C10])
-    batch._walk_lanes(rows, first, pressures, CELLS, ACCURACY[True], batch.NOTHING, found)
+    batch._walk_lanes(rows, first, pressures, CELLS, ACCURACY[model.is_physical], batch.NOTHING, found)
     there = np.isin(found.status, VALUED)
     return np.where(there, 2.0 * points[:, FIBERS] * found.values[:, 0], np.nan)
 
