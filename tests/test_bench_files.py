@@ -94,7 +94,7 @@ def test_shortenings_are_lengths():
     assert pulled.slack.tolist() == [False, True]
     with pytest.raises(ActuatorError, match="stroke: deformed lengths are given too"):
         Measurement(TUBE, 1e5, stroke=0.01, deformed_length=0.19)
-    with pytest.raises(ActuatorError, match="found 0[.]3; nothing would be left"):
+    with pytest.raises(ActuatorError, match=r"found 0\.3; nothing would be left"):
         Measurement(TUBE, 1e5, stroke=0.3)
 
 
