@@ -108,6 +108,14 @@ def test_rubbers_are_tied_where_data_do_not_tell_both():
     assert found.intervals[0, 0] < 0.2e6 < found.intervals[0, 1]
 
 
+def test_no_rubber_vanishes():
+    """The other constant was given as four times all there is: alone, the first would end at nothing."""
+    guess = replace(TRUTH, material=MooneyRivlin(0.15e6, 0.6e6))
+    found = calibrate(lengths(TRUTH, guess), "c10")
+    assert found.values[0] > 0.02e6
+    assert any("c01 = 4 c10, as in the first guess" in note for note in found.notes)
+
+
 def test_a_curve_without_pressure_counts():
     """At P = 0 a stretched muscle is a rubber tube: it tells the rubber."""
     tube = replace(TRUTH, fiber_extension=1.0)

@@ -25,6 +25,7 @@ FIRST_SIGMA = 0.01  # of the range of what was measured
 ROUNDS = 12  # of estimating uncertainties and fitting again
 SETTLED = 0.03  # relative change of an uncertainty that ends the rounds
 TOLD = 2.0  # standard errors by which a constant has to stand clear of 0
+NOTHING = 1e-3  # of the first guess of a constant
 LEAST_SCATTER = 1e-6  # of what was measured: no bench is better
 
 
@@ -127,7 +128,8 @@ def calibrate(
     asked = _checked(measurements, fit, own_extension, bounds, priors, ties, known)
     found = _fitted(asked)
     material = asked.measurements[0].tube.material
-    if fit is None and material.constants == ("c10", "c01") and "c01" not in asked.ties and not _both_told(found):
+    loose = material.constants == ("c10", "c01") and "c01" not in asked.ties and "c10" in asked.names
+    if loose and (_vanished(found) or (fit is None and not _both_told(found))):
         ratio = material.c01 / material.c10
         tied = asked._replace(
             names=[name for name in asked.names if name != "c01"],
@@ -148,6 +150,11 @@ class _Asked(NamedTuple):
     priors: dict
     ties: dict
     notes: tuple
+
+
+def _vanished(found):
+    """Whether the first constant ended at next to nothing: no rubber is."""
+    return bool(found.values[found.names.index("c10")] <= NOTHING * found.measurements[0].tube.material.c10)
 
 
 def _both_told(found):
