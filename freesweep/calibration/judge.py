@@ -104,16 +104,12 @@ def _reasons(problem, residuals, sigma, curve, along, active, unknown, chi_squar
     for name in dict.fromkeys(problem.quantity.tolist()):
         own = active & (problem.quantity == name)
         share = parameters * own.sum() / max(active.sum(), 1)
-        bends, bend_freedom, noise, noise_freedom = _bends(residuals, curve, along, own)
-        bend_freedom -= share
-        if bend_freedom >= 1.0 and noise_freedom >= FEW and noise > 0.0:
-            ratio = bends / bend_freedom / (noise / noise_freedom)
-            if f.sf(ratio, bend_freedom, noise_freedom) < LEVEL:
-                reasons.append(
-                    f"along its curves the residuals of {name} bend {np.sqrt(max(ratio, 1.0)):.2g} times as much as they"
-                    " scatter"
-                )
-                continue
+        ratio, chance = _bent(residuals, curve, along, own, share)
+        if chance < LEVEL:
+            reasons.append(
+                f"along its curves the residuals of {name} bend {np.sqrt(ratio):.2g} times as much as they scatter"
+            )
+            continue
         for what, (variance, count) in _other_noise(problem, name).items():
             spread = np.sum(residuals[own] ** 2) / max(own.sum() - share, 1.0)
             if count >= FEW and variance > 0.0 and f.sf(spread / variance, own.sum() - share, count) < LEVEL:
@@ -122,9 +118,24 @@ def _reasons(problem, residuals, sigma, curve, along, active, unknown, chi_squar
         z = _runs(residuals, curve, along, own)
         if norm.sf(z) < LEVEL:
             reasons.append(f"the residuals of {name} keep their sign along the curves, in too few runs")
+    ratio, chance = _bent(residuals / sigma, curve, along, active, parameters)
+    if not reasons and chance < LEVEL:
+        reasons.append(f"along all curves together residuals bend {np.sqrt(ratio):.2g} times as much as they scatter")
     if not unknown and chi2.sf(chi_square * freedom, freedom) < LEVEL:
         reasons.append(f"the data are missed by {np.sqrt(chi_square):.3g} times the uncertainties given")
     return reasons
+
+
+def _bent(residuals, curve, along, own, parameters):
+    """How much more residuals bend than scatter, as a ratio of variances, and the chance of that in mere noise."""
+    from scipy.stats import f
+
+    bends, bend_freedom, noise, noise_freedom = _bends(residuals, curve, along, own)
+    bend_freedom -= parameters
+    if bend_freedom < 1.0 or noise_freedom < FEW or noise <= 0.0:
+        return 1.0, 1.0
+    ratio = bends / bend_freedom / (noise / noise_freedom)
+    return ratio, f.sf(ratio, bend_freedom, noise_freedom)
 
 
 def _bends(residuals, curve, along, own):
