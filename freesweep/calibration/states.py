@@ -4,6 +4,7 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+from numba import config
 
 from ..query import reference
 from ..query.exact import CELLS, solve
@@ -121,14 +122,14 @@ def _lengths(points, energy, model):
 
 def _by_vectors(points, energy, model):
     """Deformed lengths (n,) of free states as vectors have them; NaN where there is none, and where they leave it open."""
-    from ..solver import batch
+    from ..solver.batch import walk_by_vectors
 
+    if config.DISABLE_JIT:  # vectors are machine code only
+        return solve(LOADED, points, energy, ACCURACY[model.is_physical], model=model)["deformed_length"]
     design = dict(zip(COLUMNS, points.T))
     rows = problem_rows(design, energy, model.is_thick, model.is_loose)
-    first, count = np.arange(len(points) + 1), len(points)
-    found = batch._nothing(count, count, batch.NOTHING)
-    pressures, _ = batch.next_to_nothing(rows, first, points[:, PRESSURE] / points[:, reference.C10])
-    batch._walk_lanes(rows, first, pressures, CELLS, ACCURACY[model.is_physical], batch.NOTHING, found)
+    pressures = points[:, PRESSURE] / points[:, reference.C10]
+    found = walk_by_vectors(np.ascontiguousarray(rows), pressures, CELLS, ACCURACY[model.is_physical])
     there = np.isin(found.status, VALUED)
     return np.where(there, 2.0 * points[:, FIBERS] * found.values[:, 0], np.nan)
 
