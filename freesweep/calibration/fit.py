@@ -271,6 +271,19 @@ def _effects(problem, derivative, rows):
     return effects
 
 
+def _freedoms(slopes, covariance, quantity, active, most):
+    """Degrees of freedom of each parameter (p,): fewer where its variance rests on few values' scatter (Satterthwaite)."""
+    told = np.where(np.isfinite(covariance), covariance, 0.0)
+    variance = np.maximum(np.diag(told), 1e-300)
+    spread = np.zeros(len(told))
+    for name in set(quantity.tolist()):
+        own = active & (quantity == name)
+        normal = slopes[own].T @ slopes[own]
+        left = max(own.sum() - np.trace(told @ normal), 1.0)
+        spread += (np.diag(told @ normal @ told) / variance) ** 2 / left
+    return np.clip(1.0 / np.maximum(spread, 1e-12), 2.0, most)
+
+
 def _result(problem, theta, sigma, rows, unknown, notes):
     from scipy.stats import t as student
 
@@ -290,9 +303,13 @@ def _result(problem, theta, sigma, rows, unknown, notes):
     freedom = judged.freedom
     covariance = scaled * np.outer(parameters.unit, parameters.unit)
     values = parameters.values(theta)
-    half = student.ppf(0.975, freedom) * np.sqrt(np.diag(covariance)) * judged.widening
+    each = np.full(len(theta), float(freedom))
+    if unknown and judged.fits:
+        each = _freedoms(derivative / sigma[:, None], scaled, problem.quantity, active, freedom)
+    quantiles = student.ppf(0.975, each)
+    half = quantiles * np.sqrt(np.diag(covariance)) * judged.widening
     intervals = np.column_stack([values - half, values + half])
-    profiled = profile_intervals(problem, theta, sigma, rows, scaled, judged, student.ppf(0.975, freedom))
+    profiled = profile_intervals(problem, theta, sigma, rows, scaled, judged, quantiles)
     shown_there = np.where(rows & there, model, np.nan)
     cuts = np.cumsum([len(m) * len(m.measured) for m in problem.measurements])[:-1]
     parts = [part.reshape(len(m), -1) for m, part in zip(problem.measurements, np.split(shown_there, cuts))]

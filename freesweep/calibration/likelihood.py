@@ -33,8 +33,9 @@ def profile_intervals(problem, theta, sigma, rows, covariance, judged, quantile)
     (base,) = chi([theta])
     least = base @ base
     direction = [covariance[:, k] / covariance[k, k] for k, _ in ends]  # the others follow
-    scale = np.full(len(ends), quantile)  # in standard errors
-    wanted = np.full(len(ends), quantile**2)
+    quantile = np.array([quantile[k] for k, _ in ends])
+    scale = quantile.copy()  # in standard errors
+    wanted = quantile**2
     done = np.zeros(len(ends), bool)
     for _ in range(ROUNDS):
         points = []
@@ -53,8 +54,8 @@ def profile_intervals(problem, theta, sigma, rows, covariance, judged, quantile)
             scale = np.where(done, scale, scale * ratio)
             break
         scale = np.where(done, scale, np.minimum(scale * ratio, FARTHEST * quantile))
-    for (k, sign), size in zip(ends, scale):
-        if abs(size / quantile - 1.0) > ALIKE:
+    for (k, sign), size, usual in zip(ends, scale, quantile):
+        if abs(size / usual - 1.0) > ALIKE:
             end = theta[k] + sign * size * errors[k] * widening[k]
             found[k, int(sign > 0.0)] = end
     return np.clip(found, problem.low[:, None], problem.high[:, None])
