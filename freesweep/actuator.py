@@ -129,7 +129,7 @@ class Actuator:
         warn_of(doubts(**{name: numbers[name] for name in (*VARYING, "length", "radius", "c10")}), stacklevel=3)
 
     @classmethod
-    def from_cord(cls, *, cord, turns, length, **others):
+    def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":
         """The muscle of a cord of length ``cord`` [m] that winds ``turns`` times around ``length`` [m].
 
         Unrolled, the cord is the hypotenuse: ``cord^2 = length^2 + (2 pi R turns)^2``, with the angle

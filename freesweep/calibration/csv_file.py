@@ -1,10 +1,15 @@
 """CSV files of measured curves: a line names each column and its unit, such as ``pressure [psi],force [N]``."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from ..actuator import Actuator, ActuatorError, MooneyRivlin
 from ..atlas.schema import PARAMETERS
+from ..elastomer import Yeoh
 from ..options import read_path
+from ..quantities import Path
 from ..table_file import RATIO, TEXT, Known, read_columns
 from .branches import BRANCHES, branch_faults
 from .measured import COLUMNS, SHORTENINGS, Measurement, as_length, default_measured, measured_faults, read_names
@@ -30,7 +35,14 @@ KNOWN = Known(
 )
 
 
-def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full", **tube) -> list:
+def read_measurements(
+    paths: Path | Sequence[Path],
+    *,
+    measured: str | Sequence[str] = (),
+    material: MooneyRivlin | Yeoh = FIRST_GUESS,
+    energy: str = "full",
+    **tube: Any,
+) -> list[Measurement]:
     """The :class:`Measurement` objects of one or several CSV files, one for each actuator in each file.
 
     Columns: ``pressure``, those of :class:`Measurement`, ``contraction [%]`` or ``stroke [mm]`` in place of a deformed

@@ -5,14 +5,16 @@ parameters is (J^T J)^-1. Where no uncertainties are given, that of each measure
 about the fit, and the fit is made again with it. Intervals are Student's, for the degrees of freedom that are left.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..actuator import ActuatorError
 from ..given import described
 from ..options import read_switch
+from ..quantities import Names, Quantities
 from .branches import hysteresis_of, mean_of_loops
 from .identify import covariance_of, notes_of, relative
 from .judge import judge
@@ -20,6 +22,9 @@ from .likelihood import profile_intervals
 from .measured import Measurement, read_names
 from .parameters import EXTENSION, Parameters, known_names, read_pairs, read_ties
 from .problem import Problem
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FIRST_SIGMA = 0.01  # of the range of what was measured
 ROUNDS = 12  # of estimating uncertainties and fitting again
@@ -72,7 +77,7 @@ class Calibration:
     quantile: float = 1.96
     parameters: object = field(default=None, repr=False)
 
-    def band(self, quantity, pressure, *, actuator=0, **imposed):
+    def band(self, quantity: str, pressure: Quantities, *, actuator: int = 0, **imposed: Quantities) -> "xr.Dataset":
         """What the bench would read in a load case, with the band in which 95 % of readings are expected, as a Dataset.
 
         ``quantity`` is deformed_length, rotation, force ... under ``pressure`` [Pa] and what is ``imposed`` (force, torque,
@@ -101,7 +106,14 @@ class Calibration:
 
 
 def calibrate(
-    measurements, fit=None, *, own_extension=False, bounds=None, priors=None, ties=None, **known
+    measurements: Measurement | Sequence[Measurement],
+    fit: Names = None,
+    *,
+    own_extension: bool = False,
+    bounds: Mapping[str, Any] | None = None,
+    priors: Mapping[str, Any] | None = None,
+    ties: Mapping[str, str] | None = None,
+    **known: Any,
 ) -> Calibration:
     """Fit any scalar of the actuator to measured curves.
 

@@ -84,6 +84,12 @@ class Measurement:
             torque: Quantities | None = None,
             measured: str | Sequence[str] = (),
             sigma: Mapping[str, Quantities] = ...,
+            contraction: Quantities | None = None,
+            stroke: Quantities | None = None,
+            branch: Quantities | None = None,
+            half_width: Mapping[str, Quantities] = ...,
+            notes: Sequence[str] = (),
+            length_as: str = "deformed_length",
         ) -> None: ...
 
     def __post_init__(self):
