@@ -39,8 +39,7 @@ class Calibration:
     """What :func:`calibrate` found.
 
     names : of the parameters (p,); fiber extensions of the actuators' own are numbered as these first come
-    values, covariance, intervals : (p,), (p, p) of the noise, (p, 2) at 95 % confidence, in [Pa, 1, degree, m]; infinite
-        where data are blind
+    values, covariance, intervals : (p,), (p, p) of noise, (p, 2) at 95 %, in [Pa, 1, degree, m]; infinite where blind
     tubes : the actuator of each measurement, with what was found
     predicted : the model's (n, measured) for each measurement, NaN where it has no state
     sigma : standard uncertainty by measured quantity: as given (root mean square), or estimated from the scatter
@@ -49,8 +48,7 @@ class Calibration:
     notes : what a reader has to know, in sentences
     profile_intervals : (p, 2) at 95 % from the profile likelihood: other parameters are fitted anew at each value
     fits : whether the residuals look like noise; where they do not, intervals are widened for it, ``widening`` times (p,)
-    leave_one_out : root mean square misfit by quantity of curves that the fit did not see, each left out in turn (NaN: one
-        curve only)
+    leave_one_out : root mean square misfit by quantity of curves left out of the fit in turn (NaN: one curve only)
     hysteresis : half of what parts the branches of loops, root mean square, by quantity
     dead_length, threshold_pressure : of the bench [m, Pa]
     quantile : Student's, of the intervals; ``parameters`` : how theta becomes actuators
