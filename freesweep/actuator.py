@@ -12,7 +12,7 @@ from .given import numbers, read_number
 from .options import read_choice
 from .profiles import Profile, ProfileError, as_profile, is_profile, together
 from .quantities import Along, Quantities, Quantity
-from .tube_model import DEFAULT, FIBER_PLACES, MODELS, fiber_place, word_faults
+from .tube_model import DEFAULT, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
 from .unit_warnings import doubts, warn_of
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
@@ -127,6 +127,49 @@ class Actuator:
             raise ActuatorError(faults)
         numbers = self.design() | {name: self.profile(name).samples() for name in VARYING}
         warn_of(doubts(**{name: numbers[name] for name in (*VARYING, "length", "radius", "c10")}), stacklevel=3)
+
+    @classmethod
+    def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":
+        """The muscle of a cord of length ``cord`` [m] that winds ``turns`` times around ``length`` [m].
+
+        Unrolled, the cord is the hypotenuse: ``cord^2 = length^2 + (2 pi R turns)^2``, with the angle
+        ``acos(length/cord)`` from the axis and R the radius on which it lies. ``others`` are parameters of the actuator.
+        Where ``radius`` is left out, it is what puts the fibers there: R for fibers inside, less the wall for fibers
+        outside; where it is given, R becomes the fiber radius. ``beta`` is ``-alpha`` by default. Raises
+        :class:`ActuatorError`.
+        """
+        faults = []
+        read = {
+            name: read_number(name, value, unit, faults, positive=True)
+            for name, value, unit in (("cord", cord, "m"), ("turns", turns, "1"), ("length", length, "m"))
+        }
+        if not faults and read["cord"] <= read["length"]:
+            faults.append(
+                f"cord: found {read['cord']:g} m around a length of {read['length']:g} m; it has to be longer"
+            )
+        place = others.get("fiber_radius")
+        if "alpha" in others or not (place is None or place in FIBER_PLACES) or (place and "radius" in others):
+            faults.append("cord: it tells alpha and where the fibers lie; leave alpha and a fiber radius out")
+        if others.get("model", DEFAULT) not in MODELS:
+            faults += word_faults(others["model"], None, None, "full", ENERGIES)
+        if faults:
+            raise ActuatorError(faults)
+        cord, turns, length = read.values()
+        around = math.sqrt(cord**2 - length**2) / (2.0 * math.pi * turns)
+        alpha = math.degrees(math.acos(length / cord))
+        if "radius" in others:
+            others["fiber_radius"] = around
+        else:
+            place = place or MODELS[others.get("model", DEFAULT)].fiber_radius
+            thickness = (
+                read_number("wall", others.get("wall"), "m", faults, positive=True) if SHARES[place] > 0.0 else 0.0
+            )
+            if not faults and around <= SHARES[place] * thickness:
+                faults.append(f"cord: it lies at a radius of {around:g} m, which is less than the wall inside it")
+            if faults:
+                raise ActuatorError(faults)
+            others["radius"] = around - SHARES[place] * thickness
+        return cls(alpha=alpha, length=length, **({"beta": -alpha} | others))
 
     def __hash__(self):
         fields = (

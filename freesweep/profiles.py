@@ -7,6 +7,7 @@ cells of the mesh, segments are cut, where it cannot be followed it is refused. 
 be missed in a callable: that is what pairs are for.
 """
 
+import functools
 from itertools import pairwise
 
 import numpy as np
@@ -122,7 +123,15 @@ def is_profile(value) -> bool:
 
 def as_profile(value, unit="1") -> Profile:
     """A profile of anything that may vary, numbers included; ``unit`` is that of what pairs and callables give."""
+    if isinstance(value, float):
+        return _constant(value, unit)
     return Profile(value if is_profile(value) else [(0.0, value), (1.0, value)], unit)
+
+
+@functools.lru_cache(maxsize=1024)
+def _constant(value, unit):
+    """A profile that is the same all along: most are, and are asked for again and again."""
+    return Profile([(0.0, value), (1.0, value)], unit)
 
 
 def together(first, second):

@@ -151,3 +151,33 @@ def test_a_design_holds_every_number_that_a_sweep_would_vary():
         "alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1.59e-3, "fiber_radius": 4.76e-3,
         "fiber_extension": 1, "c10": 0.11e6, "c01": 0.06e6, "c20": 0.0, "c30": 0.0,
     }  # fmt: skip
+
+
+def test_a_cord_and_its_turns():
+    """b = 0.25 m, n = 1.5, l = 0.2 m: the triangle 3-4-5, 36.87 degree on a radius of 0.15 m/(3 pi) = 15.92 mm."""
+    rest = {"wall": 2e-3, "material": MooneyRivlin(0.2e6)}
+    inner = Actuator.from_cord(cord="0.25 m", turns=1.5, length=0.2, **rest)
+    assert inner.alpha == pytest.approx(36.8699, abs=1e-4)
+    assert inner.beta == -inner.alpha
+    assert inner.radius == pytest.approx(0.15 / (3 * np.pi), rel=1e-12)
+    outer = Actuator.from_cord(cord=0.25, turns=1.5, length=0.2, model="physical", **rest)
+    assert outer.fiber_surface == pytest.approx(15.915e-3, abs=1e-6)
+    assert outer.radius == pytest.approx(outer.fiber_surface - 2e-3)
+    given = Actuator.from_cord(cord=0.25, turns=1.5, length=0.2, radius=15e-3, **rest)
+    assert (given.radius, given.fiber_surface) == (15e-3, pytest.approx(15.915e-3, abs=1e-6))
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"cord": 0.2}, "it has to be longer"),
+        ({"turns": -1}, "turns: found -1"),
+        ({"alpha": 30}, "leave alpha and a fiber radius out"),
+        ({"turns": 30, "model": "physical"}, "less than the wall inside it"),
+        ({"model": "thesis"}, "model: found"),
+    ],
+)
+def test_cords_that_make_no_muscle(changes, says):
+    given = {"cord": 0.25, "turns": 1.5, "length": 0.2, "wall": 2e-3, "material": MooneyRivlin(0.2e6)} | changes
+    with pytest.raises(ActuatorError, match=says):
+        Actuator.from_cord(**given)

@@ -289,12 +289,6 @@ def test_every_fault_of_a_calibration_is_named(arguments, faults):
         ),
         ("pressure [kPa],force [N],\n10,1,\n20,2,\n", "column 3: has no name; name it or remove it", "did you mean"),
         (
-            "pressure [kPa],force [N]\n10,1\n20,\n",
-            "line 3, force: the cell is empty; leave such states out",
-            "write a number",
-        ),
-        ("pressure [kPa],force [N],time [s]\n10,1,0\n", "column 'time [s]': unknown; remove it", "did you mean"),
-        (
             "pressure [kPa],force [N]\n1,0,1\n",
             "a separator too many, or a decimal comma where a point belongs",
             "missing",

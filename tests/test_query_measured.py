@@ -299,6 +299,15 @@ def test_a_csv_of_points_in_their_own_units(made, tmp_path, capsys):
     )
     assert float(first.split(",")[4]) == found["points"][0]["rotation"]
     assert second.endswith(",outside_atlas")
+    capsys.readouterr()
+    heads = "\ufeffalpha [deg];beta [deg];length [mm];pressure [kPa(g)];operator"
+    points.write_text(f"{heads}\n24,5;-43;120;30;x\n25;;120;30;y\n")
+    assert run(*words, "--format", "json") == DONE
+    out, err = capsys.readouterr()
+    (only,) = json.loads(out)["points"]
+    assert only["alpha"] == 24.5
+    assert "1 column not needed and passed over: 'operator' (column 5)" in err
+    assert "1 row without a number skipped (beta: line 3)" in err
 
 
 def test_faults_of_a_question_are_listed(made, tmp_path, capsys):
@@ -310,9 +319,9 @@ def test_faults_of_a_question_are_listed(made, tmp_path, capsys):
     assert "there is no file" in text
     assert "pressure: is missing" in refused(capsys, "query", name, "--alpha", "24deg", "--beta", "-43deg")
     bad = tmp_path / "bad.csv"
-    bad.write_text("alpha [deg], pressur\n24\nx, 3\n")
+    bad.write_text("alpha [deg], pressur\n24\n25, 3\n")
     text = refused(capsys, "query", name, "--points", str(bad))
-    for part in ("did you mean 'pressure'", "line 2 of", "line 3, alpha: expects an angle"):
+    for part in ("did you mean pressure?", "line 2: 1 cells under 2 names"):
         assert part in text
 
 

@@ -1,16 +1,18 @@
-"""CSV files of measured curves: the first line names each column and its unit, such as ``pressure [psi],force [N]``."""
+"""CSV files of measured curves: a line names each column and its unit, such as ``pressure [psi],force [N]``."""
 
-import csv
-import difflib
-import re
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from ..actuator import Actuator, ActuatorError, MooneyRivlin
 from ..atlas.schema import PARAMETERS
+from ..elastomer import Yeoh
 from ..options import read_path
-from ..units import NEAR, quantity, shown
-from .measured import COLUMNS, Measurement, default_measured, measured_faults, read_names
+from ..quantities import Path
+from ..table_file import RATIO, TEXT, Known, read_columns
+from .branches import BRANCHES, branch_faults
+from .measured import COLUMNS, SHORTENINGS, Measurement, as_length, default_measured, measured_faults, read_names
 
 TUBE = (
     "alpha",
@@ -21,21 +23,35 @@ TUBE = (
     "fiber_radius",
     "fiber_extension",
 )  # columns, or given beside the file
+WORDS = ("model", "wall_model", "fibers")  # given beside the file only
 SIGMA = "_sigma"  # ends the name of a column of standard uncertainties
 FIRST_GUESS = MooneyRivlin(0.15e6, 0.08e6)  # a rubber between those of the source's Table 1
-LARGEST_FILE = 16_000_000  # bytes
-MOST_FAULTS = 30
-_HEAD = re.compile(r"\s*([^\[\]()]*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))?\s*")
+KNOWN = Known(
+    {"pressure": "Pa", **COLUMNS, "contraction": RATIO, "stroke": "m", "branch": TEXT}
+    | {name + SIGMA: unit for name, unit in COLUMNS.items()}
+    | {name: PARAMETERS[name].units for name in TUBE},
+    {"p": "pressure", "gauge_pressure": "pressure", "pressure_gauge": "pressure", "f": "force", "moment": "torque"}
+    | {"shortening": "stroke", "contraction_ratio": "contraction", "direction": "branch"},
+)
 
 
-def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full", **tube) -> list:
+def read_measurements(
+    paths: Path | Sequence[Path],
+    *,
+    measured: str | Sequence[str] = (),
+    material: MooneyRivlin | Yeoh = FIRST_GUESS,
+    energy: str = "full",
+    **tube: Any,
+) -> list[Measurement]:
     """The :class:`Measurement` objects of one or several CSV files, one for each actuator in each file.
 
-    Columns: ``pressure``, those of :class:`Measurement`, their standard uncertainties as ``force_sigma``, and whatever
-    describes the actuator (alpha, beta, length, radius, wall, fiber_radius, fiber_extension), unless that is given as an
-    argument [degree, m]: rows that agree in it make one measurement. Columns are parted by commas, semicolons or tabs; empty
-    lines and lines that begin with # are left out. ``measured`` holds in files with such columns. ``material`` is the first
-    guess of what is fitted.
+    Columns: ``pressure``, those of :class:`Measurement`, ``contraction [%]`` or ``stroke [mm]`` in place of a deformed
+    length, standard uncertainties as ``force_sigma``, ``branch`` (loading or unloading), and whatever describes the actuator
+    (alpha, beta, length, radius, wall, fiber_radius, fiber_extension), unless that is given as an argument [degree, m]: rows
+    that agree in it make one measurement. ``model``, ``wall_model`` and ``fibers`` are as of :class:`Actuator`. Columns are
+    parted by commas, semicolons or tabs; decimal points or commas; lines that begin with #, rows that lack a number and
+    columns that nobody asked for are passed over, and counted in the ``notes`` of the measurements. ``measured`` holds in
+    files with such columns. ``material`` is the first guess of what is fitted.
 
     Raises FileNotFoundError, or :class:`ActuatorError` with every fault.
     """
@@ -43,14 +59,15 @@ def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full"
     paths = list(paths) if isinstance(paths, (list, tuple)) else [paths]
     measured = read_names("measured", measured, faults)
     paths = [read_path("paths", path, "a CSV file", faults) for path in paths]
-    unknown = sorted(set(tube) - set(TUBE))
-    faults += [f"{name}: no such part of an actuator; known: {', '.join(TUBE)}" for name in unknown]
+    unknown = sorted(set(tube) - {*TUBE, *WORDS})
+    faults += [f"{name}: no such part of an actuator; known: {', '.join((*TUBE, *WORDS))}" for name in unknown]
     made, seen = [], set()
     for path in [] if faults else paths:
         try:
-            columns = _read(path)
-            seen |= set(columns)
-            made += _measurements(columns, measured, tube, {"material": material, "energy": energy})
+            found = read_columns(path, KNOWN)
+            seen |= set(found.values)
+            others = {"material": material, "energy": energy}
+            made += _measurements(found, measured, tube, others, path.name)
         except ActuatorError as error:
             faults += [f"{path.name or path}: {fault}" for fault in error.faults]
     if not faults:
@@ -60,41 +77,40 @@ def read_measurements(paths, *, measured=(), material=FIRST_GUESS, energy="full"
     return made
 
 
-def _read(path):
-    """Columns of a file: name -> array (rows,) in SI units and degrees."""
-    faults = []
-    heads, rows = _table(path, faults)
-    columns = _columns(heads, rows, faults)
-    if faults:
-        raise ActuatorError(faults)
-    return columns
-
-
-def _measurements(columns, measured, tube, others):
+def _measurements(found, measured, tube, others, name):
     """One measurement for each actuator: rows that agree in it."""
+    columns = found.values
     faults = [f"{name}: a column, and given beside it; keep one" for name in sorted(set(columns) & set(tube))]
-    for name in ("pressure", "alpha", "beta", "length", "radius", "wall"):
-        if name not in columns and name not in tube:
-            beside = "" if name == "pressure" else ", or beside the file"
-            faults.append(f"{name}: is missing; give it as a column{beside}")
-    measured = tuple(name for name in measured if name in columns) or default_measured(columns)
-    faults += measured_faults(measured, columns)
-    own = [name for name in TUBE if name in columns]
+    for part in ("pressure", "alpha", "beta", "length", "radius", "wall"):
+        if part not in columns and part not in tube:
+            beside = "" if part == "pressure" else ", or beside the file"
+            faults.append(f"{part}: is missing; give it as a column{beside}")
+    given = set(map(as_length, columns))
+    measured = tuple(as_length(part) for part in measured if part in columns) or default_measured(given)
+    faults += measured_faults(measured, given)
+    faults += _outside(found)
+    if "branch" in columns:
+        faults += branch_faults(columns["branch"], found.lines)
+    own = [part for part in TUBE if part in columns]
     if faults:
         raise ActuatorError(faults)
-    keys = np.column_stack([np.zeros(len(columns["pressure"])), *(columns[name] for name in own)])
+    keys = np.column_stack([np.zeros(len(columns["pressure"])), *(columns[part] for part in own)])
     designs, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    notes = tuple(f"{name}: {note}" for note in found.notes)
     made = []
     for k in np.argsort(first):  # in the file's order
         here = which.ravel() == k
+        branch = [BRANCHES[word.lower()] for word in columns.get("branch", ())]
         try:
             made.append(
                 Measurement(
                     Actuator(**tube, **others, **dict(zip(own, designs[k, 1:].tolist()))),
                     columns["pressure"][here],
-                    **{name: columns[name][here] for name in COLUMNS if name in columns},
+                    **{part: columns[part][here] for part in (*COLUMNS, *SHORTENINGS) if part in columns},
                     measured=measured,
-                    sigma={name: columns[name + SIGMA][here] for name in COLUMNS if name + SIGMA in columns},
+                    sigma={part: columns[part + SIGMA][here] for part in COLUMNS if part + SIGMA in columns},
+                    branch=np.array(branch)[here] if branch else None,
+                    notes=notes if not made else (),
                 )
             )
         except ActuatorError as error:
@@ -104,86 +120,13 @@ def _measurements(columns, measured, tube, others):
     return made
 
 
-def _table(path, faults):
-    """Heads and rows of a file, as texts; rows come with their line numbers."""
-    if path.is_dir():
-        raise ActuatorError(["is a folder; give the paths of CSV files"])
-    size = path.stat().st_size
-    if size > LARGEST_FILE:
-        raise ActuatorError([f"{size:,} bytes; at most {LARGEST_FILE:,} are read"])
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise ActuatorError(["not a text in UTF-8; save it as CSV (UTF-8)"]) from None
-    lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
-    if len(lines) < 2:
-        raise ActuatorError([f"found {len(lines)} lines; give a line of names and units, then the states"])
-    parting = max(",;\t", key=lines[0][1].count)
-    cells = csv.reader((line for _, line in lines), delimiter=parting)
-    heads, *rows = [[cell.strip() for cell in row] for row in cells]
-    for (number, _), row in zip(lines[1:], rows):
-        if len(row) != len(heads) and len(faults) < MOST_FAULTS:
-            faults.append(f"line {number}: {len(row)} cells under {len(heads)} names; {_uneven(row, len(heads))}")
-    return heads, [(number, row) for (number, _), row in zip(lines[1:], rows)]
-
-
-def _uneven(row, count):
-    """What may have made a row longer or shorter than the ``count`` of names."""
-    if len(row) < count:
-        return "cells are missing at its end"
-    if not any(row[count:]):
-        return "it ends with a separator too many; remove that"
-    return "a separator too many, or a decimal comma where a point belongs"
-
-
-def _columns(heads, rows, faults):
-    """Name -> array (rows,) in SI units and degrees."""
-    columns = {}
-    for k, head in enumerate(heads):
-        match = _HEAD.fullmatch(head)
-        name = re.sub(r"\W+", "_", match.group(1).lower()) if match else head
-        unit = (match.group(2) or match.group(3) or "").strip() if match else ""
-        kept = _units(name)
-        if not head:
-            faults.append(f"column {k + 1}: has no name; name it or remove it")
-        elif kept is None:
-            known = ["pressure", *COLUMNS, *(f"{name}{SIGMA}" for name in COLUMNS), *TUBE]
-            near = difflib.get_close_matches(name[:40], known, n=1, cutoff=NEAR)
-            hint = f"did you mean {near[0]}?" if near else f"remove it, as all but {', '.join(known)}"
-            faults.append(f"column {shown(head)}: unknown; {hint}")
-        elif name in columns:
-            faults.append(f"column {shown(head)}: given twice")
-        elif not unit and kept != "1":
-            faults.append(f"column {shown(head)}: names no unit; write '{name} [{_EXAMPLES[kept]}]'")
-        else:
-            columns[name] = _numbers(
-                name, [(number, row[k]) for number, row in rows if k < len(row)], unit, kept, faults
-            )
-    return columns
-
-
-_EXAMPLES = {"m": "mm", "Pa": "kPa", "degree": "deg", "N": "N", "N m": "N m"}
-
-
-def _units(name):
-    """The unit a column is kept in; None if no column is called so."""
-    name = name.removesuffix(SIGMA) if name.removesuffix(SIGMA) in COLUMNS else name
-    if name in COLUMNS:
-        return COLUMNS[name]
-    return PARAMETERS[name].units if name in (*TUBE, "pressure") else None
-
-
-def _numbers(name, cells, unit, kept, faults):
-    try:
-        quantity(f"1 {unit}", kept)
-    except ValueError as error:
-        faults.append(f"column {name}: {error}")
-        return np.array([])
-    numbers = []
-    for line, cell in cells:
-        try:
-            numbers.append(quantity(f"{cell} {unit}", kept))
-        except ValueError as error:
-            if len(faults) < MOST_FAULTS:
-                faults.append(f"line {line}, {name}: {error if cell else 'the cell is empty; leave such states out'}")
-    return np.array(numbers)
+def _outside(found):
+    """Faults of numbers that no bench measures, with their lines."""
+    faults = []
+    for name, least in (("pressure", 0.0), ("deformed_length", 1e-12)):
+        array = found.values.get(name, np.empty(0))
+        for row in np.flatnonzero(array < least)[:3]:
+            words = "0 or more" if least == 0.0 else "above 0"
+            unit = KNOWN.units[name]
+            faults.append(f"{name}: found {array[row]:g} {unit}; it has to be {words} (line {found.lines[row]})")
+    return faults

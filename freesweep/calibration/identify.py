@@ -50,8 +50,10 @@ def notes_of(found, left_out, at_bound, estimated):
     if not notes and len(names) > 1:
         largest = np.max(np.abs(covariance / np.outer(errors, errors) - np.eye(len(names))))
         notes.append(f"the parameters are separable: the largest correlation of two of them is {largest:.2f}")
-    for name in at_bound:
-        notes.append(f"{name} ended at its smallest value: the data would have it lower, which physics does not allow")
+    for name, end in at_bound.items():
+        way = "lower" if end == "smallest" else "higher"
+        why = "which physics does not allow" if name.startswith("c") else "which its bounds do not allow"
+        notes.append(f"{name} ended at its {end} value: the data would have it {way}, {why}; do not trust the others")
     if left_out:
         notes.append(
             f"{left_out} measured value{'s' * (left_out > 1)} did not count: at the parameters found, the model has no state"
@@ -60,7 +62,7 @@ def notes_of(found, left_out, at_bound, estimated):
     if not estimated and found["chi_square"] > MISFIT:
         notes.append(
             f"the model misses the data by {np.sqrt(found['chi_square']):.3g} times the uncertainties given: something else"
-            " is at work, or they are too small; the parameters' uncertainties do not cover that"
+            " is at work, or they are too small; standard errors do not cover that, intervals do"
         )
     return tuple(notes)
 

@@ -13,6 +13,7 @@ from ..options import read_choice
 from ..quantities import Quantities
 
 COLUMNS = {"deformed_length": "m", "rotation": "degree", "mid_radius": "m", "force": "N", "torque": "N m"}
+SHORTENINGS = {"contraction": "1", "stroke": "m"}  # in place of a deformed length: share of the length, shortening
 DOMAINS = {"pressure": {"least": 0.0}, "deformed_length": {"positive": True}, "mid_radius": {"positive": True}}
 
 
@@ -43,6 +44,13 @@ class Measurement:
         rotation and force (left out: none); where neither was, force and torque (left out: none)
     measured : name or names of what was measured; may be left out where the columns leave no doubt
     sigma : standard uncertainties by name, such as ``{"deformed_length": 5e-4}``; left out, the scatter tells them
+    contraction, stroke : in place of a deformed length: shortening per undeformed length [1], shortening [m]; they go along
+        where the length itself is fitted
+    branch : of a loop, +1 for loading and -1 for unloading; left out, what rises and then falls is a loop
+
+    A force of exactly 0 where the force was measured is a slack muscle: only a model that pulls there is wrong.
+    ``length_as`` says how lengths were given, ``half_width`` half of what parts the branches of a loop (NaN where there is
+    one only), ``notes`` what was passed over when a file was read.
 
     Raises :class:`ActuatorError`, which lists every fault.
     """
@@ -56,6 +64,12 @@ class Measurement:
     torque: np.ndarray | None = None
     measured: tuple = ()
     sigma: dict = field(default_factory=dict)
+    contraction: np.ndarray | None = None
+    stroke: np.ndarray | None = None
+    branch: np.ndarray | None = None
+    half_width: dict = field(default_factory=dict)
+    notes: tuple = ()
+    length_as: str = "deformed_length"
 
     if TYPE_CHECKING:  # what may be given is more than what is kept
 
@@ -70,6 +84,12 @@ class Measurement:
             torque: Quantities | None = None,
             measured: str | Sequence[str] = (),
             sigma: Mapping[str, Quantities] = ...,
+            contraction: Quantities | None = None,
+            stroke: Quantities | None = None,
+            branch: Quantities | None = None,
+            half_width: Mapping[str, Quantities] = ...,
+            notes: Sequence[str] = (),
+            length_as: str = "deformed_length",
         ) -> None: ...
 
     def __post_init__(self):
@@ -78,7 +98,10 @@ class Measurement:
         for name, units in COLUMNS.items():
             if getattr(self, name) is not None:
                 arrays[name] = read_column(name, getattr(self, name), units, faults, **DOMAINS.get(name, {}))
-        measured = read_names("measured", self.measured, faults)
+        for name in SHORTENINGS:
+            if getattr(self, name) is not None:
+                self._shortened(name, arrays, faults)
+        measured = tuple(map(as_length, read_names("measured", self.measured, faults)))
         measured = measured or default_measured(arrays)
         faults += measured_faults(measured, arrays)
         sigma = {}
@@ -88,12 +111,17 @@ class Measurement:
                 f" {{{(measured or ('deformed_length',))[0]!r}: 5e-4}}"
             )
         for name, value in self.sigma.items() if isinstance(self.sigma, Mapping) else ():
-            if name not in measured or name not in COLUMNS:
+            if name not in measured or name not in COLUMNS:  # also of a text or a number
                 faults.append(f"sigma: {name!r:.40} is not measured; measured: {', '.join(measured) or 'nothing'}")
             else:
                 sigma[name] = read_column(f"sigma of {name}", value, COLUMNS[name], faults, positive=True)
         columns = {name: array.size for name, array in arrays.items() if array is not None}
         columns |= {f"sigma of {name}": array.size for name, array in sigma.items() if array is not None}
+        branch = None if self.branch is None else read_column("branch", self.branch, "1", faults)
+        if branch is not None:
+            columns["branch"] = branch.size
+            if not np.all(np.abs(branch) == 1.0):
+                faults.append("branch: give +1 for each state of loading, -1 for each of unloading")
         if len({n for n in columns.values() if n > 1}) > 1:
             faults.append(f"columns differ in length: {', '.join(f'{name} {n}' for name, n in columns.items())}")
         if faults:
@@ -103,6 +131,28 @@ class Measurement:
             object.__setattr__(self, name, _read_only(array, count))
         object.__setattr__(self, "sigma", {name: _read_only(array, count) for name, array in sigma.items()})
         object.__setattr__(self, "measured", measured)
+        if branch is not None:
+            object.__setattr__(self, "branch", _read_only(branch, count))
+
+    def _shortened(self, name, arrays, faults):
+        """Put deformed lengths in place of a shortening."""
+        most = {"most": 1.0} if name == "contraction" else {}
+        array = read_column(name, getattr(self, name), SHORTENINGS[name], faults, **most)
+        if "deformed_length" in arrays:
+            faults.append(
+                f"{name}: deformed lengths are given too; give one of contraction, stroke and deformed_length"
+            )
+        elif array is not None and isinstance(self.tube, Actuator):
+            length = self.tube.length * (1.0 - array) if name == "contraction" else self.tube.length - array
+            if not np.all(length > 0.0):
+                faults.append(f"{name}: found {array.max():g}; nothing would be left of the length")
+            arrays["deformed_length"] = length
+            object.__setattr__(self, "length_as", name)
+
+    @property
+    def slack(self) -> np.ndarray:
+        """Whether a state is a measured force of exactly 0 (n,): the muscle hangs slack, and only pulling would be wrong."""
+        return self.force == 0.0 if "force" in self.measured else np.zeros(len(self), bool)
 
     def __len__(self):
         return len(self.pressure)
@@ -115,6 +165,11 @@ class Measurement:
         if getattr(self, name) is not None and name not in self.measured:
             return getattr(self, name)
         return np.full(len(self), self.tube.length if name == "deformed_length" else 0.0)
+
+
+def as_length(name) -> str:
+    """What stands for a column: a shortening is a deformed length."""
+    return "deformed_length" if name in SHORTENINGS else name
 
 
 def read_names(what, names, faults) -> tuple:

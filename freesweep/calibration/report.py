@@ -5,23 +5,45 @@ import numpy as np
 from ..report import SHOWN, aligned
 from .measured import COLUMNS
 
+UNITS = {"alpha": ("deg", 1.0), "beta": ("deg", 1.0), "threshold_pressure": ("kPa", 1e-3)}
+UNITS |= dict.fromkeys(("length", "radius", "wall", "fiber_radius", "dead_length"), ("mm", 1e3))
+
 
 def table(found) -> str:
     """Parameters with uncertainties, what was measured and how well it is met, and what a reader has to know."""
-    rows = [["parameter", "value", "standard error", "95 % interval"]]
-    for name, value, error, (low, high) in zip(found.names, found.values, found.standard_errors, found.intervals):
-        scale, unit = (1e-6, " MPa") if name.startswith("c") else (1.0, "")
+    lines = [*aligned(rows_of(found)), "", *aligned(told_rows(found)), ""]
+    lines += [*(f"- {note}" for note in found.notes), "", repr(found.material)]
+    return "\n".join(lines)
+
+
+def unit_of(name) -> tuple:
+    """Unit in which a parameter is shown, and its scale."""
+    base = name.rstrip("0123456789").removesuffix("_") if "_" in name else name
+    return UNITS.get(base, ("MPa", 1e-6) if name.startswith("c") else ("", 1.0))
+
+
+def rows_of(found) -> list:
+    """Parameters, with a profile interval where it differs from the linearised one."""
+    profiled = found.profile_intervals
+    apart = np.isfinite(found.intervals).all(axis=1) & np.any(profiled != found.intervals, axis=1)
+    heads = ["parameter", "value", "standard error", "95 % interval"]
+    rows = [[*heads, "by profile likelihood"] if apart.any() else heads]
+    for k, (name, value, error) in enumerate(zip(found.names, found.values, found.standard_errors)):
+        unit, scale = unit_of(name)
+        unit = f" {unit}" if unit else ""
         digits = _digits(value * scale, error * scale)
-        rows.append(
-            [
-                name,
-                f"{value * scale:.{digits}f}{unit}",
-                f"{error * scale:.2g}{unit}",
-                _interval(low * scale, high * scale, digits),
-            ]
-        )
-    lines = [*aligned(rows), ""]
-    rows = [["measured", "values", "counted", "standard uncertainty", "largest misfit"]]
+        row = [name, f"{value * scale:.{digits}f}{unit}", f"{error * scale:.2g}{unit}"]
+        row.append(_interval(*(found.intervals[k] * scale), digits))
+        if apart.any():
+            row.append(_interval(*(profiled[k] * scale), digits) if apart[k] else "the same")
+        rows.append(row)
+    return rows
+
+
+def told_rows(found) -> list:
+    """What was measured and how well it is met, by quantity."""
+    heads = ["measured", "values", "counted", "standard uncertainty", "largest misfit", "unseen curves"]
+    rows = [[*heads, "half of a loop"] if found.hysteresis else heads]
     for name, sigma in found.sigma.items():
         unit, scale = SHOWN[COLUMNS[name]]
         misfit = np.concatenate(
@@ -29,15 +51,20 @@ def table(found) -> str:
         )
         counted = np.isfinite(misfit)
         largest = np.max(np.abs(misfit[counted]), initial=0.0) * scale
-        rows.append(
-            [name, str(len(misfit)), str(counted.sum()), f"{sigma * scale:.3g} {unit}", f"{largest:.3g} {unit}"]
-        )
-    lines += [*aligned(rows), "", *(f"- {note}" for note in found.notes), "", repr(found.material)]
-    return "\n".join(lines)
+        unseen = found.leave_one_out.get(name, np.nan) * scale
+        row = [name, str(len(misfit)), str(counted.sum()), f"{sigma * scale:.3g} {unit}", f"{largest:.3g} {unit}"]
+        row.append(f"{unseen:.3g} {unit}" if np.isfinite(unseen) else "one curve only")
+        if found.hysteresis:
+            row.append(f"{found.hysteresis[name] * scale:.3g} {unit}" if name in found.hysteresis else "-")
+        rows.append(row)
+    return rows
 
 
 def _residuals(measurement, predicted):
-    return {name: predicted[:, k] - getattr(measurement, name) for k, name in enumerate(measurement.measured)}
+    found = {name: predicted[:, k] - getattr(measurement, name) for k, name in enumerate(measurement.measured)}
+    if "force" in found:  # a slack muscle is missed by what pulls only
+        found["force"] = np.where(measurement.slack, np.fmax(found["force"], 0.0), found["force"])
+    return found
 
 
 def _digits(value, error):
@@ -68,12 +95,13 @@ def to_dataset(found):
     data["value"] = ("parameter", found.values, {"comment": "constants in Pa, fiber extensions in 1"})
     data["standard_error"] = ("parameter", found.standard_errors)
     data["interval"] = (("parameter", "bound"), found.intervals, {"long_name": "95 % confidence interval"})
+    data["profile_interval"] = (("parameter", "bound"), found.profile_intervals, {"long_name": "by profile likelihood"})
     data["covariance"] = (("parameter", "other_parameter"), found.covariance)
     names = np.array(found.names)
     result = xr.Dataset(data, {"parameter": names, "other_parameter": names, "bound": np.array(["low", "high"])})
     result.attrs = {
         "title": "calibration", "notes": "\n".join(found.notes),
-        "condition": found.condition, "chi_square": found.chi_square,
+        "condition": found.condition, "chi_square": found.chi_square, "fits": int(found.fits),
         **{f"curve_{k}": repr(tube) for k, tube in enumerate(found.tubes)},
     }  # fmt: skip
     return result

@@ -1,21 +1,24 @@
 """The command `freesweep calibrate`: parses and calls."""
 
+from ..tube_model import FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
 from .single import CONSTANTS, add_rubber, read_options, read_rubber
 
 NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
+WORDS = ("model", "wall_model", "fibers")
 
 
 def add_calibrate(commands):
     """Add the command to the command line."""
     command = commands.add_parser(
         "calibrate",
-        help="material constants and fiber extension from measured curves",
-        description="Fits material constants and fiber extension to measured curves of length, rotation, force or torque."
-        " Each CSV file begins with a line of names and units, such as 'pressure [psi],deformed_length [mm]'; columns:"
-        " pressure, deformed_length, rotation, mid_radius, force, torque, their standard uncertainties as force_sigma, and"
-        " whatever describes the actuator, unless it is given as an option.",
+        help="rubber, angle, fiber extension and other scalars of an actuator from measured curves",
+        description="Fits any scalar of an actuator to measured curves of length, rotation, force or torque."
+        " Each CSV file has a line of names and units, such as 'pressure [psi],contraction [%%]'; columns:"
+        " pressure, deformed_length (or contraction, stroke), rotation, mid_radius, force, torque, their standard"
+        " uncertainties as force_sigma, branch, and whatever describes the actuator, unless it is given as an option."
+        " A file FILE.toml holds all of that, with the options, and is given alone.",
     )
-    command.add_argument("files", nargs="+", metavar="FILE.csv", help="measured curves, of one or more actuators")
+    command.add_argument("files", nargs="+", metavar="FILE", help="measured curves (.csv), or one calibration (.toml)")
     for name in NUMBERS:
         command.add_argument(
             f"--{name.replace('_', '-')}", metavar="VALUE", help="of all actuators without such a column"
@@ -26,8 +29,17 @@ def add_calibrate(commands):
         nargs="+",
         action="extend",
         metavar="NAME",
-        help="what to fit (default: all: c10 c01, or c1 c2 c3 of a Yeoh rubber, and fiber_extension)",
+        help="what to fit: c10 c01, or c1 c2 c3 of a Yeoh rubber, fiber_extension alpha beta length radius wall fiber_radius"
+        " dead_length threshold_pressure (default: the rubber and fiber_extension)",
     )
+    for name, example, text in (
+        ("prior", "alpha=30,1", "known before: value, standard uncertainty; such a parameter is fitted"),
+        ("bounds", "'wall=1 mm,2 mm'", "where it is searched"),
+        ("tie", "c01=0.5*c10", "a parameter that follows another"),
+    ):
+        command.add_argument(
+            f"--{name}", nargs="+", action="extend", default=[], metavar="NAME=...", help=f"{text}, as {example}"
+        )
     command.add_argument(
         "--measured",
         nargs="+",
@@ -42,20 +54,61 @@ def add_calibrate(commands):
     command.add_argument(
         "--energy", choices=("full", "principal"), default="full", help="principal: Eq. 2.5 as printed"
     )
+    for name, choices in (("model", MODELS), ("wall-model", WALL_MODELS), ("fibers", FIBERS)):
+        command.add_argument(f"--{name}", choices=tuple(choices), help="of all actuators, as in freesweep inflate")
     command.add_argument("-o", "--out", metavar="FILE.nc", help="keep parameters, covariance and curves as netCDF4")
+    command.add_argument("--report", metavar="FILE", help="a page to send around (.html), or its picture (.png)")
     command.set_defaults(run=_run)
 
 
 def _run(options):
-    from ..actuator import ActuatorError
+    from pathlib import Path
+
     from ..atlas.files import write_whole
-    from ..calibration.csv_file import FIRST_GUESS, read_measurements
+    from ..calibration.case_file import read_case
     from ..calibration.fit import calibrate
     from ..calibration.report import table, to_dataset
-    from ..elastomer import Yeoh
 
     faults = []
-    values = read_options(options, NUMBERS, faults)
+    asked = {"fit": options.fit, "own_extension": options.own_extension}
+    if options.report and Path(options.report).suffix not in (".html", ".png"):
+        raise ValueError(f"--report: found {options.report!r}; give FILE.html or FILE.png")
+    if any(str(name).endswith(".toml") for name in options.files):
+        if len(options.files) > 1:
+            raise ValueError("a calibration as TOML names its data; give it alone")
+        measurements, asked = read_case(options.files[0])
+    else:
+        measurements = _measurements(options, asked, faults)
+    found = calibrate(measurements, **asked)
+    print(table(found))
+    if options.out:
+        write_whole(options.out, to_dataset(found).to_netcdf(engine="netcdf4"))
+        print(options.out)
+    if options.report:
+        from ..calibration.page import page, picture
+
+        content = page(found).encode() if options.report.endswith(".html") else picture(found)
+        write_whole(options.report, content)
+        print(options.report)
+
+
+def _measurements(options, asked, faults):
+    """The measurements of CSV files and options; puts priors, bounds and ties into what is ``asked``."""
+    from ..actuator import ActuatorError
+    from ..calibration.csv_file import FIRST_GUESS, read_measurements
+    from ..elastomer import Yeoh
+
+    is_word = options.fiber_radius in FIBER_PLACES
+    values = read_options(options, NUMBERS[:-1] if is_word else NUMBERS, faults)
+    values |= {"fiber_radius": options.fiber_radius} if is_word else {}
+    values |= {name: getattr(options, name) for name in WORDS if getattr(options, name) is not None}
+    for key, option in (("priors", "prior"), ("bounds", "bounds"), ("ties", "tie")):
+        pairs = [text.partition("=") for text in getattr(options, option)]
+        faults += [f"--{option}: found {text[0]!r}; write NAME=..." for text in pairs if not text[2]]
+        asked[key] = {
+            name.strip(): value.strip() if key == "ties" else [part.strip() for part in value.split(",")]
+            for name, _, value in pairs
+        }
     material = read_rubber(options, faults, f"{FIRST_GUESS.c10} Pa") if _any_rubber(options) else FIRST_GUESS
     if material is not None and {"c2", "c3"} & set(options.fit or ()) and not isinstance(material, Yeoh):
         material = Yeoh(material.c10)
@@ -68,11 +121,7 @@ def _run(options):
             faults = error.faults
     if faults:
         raise ValueError("\n".join(["cannot read these measurements:", *(f"  - {fault}" for fault in faults)]))
-    found = calibrate(measurements, options.fit, own_extension=options.own_extension)
-    print(table(found))
-    if options.out:
-        write_whole(options.out, to_dataset(found).to_netcdf(engine="netcdf4"))
-        print(options.out)
+    return measurements
 
 
 def _any_rubber(options):

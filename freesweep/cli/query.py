@@ -3,7 +3,6 @@
 import sys
 
 MAX_ROWS = 1_000_000  # of a CSV
-MOST_FAULTS = 20  # of one that are listed
 FORMATS = ("table", "csv", "json")
 
 
@@ -84,69 +83,31 @@ def _axes(options):
 
 
 def _read_points(path, faults, asked):
-    """Columns of a CSV: name -> list of numbers in the units of the API. A header cell is ``name`` or ``name [unit]``; the
-    units go into ``asked``.
+    """Columns of a file of points: name -> list of numbers in the units of the API; the units go into ``asked``. What was
+    passed over is said.
     """
-    import csv
+    from pathlib import Path
 
-    from ..units import quantity
+    from ..atlas.schema import PARAMETERS
+    from ..faults import ActuatorError
+    from ..table_file import TEXT, Known, read_columns
 
-    rows = []
+    known = Known({name: parameter.units for name, parameter in PARAMETERS.items()} | {"design": TEXT}, {})
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            for row in csv.reader(file, skipinitialspace=True):
-                if any(cell.strip() for cell in row):
-                    rows.append([cell.strip() for cell in row])
-                if len(rows) > MAX_ROWS + 1:
-                    break
+        found = read_columns(Path(path), known, plain=True)
     except FileNotFoundError:
         faults.append(f"--points: there is no file {path!r}")
         return {}
-    except (UnicodeDecodeError, csv.Error) as error:
-        faults.append(f"--points: {path} is no CSV text: {error}")
+    except ActuatorError as error:
+        faults += [f"--points: {path}: {fault}" for fault in error.faults]
         return {}
-    if len(rows) < 2 or len(rows) > MAX_ROWS + 1:
-        faults.append(f"--points: {path} holds {len(rows) - 1} points; give a header and 1 to {MAX_ROWS:,} lines")
+    if len(found.lines) > MAX_ROWS:
+        faults.append(f"--points: {path} holds {len(found.lines):,} points; at most {MAX_ROWS:,} are answered")
         return {}
-    head, *lines = rows
-    if len(head) == 1 and (other := next((mark for mark in (";", "\t") if mark in head[0]), None)):
-        faults.append(f"--points: {path} parts its columns by {other!r}; write commas")
-        return {}
-    names = [_column(cell, path, faults) for cell in head]
-    if len(set(names)) < len(names):
-        faults.append(f"--points: {path} names a column twice")
-    columns = {name: [] for name, _ in names if name}
-    asked |= {name: unit for name, (_, unit) in names if name}
-    for number, line in enumerate(lines, start=2):
-        if len(line) != len(names):
-            faults.append(f"--points: line {number} of {path} has {len(line)} cells, its header {len(names)}")
-        for (name, units), cell in zip(names, line):
-            if name == "design":
-                columns[name].append(cell)
-            elif name:
-                try:
-                    columns[name].append(quantity(f"{cell} {units[1]}" if units[1] else cell, units[0]))
-                except ValueError as error:
-                    faults.append(f"--points: line {number}, {name}: {error if cell else 'the cell is empty'}")
-        if len(faults) > MOST_FAULTS:
-            faults.append("and so on")
-            break
-    return columns
-
-
-def _column(cell, path, faults):
-    """``(name, (kept unit, unit of the column))`` of a header cell."""
-    from ..atlas.schema import PARAMETERS
-    from ..query.faults import unknown
-
-    name, _, unit = cell.partition("[")
-    name, unit = name.strip().replace("-", "_"), unit.strip().removesuffix("]").strip()
-    if name == "design":
-        return name, ("", "")
-    if name not in PARAMETERS:
-        faults.append(f"--points: {path}: {unknown('column', name, list(PARAMETERS))}")
-        return None, ("", "")
-    return name, (PARAMETERS[name].units, unit)
+    for note in found.notes:
+        print(f"freesweep: note: {path}: {note}", file=sys.stderr)
+    asked |= {name: unit for name, unit in found.units.items() if name in PARAMETERS}
+    return {name: list(values) for name, values in found.values.items()}
 
 
 def in_units(found, units):

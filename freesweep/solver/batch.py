@@ -65,6 +65,15 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     return found
 
 
+def walk_by_vectors(problems, pressures, cells, accuracy) -> Walks:
+    """Each problem at its own pressure, of tubes that do not vary: what vectors find, PENDING where they leave it open."""
+    count = len(problems)
+    first, found = np.arange(count + 1), _nothing(count, count, NOTHING)
+    pressures, _ = next_to_nothing(problems, first, pressures)
+    _walk_lanes(problems, first, pressures, cells, accuracy, NOTHING, found)
+    return found
+
+
 def _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
     """Arguments of :func:`follow_many`: of all problems at once, or of each that has to be solved whole."""
     walls, settled = wall_columns(problems), settling_pressure(problems)

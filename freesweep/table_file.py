@@ -1,0 +1,285 @@
+"""Tables of numbers as people have them: a line that names columns and units, then rows; one reader for all commands.
+
+Parted by commas, semicolons or tabs; decimal points or commas; any byte order mark; comments, empty lines and lines above
+the names passed over. Nothing is dropped without a word: ``notes`` count what was passed over. Faults name line and column.
+"""
+
+import csv
+import difflib
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from .faults import ActuatorError
+from .units import NEAR, quantity, shown
+
+LARGEST_FILE = 64_000_000  # bytes
+MOST_FAULTS = 30
+MOST_ABOVE = 60  # lines above the names, of what a bench writes about itself
+COMMENTS = ("#", "%", "//")
+NO_NUMBER = {"", "nan", "na", "n/a", "#n/a", "#div/0!", "-", "--", "none", "null", "missing"}
+PARTED_BY = {",": "commas", ";": "semicolons", "\t": "tabs"}
+MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # what spreadsheets call Unicode text
+EXAMPLES = {"m": "mm", "Pa": "kPa", "degree": "deg", "N": "N", "N m": "N m"}
+TEXT = "text"  # in place of a unit: a column of words
+RATIO = "ratio"  # in place of a unit: a number that says whether it is a percentage
+
+_HEADS = [
+    re.compile(pattern, re.DOTALL)
+    for pattern in (
+        r"(.*?)\s*[\[{](.*)[\]}]",  # pressure [kPa(g)]
+        r"(.*?)\s*\((.*)\)",  # pressure (kPa)
+        r"(.*?)\s*(?:/|,|\bin\b)\s*(.+)",  # pressure / kPa
+        r"(\S+)\s+(.+)",  # pressure kPa(g)
+        r"(.+)_(.+)",  # pressure_kPa
+    )
+]
+_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+_POINT = re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?")
+
+
+class Known(NamedTuple):
+    """Columns that are wanted: name -> unit they are kept in, and other names for them."""
+
+    units: dict
+    synonyms: dict
+
+
+class Columns(NamedTuple):
+    """What a file holds: name -> numbers (rows,) or texts; ``lines`` (rows,) of the file; what was passed over, in words;
+    name -> unit as it was written.
+    """
+
+    values: dict
+    lines: np.ndarray
+    notes: tuple
+    units: dict
+
+
+class _Head(NamedTuple):
+    name: str
+    unit: str
+    text: str
+    place: int  # column of the file, from 1
+
+
+def read_columns(path, known: Known, plain=False) -> Columns:
+    """The columns of a file that are ``known``; the rest is passed over. Raises :class:`ActuatorError` with every fault.
+
+    ``plain``: a column that names no unit is in that of the API. Rows that lack a number in a column wanted are skipped.
+    """
+    notes, faults = [], []
+    lines = _lines(path, notes)
+    parting, at = _where_names_are(lines, known)
+    if at:
+        notes.append(f"{_count(at, 'line')} above the names passed over")
+    rows = [(number, _parted(text, parting, number)) for number, text in lines[at:]]
+    (line, heads), rows = rows[0], rows[1:]
+    heads = [_head(text, place, known) for place, text in enumerate(heads, 1)]
+    heads, rows = _units_below(heads, rows, known)
+    if not rows:
+        raise ActuatorError([f"found {len(lines)} lines; give a line of names and units, then the states"])
+    empty = [number for number, row in rows if not any(row)]
+    rows = [(number, row) for number, row in rows if any(row)]
+    if empty:
+        notes.append(f"{_count(len(empty), 'row')} of empty cells passed over ({_which(empty)})")
+    for number, row in rows:
+        if len(row) != len(heads) and len(faults) < MOST_FAULTS:
+            faults.append(f"line {number}: {len(row)} cells under {len(heads)} names; {_uneven(row, len(heads))}")
+    wanted = _wanted(heads, line, known, plain, faults, notes)
+    comma = _decimal_comma(wanted, rows, faults, notes) if not faults else False
+    values = {head.name: _cells(head, rows, known.units[head.name], comma, faults) for head in wanted}
+    if faults:
+        raise ActuatorError(faults)
+    units = {head.name: head.unit for head in wanted}
+    return Columns(*_complete(values, np.array([number for number, _ in rows]), known, notes), units)
+
+
+def _lines(path, notes):
+    """Numbered lines that hold something, without comments."""
+    if path.is_dir():
+        raise ActuatorError(["is a folder; give the paths of CSV files"])
+    if (size := path.stat().st_size) > LARGEST_FILE:
+        raise ActuatorError([f"{size:,} bytes; at most {LARGEST_FILE:,} are read"])
+    content = path.read_bytes()
+    try:
+        text = content.decode(MARKS.get(content[:2], "utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise ActuatorError([f"not a text in UTF-8 (line {line}); save it as CSV (UTF-8)"]) from None
+    numbered = list(enumerate(text.splitlines(), 1))
+    filled = [(number, line) for number, line in numbered if line.strip()]
+    lines = [(number, line) for number, line in filled if not line.lstrip().startswith(COMMENTS)]
+    for count, what in ((len(numbered) - len(filled), "empty line"), (len(filled) - len(lines), "comment line")):
+        if count:
+            notes.append(f"{_count(count, what)} passed over")
+    if len(lines) < 2:
+        raise ActuatorError([f"found {len(lines)} lines; give a line of names and units, then the states"])
+    return lines
+
+
+def _parted(text, parting, number):
+    """Cells of a line; a quotation mark ends with its line."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([text], delimiter=parting))]
+    except csv.Error as error:
+        raise ActuatorError([f"line {number}: {error}; no table has such a cell"]) from None
+
+
+def _where_names_are(lines, known):
+    """By what columns are parted, and which of the lines names them: the first with a known name."""
+    for at, (_, text) in enumerate(lines[:MOST_ABOVE]):
+        parting = max(PARTED_BY, key=text.count)
+        if any(_head(cell, 1, known).name in known.units for cell in text.split(parting)):
+            return parting, at
+    return max(PARTED_BY, key=lines[0][1].count), 0
+
+
+def _head(text, place, known):
+    """Name and unit of a column, however they are written."""
+    text = text.strip()
+    tries = [
+        _Head(_called(match.group(1), known), match.group(2).strip(), text, place)
+        for pattern in _HEADS
+        if (match := pattern.fullmatch(text))
+    ]
+    plain = _Head(_called(text, known), "", text, place)
+    tries.insert(len(tries) if set("[{(") & set(text) else 0, plain)
+    return next((head for head in tries if head.name in known.units), tries[0])
+
+
+def _called(text, known):
+    name = re.sub(r"\W+", "_", text.strip().lower()).strip("_")
+    return known.synonyms.get(name, name)
+
+
+def _units_below(heads, rows, known):
+    """Units from a line of their own, below the names, where there is one."""
+    if not rows or any(head.unit for head in heads) or len(rows[0][1]) != len(heads):
+        return heads, rows
+    cells = [cell.strip("[](){} ") for cell in rows[0][1]]
+    if any(_NUMBER.fullmatch(cell) for cell in cells) or not any(
+        cell and head.name in known.units and _is_unit(cell) for head, cell in zip(heads, cells)
+    ):
+        return heads, rows
+    return [head._replace(unit=cell) for head, cell in zip(heads, cells)], rows[1:]
+
+
+def _is_unit(text):
+    return any(not _unit_fault(text, kept) for kept in (*EXAMPLES, "1"))
+
+
+def _uneven(row, count):
+    """What may have made a row longer or shorter than the ``count`` of names."""
+    if len(row) < count:
+        return f"cells are missing at its end (from column {len(row) + 1})"
+    if not any(row[count:]):
+        return "it ends with a separator too many; remove that"
+    return "a separator too many, or a decimal comma where a point belongs"
+
+
+def _wanted(heads, line, known, plain, faults, notes):
+    """Columns to be read, once each."""
+    wanted, others = [], []
+    for head in heads:
+        kept, place = known.units.get(head.name), f" (line {line}, column {head.place})"
+        if not head.text:
+            faults.append(f"column {head.place}: has no name; name it or remove it{place}")
+        elif kept is None:
+            near = difflib.get_close_matches(head.name[:40], known.units, n=1, cutoff=NEAR)
+            if near:
+                faults.append(f"column {shown(head.text)}: unknown; did you mean {near[0]}?{place}")
+            else:
+                others.append(f"{shown(head.text)} (column {head.place})")
+        elif any(other.name == head.name for other in wanted):
+            faults.append(f"column {shown(head.text)}: given twice{place}")
+        elif kept == RATIO and head.unit not in ("%", "1"):
+            faults.append(
+                f"column {shown(head.text)}: a share or a percentage? write '{head.name} [%]' or '{head.name} [1]'{place}"
+            )
+        elif not head.unit and kept in EXAMPLES and not plain:
+            faults.append(f"column {shown(head.text)}: names no unit; write '{head.name} [{EXAMPLES[kept]}]'{place}")
+        elif kept != TEXT and (fault := _unit_fault(head.unit, "1" if kept == RATIO else kept)):
+            faults.append(f"column {head.name}: {fault}{place}")
+        else:
+            wanted.append(head)
+    if others:
+        notes.append(f"{_count(len(others), 'column')} not needed and passed over: {', '.join(others)}")
+    return wanted
+
+
+def _unit_fault(unit, kept):
+    """What is wrong with a unit, said of one such quantity."""
+    try:
+        quantity(f"1 {unit}", kept)
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
+def _decimal_comma(wanted, rows, faults, notes):
+    """Whether numbers have commas for points; a file has one of the two."""
+    commas, points = [], []
+    for head in wanted:
+        for number, row in rows:
+            cell = row[head.place - 1]
+            if _COMMA.fullmatch(cell):
+                commas.append((number, head, cell))
+            elif _POINT.fullmatch(cell):
+                points.append((number, head, cell))
+    if commas and points:
+        few, many = sorted((commas, points), key=len)
+        (line, head, cell), (other_line, _, other) = few[0], many[0]
+        faults.append(
+            f"line {line}, {head.name}: {cell!r:.30} beside {other!r:.30} on line {other_line}: decimal commas and points in"
+            f" one file; write points (column {head.place})"
+        )
+    elif commas:
+        notes.append(f"decimal commas read as points, {_count(len(commas), 'cell')}")
+    return bool(commas)
+
+
+def _cells(head, rows, kept, comma, faults):
+    """Numbers of a column, NaN where there is none; or its texts."""
+    cells = [(number, row[head.place - 1]) for number, row in rows if head.place <= len(row)]
+    if kept == TEXT:
+        return [cell for _, cell in cells]
+    found, unit = [], "1" if kept == RATIO else kept
+    for number, cell in cells:
+        if cell.lower() in NO_NUMBER:
+            found.append(np.nan)
+            continue
+        text = cell.replace(",", ".") if comma and _COMMA.fullmatch(cell) else cell
+        try:
+            found.append(quantity(f"{text} {head.unit}", unit))
+        except ValueError as error:
+            if len(faults) < MOST_FAULTS:
+                faults.append(f"line {number}, {head.name}: {error} (column {head.place})")
+    return np.array(found)
+
+
+def _complete(values, lines, known, notes):
+    """Rows that have a number in every column, and a note on the others."""
+    lacking = {name: ~np.isfinite(array) for name, array in values.items() if known.units[name] != TEXT}
+    skipped = np.any(list(lacking.values()), axis=0) if lacking else np.zeros(len(lines), bool)
+    if skipped.any():
+        where = [f"{name}: {_which(lines[own].tolist())}" for name, own in lacking.items() if own.any()]
+        notes.append(f"{_count(int(skipped.sum()), 'row')} without a number skipped ({'; '.join(where)})")
+    if skipped.all() and len(lacking):
+        raise ActuatorError([f"no row has a number in each of {', '.join(lacking)}; nothing is left to read"])
+    kept = {
+        name: array[~skipped] if known.units[name] != TEXT else [text for text, off in zip(array, skipped) if not off]
+        for name, array in values.items()
+    }
+    return kept, lines[~skipped], tuple(notes)
+
+
+def _count(number, what):
+    return f"{number} {what}{'s' * (number != 1)}"
+
+
+def _which(lines):
+    listed = ", ".join(map(str, lines[:8])) + ", and so on" * (len(lines) > 8)
+    return f"line{'s' * (len(lines) != 1)} {listed}"

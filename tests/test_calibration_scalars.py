@@ -1,0 +1,222 @@
+"""Any scalar is fitted: angles, sizes, dead length, threshold; with priors, bounds, ties; from the shell and from TOML."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from benches import FIT, TIES, bench, exact, muscle, values
+from commands import refused, run
+
+from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, calibrate
+from freesweep.calibration.parameters import Setup
+from freesweep.calibration.predicted import Asked, Predictor, scalar
+from freesweep.cli import DONE
+
+TRUTH = Actuator(
+    alpha=25, beta=-25, length=0.3, radius=8e-3, wall=1.5e-3, material=MooneyRivlin(0.2e6, 0.1e6), fiber_extension=1.004
+)
+GUESS = replace(TRUTH, alpha=26.0, beta=-26.0, material=MooneyRivlin(0.15e6, 0.075e6), fiber_extension=1.0)
+PRESSURE = np.linspace(0.3e5, 3e5, 8)
+
+
+def lengths(truth, guess, **how):
+    """A free curve as the model has it."""
+    made = Measurement(guess, PRESSURE, stroke=np.full(8, 1e-3))
+    (length,) = exact([made], truth)
+    return Measurement(guess, PRESSURE, deformed_length=length, **how)
+
+
+def forces(truth, guess, pressure=(1e5, 3e5)):
+    """Force over contraction, slack where there is none."""
+    p, c = np.repeat(pressure, 6), np.tile(np.linspace(0.0, 0.25, 6), len(pressure))
+    made = Measurement(guess, p, contraction=c, force=np.ones(len(p)), measured="force")
+    (force,) = exact([made], truth)
+    return Measurement(guess, p, contraction=c, force=force, measured="force")
+
+
+@pytest.mark.parametrize("model", ["source", "physical"])
+def test_vectors_say_what_the_public_functions_say(model):
+    """Held lengths, of a long tube and of a short one, whose ends feel each other."""
+    for length in (0.4, 0.12):
+        tube = replace(TRUTH, length=length, model=model)
+        held = np.array([1.0, 0.9])
+        asked = Measurement(tube, 2e5, deformed_length=held * length, force=[30.0, 10.0], measured="force")
+        predictor, setup = Predictor([asked]), Setup(tube, length, 0.0, 0.0)
+        predictor.predict([[setup]])
+        predictor.refresh([setup])
+        predictor.refresh([setup])
+        (((quick,)),) = predictor.predict([[setup]])
+        state = Asked(setup, asked.pressure, {"deformed_length": asked.deformed_length, "torque": np.zeros(2)})
+        assert quick[:, 0] == pytest.approx(scalar(asked, state)[:, 0], rel=1e-5)
+
+
+def test_angle_rubber_and_extension_of_a_muscle():
+    """The mirror family follows; slack zeros do not pull the fit."""
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    assert found.names == ("c10", "fiber_extension", "alpha")
+    assert found.values == pytest.approx([0.2e6, 1.004, 25.0], rel=1e-4)
+    assert found.tubes[0].beta == -found.tubes[0].alpha
+    assert found.material.c01 == pytest.approx(0.1e6, rel=1e-4)
+    assert found.fits
+
+
+def test_a_dead_length_and_a_threshold():
+    """Clamps hide 12 mm of 300, the bladder reaches the braid at 10 kPa."""
+    working = replace(TRUTH, length=0.288)
+    nominal = replace(GUESS, alpha=25.0, beta=-25.0)
+    made = [Measurement(nominal, PRESSURE, stroke=np.full(8, 1e-3)), forces(TRUTH, nominal)]
+    setup = Setup(working, 0.3, 0.012, 1e4)
+    free, held = (each[:, 0] for each in Predictor(made).predict([[setup, setup]])[0])
+    curves = [Measurement(nominal, PRESSURE, stroke=0.3 - free), made[1]]
+    held = np.nan_to_num(held).clip(min=0.0)
+    curves[1] = Measurement(
+        nominal, made[1].pressure, deformed_length=made[1].deformed_length, force=held, measured="force"
+    )
+    found = calibrate(curves, ["c10", "fiber_extension", "dead_length", "threshold_pressure"], ties=TIES)
+    assert found.values == pytest.approx([0.2e6, 1.004, 0.012, 1e4], rel=2e-3)
+    assert found.tubes[0].length == pytest.approx(0.288, abs=1e-4)
+    assert (found.dead_length, found.threshold_pressure) == (found.values[2], found.values[3])
+    again = found.band("force", 3e5, contraction=0.1, actuator=1)
+    assert again.force_low < again.force < again.force_high
+
+
+def test_priors_bounds_and_ties():
+    """Length and radius hardly move apart in a curve of lengths: what is known of one tells the other."""
+    curve = lengths(TRUTH, replace(GUESS, alpha=25.0, beta=-25.0))
+    known = calibrate(curve, ["c10", "fiber_extension"], alpha=("24.5 deg", "0.001 deg"), ties=TIES)
+    assert known.values[2] == pytest.approx(24.5, abs=0.01)  # the data would have 25: a prior that sharp is obeyed
+    assert known.names == ("c10", "fiber_extension", "alpha")
+    loose = calibrate(curve, ["c10", "fiber_extension"], priors={"alpha": (25.5, 1)}, ties=TIES)
+    assert loose.values[2] == pytest.approx(25.0, abs=0.1)
+    bounded = calibrate(curve, ["c10", "alpha"], bounds={"alpha": (25.5, 27)}, ties=TIES)
+    assert bounded.values[1] == pytest.approx(25.5, abs=1e-6)
+    assert any("alpha ended at its smallest value" in note for note in bounded.notes)
+
+
+def test_rubbers_are_tied_where_data_do_not_tell_both():
+    """Three percent of noise on forces alone: no constant ends at nothing."""
+    rng = np.random.default_rng(5)
+    curve = forces(TRUTH, replace(TRUTH, material=GUESS.material))
+    force = np.where(curve.force > 0.0, curve.force + 0.03 * curve.force.max() * rng.standard_normal(12), 0.0)
+    noisy = Measurement(
+        curve.tube, curve.pressure, contraction=1 - curve.deformed_length / 0.3, force=force, measured="force"
+    )
+    found = calibrate(noisy)
+    assert found.names == ("c10", "fiber_extension")
+    assert found.material.c01 == pytest.approx(0.5 * found.material.c10)
+    assert any("c01 = 0.5 c10, as in the first guess: the data do not tell both" in note for note in found.notes)
+    assert found.intervals[0, 0] < 0.2e6 < found.intervals[0, 1]
+
+
+def test_no_rubber_vanishes():
+    """The other constant was given as four times all there is: alone, the first would end at nothing."""
+    guess = replace(TRUTH, material=MooneyRivlin(0.15e6, 0.6e6))
+    found = calibrate(lengths(TRUTH, guess), "c10")
+    assert found.values[0] > 0.02e6
+    assert any("c01 = 4 c10, as in the first guess" in note for note in found.notes)
+
+
+def test_a_curve_without_pressure_counts():
+    """At P = 0 a stretched muscle is a rubber tube: it tells the rubber."""
+    tube = replace(TRUTH, fiber_extension=1.0)
+    guess = replace(tube, material=MooneyRivlin(0.12e6, 0.06e6))
+    made = Measurement(guess, 0.0, stroke=[-4e-3, -3e-3, -2e-3, -1e-3, 0.0, 3e-3], force=np.ones(6), measured="force")
+    (force,) = exact([made], tube)
+    assert (force[:4] > 1.0).all()
+    assert force[4:].tolist() == [0.0, 0.0]
+    found = calibrate(
+        replace(made, stroke=0.3 - made.deformed_length, deformed_length=None, force=force), "c10", ties=TIES
+    )
+    assert found.values == pytest.approx([0.2e6], rel=1e-4)
+
+
+def test_a_wrong_angle_is_called_wrong_and_halves_agree():
+    """The angle is not fitted: intervals of both halves of the data still meet, as they are widened."""
+    rng = np.random.default_rng(1)
+    truth, guess = muscle(rng)
+    data = bench(truth, guess, rng, noise=3e-3)
+    found = calibrate(data[1], ["c10", "fiber_extension"], ties=TIES)
+    assert not found.fits
+    assert found.notes[0].startswith("the model does not fit: ")
+    assert found.widening.max() > 1.5
+    right = calibrate(data[1], FIT, ties=TIES)
+    assert right.fits
+    assert right.leave_one_out["force"] < 0.5 * found.leave_one_out["force"]
+    assert np.all(np.abs(right.values - values(truth)) < 4.0 * right.standard_errors)
+
+
+def test_leaving_out_a_curve_foretells_a_fit_without_it():
+    rng = np.random.default_rng(8)
+    truth, guess = muscle(rng)
+    whole = bench(truth, guess, rng)[1]
+    found = calibrate(whole, FIT, ties=TIES)
+    missed = []
+    for pressure in np.unique(whole.pressure):
+        seen = whole.pressure != pressure
+        part = Measurement(
+            whole.tube, whole.pressure[seen], contraction=1 - whole.deformed_length[seen] / whole.tube.length,
+            force=whole.force[seen], measured="force",
+        )  # fmt: skip
+        refit = calibrate(part, FIT, ties=TIES)
+        own = ~seen & (whole.force > 0.0)
+        unseen = refit.band("force", whole.pressure[own], deformed_length=whole.deformed_length[own])
+        missed.append(unseen.force.values - whole.force[own])
+    assert found.leave_one_out["force"] == pytest.approx(np.sqrt(np.mean(np.concatenate(missed) ** 2)), rel=0.25)
+
+
+def test_faults_of_what_is_known():
+    curve = lengths(TRUTH, GUESS)
+    with pytest.raises(ActuatorError) as caught:
+        calibrate(
+            curve, ["alpha", "colour"], bounds={"wall": (2, 1)}, priors={"alpha": (30, -1), "beta": 3},
+            ties={"beta": "alpha+1"}, gamma=(1, 1),
+        )  # fmt: skip
+    starts = [
+        "fit: found 'colour'",
+        "bounds of wall",
+        "priors of alpha",
+        "priors of beta",
+        "priors: found str 'gamma'",
+        "ties",
+    ]
+    assert [any(fault.startswith(start) for fault in caught.value.faults) for start in starts] == [True] * 6
+
+
+def test_the_shell_and_toml_say_the_same(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    curve = lengths(TRUTH, GUESS)
+    rows = "".join(f"{p / 1e3:.6f};{300 - 1e3 * v:.6f};x\n" for p, v in zip(curve.pressure, curve.deformed_length))
+    (tmp_path / "free.csv").write_text(f"pressure [kPa(g)];stroke [mm];remark\n{rows}")
+    (tmp_path / "case.toml").write_text(
+        '[data]\nfiles = ["free.csv"]\n[actuator]\nalpha = "26 deg"\nlength = "300 mm"\nradius = "8 mm"\nwall = "1.5 mm"\n'
+        'c10 = "0.15 MPa"\nc01 = "75 kPa"\n[fit]\nparameters = ["c10", "fiber_extension"]\n[priors]\nalpha = [25, "1 deg"]\n'
+        '[ties]\nc01 = "0.5*c10"\n'
+    )
+    words = [
+        "--alpha",
+        "26",
+        "--beta",
+        "-26",
+        "--length",
+        "300 mm",
+        "--radius",
+        "8 mm",
+        "--wall",
+        "1.5 mm",
+        "--c10",
+        "0.15 MPa",
+    ]
+    known = ["--c01", "75 kPa", "--fit", "c10", "fiber_extension", "--prior", "alpha=25,1 deg", "--tie", "c01=0.5*c10"]
+    assert run("calibrate", "free.csv", *words, *known) == DONE
+    shell = capsys.readouterr().out
+    assert run("calibrate", "case.toml", "--report", "page.html") == DONE
+    toml = capsys.readouterr().out
+    assert toml == shell + "page.html\n"
+    assert "1 column not needed and passed over: 'remark' (column 3)" in shell
+    page = (tmp_path / "page.html").read_text()
+    assert "data:image/png;base64," in page
+    assert "[actuator]" in page
+    assert "://" not in page  # nothing is fetched
+    assert "--report: found" in refused(capsys, "calibrate", "case.toml", "--report", "page.pdf")
+    (tmp_path / "case.toml").write_text("[data]\nfile = 1\n")
+    assert "data.file: unknown; it has files, measured" in refused(capsys, "calibrate", "case.toml")
