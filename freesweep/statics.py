@@ -15,7 +15,7 @@ from .quantities import Names, Quantities
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .thick_wall import thin_wall_attributes
-from .worst_places import with_own
+from .worst_places import FAMILIES, with_own
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,7 +48,7 @@ def lock(
     loads = {"force": 0.0, "torque": 0.0, "pressure": np.inf}
     result = _differentiated(_solve(tube, loads, stations, accuracy), tube, names, loads, accuracy)
     result = result.drop_vars(["limit_pressure", "limit_pressure_error", "limit_found", *LOADS])
-    for name in ("fiber_tension_alpha", "fiber_tension_beta"):
+    for name in (f"{what}_{family}" for what in ("fiber_tension", "least_tension") for family in FAMILIES):
         # the kernel's locked state is that of the pressure c10
         for one in (name, f"{name}_error"):
             result[one] = result[one] / tube.material.c10

@@ -101,8 +101,8 @@ FLAG_OF = {
     ),
 }
 
-# of single actuators alone, which no atlas stores
-ALONE = {
+# of single actuators alone, which no atlas stores: along the whole tube, and of held ones
+WHOLE = {
     "outer_radius": Variable("m", "largest outer radius along the tube"),
     "largest_stretch": Variable("1", "largest stretch of the wall"),
     "slack_alpha": Variable("1", "share of the length without a pull in the first family"),
@@ -113,6 +113,8 @@ ALONE = {
     "least_tension_beta": Variable(
         "N", "least tension of the whole second family, negative where it would have to push"
     ),
+}
+HELD_ALONE = {
     "held_path": Variable("1", "way by which the held state was found"),
     "least_buckled_pressure": Variable("Pa", "least pressure at which the buckled branch has a state"),
 }
@@ -193,12 +195,12 @@ def attributes(name: str) -> dict:
         kind = "stable" if name.endswith("stable") else name
         return {"long_name": FLAG_OF[name][0], **flag_attributes(kind)}
     if name == "held_path":
-        return {"long_name": ALONE[name].long_name, **flag_attributes(name)}
+        return {"long_name": HELD_ALONE[name].long_name, **flag_attributes(name)}
     if name.endswith("_error"):
         of = name.removesuffix("_error")
-        units = PROFILES[of][0] if of in PROFILES else (VARIABLES | ALONE)[of].units
+        units = PROFILES[of][0] if of in PROFILES else (VARIABLES | WHOLE | HELD_ALONE)[of].units
         return {"units": units, "long_name": f"error bound of {of}"}
-    of = (VARIABLES | ALONE)[name]
+    of = (VARIABLES | WHOLE | HELD_ALONE)[name]
     return {"units": of.units, **_named(name, of.long_name)}
 
 

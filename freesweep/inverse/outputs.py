@@ -52,15 +52,3 @@ def _outer_radius(middle, design):
 
     with np.errstate(invalid="ignore"):
         return np.maximum(outer(middle), outer(r0))
-
-
-def widest(tube, found):
-    """The largest outer radius along the profiles of states (..., x), and its bound; fibers that are taut tell the stretch,
-    ``lambda_1 = gamma cos(alpha')/cos(alpha)``.
-    """
-    share = found["x"].values / tube.length
-    alpha, _ = tube.angles(share)
-    outside = (tube.radius + tube.profile("wall").at(share)) ** 2 - tube.fiber_surface**2
-    r, turned = found["deformed_radius"].values, np.radians(found["alpha_deformed"].values)
-    stretch = tube.fiber_extension * np.cos(turned) / np.cos(np.radians(alpha))
-    return np.max(np.sqrt(r * r + outside / stretch), axis=-1), np.max(found["deformed_radius_error"].values, axis=-1)

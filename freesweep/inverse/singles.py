@@ -9,7 +9,7 @@ from ..faults import ActuatorError
 from ..holding import blocked_force, blocked_torque
 from ..statics import inflate, lock
 from ..status import INVALID, OK
-from .outputs import FOLLOWING, output, widest
+from .outputs import FOLLOWING, output
 from .stiff import derivatives_for, stiffness_of
 from .vectors import HARDLY
 
@@ -47,16 +47,13 @@ def solve_single(tube, asked, design, accuracy) -> dict:
         own = np.array([given["pressure"] if p is None else p for p in own])
         pressures, places = np.unique(own, return_inverse=True)
         names = {name for state in states for name in asked[state]}
-        x = None if "outer_radius" in names else 0.0
         more = {"accuracy": accuracy, "derivatives": derivatives_for(names, kind)}
-        found = states_of(tube, kind, rest, pressures, given, x, **more)
+        found = states_of(tube, kind, rest, pressures, given, 0.0, **more)
         numbers = {name: v.values for name, v in found.data_vars.items() if "x" not in v.dims}
         numbers |= stiffness_of(numbers, names, kind)
         for name in names:
             seen = (name, kind, numbers, given)
-            if name == "outer_radius" and name not in numbers:
-                value, bound = widest(tube, found)
-            elif name in (*numbers, *FOLLOWING):
+            if name in (*numbers, *FOLLOWING):
                 value, bound = output(*seen)
             else:  # of other tubes than this one
                 value, bound = np.nan, np.nan
