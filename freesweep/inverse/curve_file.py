@@ -3,8 +3,9 @@
 import os
 from pathlib import Path
 
-from ..calibration.csv_file import SIGMA, _read
+from ..calibration.csv_file import KNOWN, SIGMA
 from ..faults import ActuatorError
+from ..table_file import TEXT, read_columns
 
 
 def is_path(value) -> bool:
@@ -15,7 +16,8 @@ def is_path(value) -> bool:
 def columns_of(path, output, conditions, faults, where):
     """``(values, name -> condition, sigma)`` of a curve, arrays (points,); sigma None where the file has none."""
     try:
-        columns = _read(Path(os.fspath(path)))
+        found = read_columns(Path(os.fspath(path)), KNOWN)
+        columns = {name: values for name, values in found.values.items() if KNOWN.units[name] != TEXT}
     except (OSError, ActuatorError) as error:
         words = getattr(error, "faults", None) or [f"{path}: {getattr(error, 'strerror', error)}"]
         faults += [f"{where}: {word if str(path) in word else f'{Path(path).name}: {word}'}" for word in words]
