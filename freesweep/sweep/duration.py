@@ -10,7 +10,7 @@ import numpy as np
 from .plan import FREE
 
 TYPICAL, HELD, VARYING = 5e-6, 3e-4, 2e-3  # [s] of a free state on one core; of a held one; of any where tubes vary
-PHYSICAL = 5e-2  # [s] of any of physical tubes
+PHYSICAL = 2e-3  # [s] of any of physical tubes
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more than a second
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
