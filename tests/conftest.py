@@ -45,6 +45,9 @@ fs.inflate(varying, 1e4)
 fs.inflate(alike, 1e4)
 kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes", "seek_lanes", "query"])
 """
+PHYSICAL = """
+fs.inflate(fs.Actuator(alpha=30, beta=-30, model="physical", **sections), 1e4)
+"""
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -56,10 +59,10 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_sessionstart(session):
-    """Before the whole suite: two processes compile side by side, or each worker would compile the same for itself."""
+    """Before the whole suite: processes compile side by side, or each worker would compile the same for itself."""
     options = session.config.option
     whole = [*session.config.args] in ([], ["tests"], ["tests/"])
     if whole and not hasattr(session.config, "workerinput") and not options.collectonly and not options.keyword:
-        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (HELD, FREE)]
+        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (HELD, FREE, PHYSICAL)]
         for part in parts:
             part.wait()

@@ -95,7 +95,7 @@ def random_design(draw, loads):
 def compared():
     """Both solutions of a random sample: (design, pressure, status, values, bounds, exact values, their errors)."""
     draw = np.random.default_rng(2024)
-    designs = [random_design(draw, loads) for loads in (False, True) for _ in range(32)]
+    designs = [random_design(draw, loads) for loads in (False, True) for _ in range(16)]
     walks = Walks([tube(**design) for design, _ in designs], [pressures for _, pressures in designs])
     rows = []
     for k, (design, pressures) in enumerate(designs):

@@ -358,6 +358,7 @@ def test_every_public_callable_is_tried():
         "to_dataframe",
         "open_atlas",
         "example_atlas",
+        "explore",
         "Atlas",
         "closed_form",
     }

@@ -37,7 +37,7 @@ SHARD_EQUILIBRIA = 8192  # a second of work or less: what an interruption can co
 HELD_COST, VARYING_COST, PHYSICAL_COST = (
     32,
     8,
-    64,
+    16,
 )  # of a held state, of tubes that vary, of physical ones: in those of a
 # free state of others
 
