@@ -297,3 +297,16 @@ def test_what_is_chosen_is_read_with_its_unit(whole):
     """As everywhere in Python: texts, and a fault by its name."""
     plain, text = (design_map(whole, length=value, paths=False, examples=False) for value in (0.2, "200 mm"))
     assert np.array_equal(mesh_of(plain).filled(0.0), mesh_of(text).filled(0.0))
+
+
+@pytest.mark.parametrize(("fibers", "words"), [("bonded", "would have to push"), ("loose", "slack")])
+def test_states_whose_fibers_are_slack_are_hatched_and_named(fibers, words):
+    data = atlas()
+    data = data.assign(slack_fiber=xr.where(data["beta"] > 0.0, 1, 0) + 0 * data["status"].astype(np.int8))
+    ax = design_map(data.assign_attrs(fibers=fibers))
+    (patch,) = (each for each in ax.patches if each.get_gid() == "slack")
+    assert patch.get_path().vertices[:, 1].min() >= 0.0  # cells of positive beta only, and their images
+    assert any(words in text.get_text() for text in ax.get_legend().get_texts())
+    assert not [each for each in design_map(data, "limit_pressure").patches if each.get_gid() == "slack"]
+    assert not [each for each in design_map(data, slack=False).patches if each.get_gid() == "slack"]
+    pyplot.close("all")

@@ -12,9 +12,11 @@ from matplotlib.transforms import ScaledTranslation
 
 from ..quantities import Quantity
 from . import glyph, regions, style
+from .choice import read_selection
 from .display import display, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, plane
+from .slack import draw_slack
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,6 +33,7 @@ def design_map(
     ax: Axes | None = None,
     paths: bool = True,
     examples: bool = True,
+    slack: bool = True,
     **select: Quantity,
 ) -> Axes:
     """Draws ``variable`` of an atlas (xarray Dataset) over alpha and beta [degree], and returns the Axes.
@@ -40,7 +43,8 @@ def design_map(
     Between its nodes an atlas is interpolated, as by a query; a dataset that cannot be is drawn at the nearest node, which
     is said there and in a warning. Not given: the largest pressure, the force and torque nearest zero,
     the middle of anything else. ``paths`` draws the way of some designs under pressure (uniform tube), ``examples``
-    little actuators; both want Axes about 100 mm wide. Without ``ax`` a figure of 170 mm is made; the figure of a given
+    little actuators; both want Axes about 100 mm wide. ``slack`` hatches where a fiber family is slack, or would have to
+    push. Without ``ax`` a figure of 170 mm is made; the figure of a given
     one should have ``layout="constrained"``, for the colour bar and the legend stand outside the Axes.
 
     Shown: lengths as change in percent, radii in units of the undeformed one, rotation in degrees, pressure in kPa,
@@ -65,6 +69,8 @@ def design_map(
                 Line2D([], [], color=colour, linewidth=1.0, label=f"fibers at ${name}$")
                 for name, colour in zip((r"\alpha", r"\beta"), style.FAMILIES)
             ]
+        if slack:
+            handles += draw_slack(ax, dataset, variable, sheet, read_selection(select))
         handles += draw_failures(ax, sheet, variable, dataset).values()
         _dress(ax, sheet, variable, handles)
     return ax

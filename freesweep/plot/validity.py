@@ -7,8 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch, PathPatch
-from matplotlib.path import Path
+from matplotlib.patches import Patch
 
 from ..quantities import Quantity
 from ..status import VALUED
@@ -16,9 +15,10 @@ from . import style
 from .between import between
 from .choice import check_name, read_selection
 from .display import axis_label
-from .fill import cell, draw_failures, edges
-from .plane import Plane, section, status_of
+from .fill import draw_failures, edges
+from .plane import Plane, section
 from .section import head, legend, scaled, window
+from .slack import flag, hatch
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,9 +69,9 @@ def validity_map(
             if np.any(solved & (kind == k)):
                 words = SOLVED if slack is None else words
                 keys[words] = Patch(facecolor=colour, edgecolor=style.QUIET, linewidth=0.4, label=words)
-        loose = solved & (_flag(dataset, host, stable, x, y, select) == 0.0)
+        loose = solved & (flag(dataset, host, stable, x, y, select) == 0.0)
         if loose.any():
-            _hatch(ax, sheet, loose)
+            hatch(ax, sheet, loose, UNSTABLE[0], "unstable")
             keys["unstable"] = Patch(
                 fill=False, edgecolor=style.QUIET, linewidth=0.4, hatch=UNSTABLE[0], label=UNSTABLE[1]
             )
@@ -113,28 +113,14 @@ def validity_maps(
     return figure
 
 
-def _flag(dataset, host, flag, x, y, select):
-    """A flag on the sheet of its variable, as numbers (m, n); NaN where nothing is stored."""
-    status = status_of(host)
-    lent = dataset.assign({host: dataset[flag].astype(float), status: dataset[status] * 0})
-    return section(lent, host, x, y, select).values.filled(np.nan)
-
-
-def _slack(dataset, host, flag, x, y, select):
+def _slack(dataset, host, name, x, y, select):
     """Slack families (m, n); where a node is the image of one with its families swapped, they are swapped back."""
-    kind = _flag(dataset, host, flag, x, y, select)
+    kind = flag(dataset, host, name, x, y, select)
     if {x, y} != {"alpha", "beta"}:
         return kind
     a, b = np.abs(dataset["alpha"]), np.abs(dataset["beta"])
-    marked = dataset.assign(mark=(np.sign(a - b) + 0.0 * dataset[flag]).astype(float))
+    marked = dataset.assign(mark=(np.sign(a - b) + 0.0 * dataset[name]).astype(float))
     sheet = section(dataset, host, x, y, select)
     alpha, beta = np.meshgrid(sheet.x, sheet.y)
-    swapped = _flag(marked, host, "mark", x, y, select) * np.sign(np.abs(alpha) - np.abs(beta)) < 0.0
+    swapped = flag(marked, host, "mark", x, y, select) * np.sign(np.abs(alpha) - np.abs(beta)) < 0.0
     return np.where(swapped & np.isin(kind, (1, 2)), 3 - kind, kind)
-
-
-def _hatch(ax, sheet, where):
-    x, y = edges(sheet.x), edges(sheet.y)
-    cells = [cell(x[i : i + 2], y[j : j + 2]) for j, i in np.argwhere(where)]
-    ax.add_patch(PathPatch(Path.make_compound_path(*cells), fill=False, edgecolor=style.QUIET, linewidth=0.0,
-                           hatch=UNSTABLE[0], gid="unstable", zorder=2))  # fmt: skip

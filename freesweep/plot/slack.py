@@ -1,0 +1,45 @@
+"""Where states rely on fibers that would have to push, or hang loose: flags over two axes, and their hatch on a map."""
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+
+from . import style
+from .between import between
+from .fill import cell, edges
+from .plane import section, status_of
+
+FAINT = 0.45  # of a hatch over colours: they are what is read
+SLACK = "////"
+WORDS = {"loose": "threads are slack somewhere", "bonded": "fibers would have to push"}
+
+
+def flag(dataset, host, name, x, y, select):
+    """A flag of the states that ``host`` is of, over ``x`` and ``y``: (m, n), NaN where there is none."""
+    status = status_of(host)
+    lent = dataset.assign({host: dataset[name].astype(float), status: dataset[status] * 0})
+    return section(lent, host, x, y, select).values.filled(np.nan)
+
+
+def hatch(ax, sheet, where, pattern, gid, colour=style.QUIET):
+    """Hatch the cells of the nodes ``where``."""
+    x, y = edges(sheet.x), edges(sheet.y)
+    cells = [cell(x[i : i + 2], y[j : j + 2]) for j, i in np.argwhere(where)]
+    if cells:
+        ax.add_patch(PathPatch(Path.make_compound_path(*cells), fill=False, edgecolor=colour, linewidth=0.0,
+                               hatch=pattern, gid=gid, zorder=2.5))  # fmt: skip
+
+
+def draw_slack(ax, dataset, variable, sheet, select) -> list:
+    """Hatch, on a map of both angles, the free states in which a family is slack; returns what the legend says of it."""
+    if "slack_fiber" not in dataset or set(dataset[variable].dims) != set(dataset["slack_fiber"].dims):
+        return []  # no free state, or none at a pressure
+    dataset = between(dataset, variable, select, ("alpha", "beta"))
+    where = ~np.ma.getmaskarray(sheet.values) & (flag(dataset, variable, "slack_fiber", "alpha", "beta", select) > 0)
+    if not where.any():
+        return []
+    colour = (*to_rgb(style.QUIET), FAINT)
+    hatch(ax, sheet, where, SLACK, "slack", colour)
+    words = WORDS[dataset.attrs.get("fibers", "bonded")]
+    return [Patch(fill=False, edgecolor=colour, linewidth=0.4, hatch=SLACK, label=words)]
