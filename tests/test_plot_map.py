@@ -307,6 +307,7 @@ def test_states_whose_fibers_are_slack_are_hatched_and_named(fibers, words):
     (patch,) = (each for each in ax.patches if each.get_gid() == "slack")
     assert patch.get_path().vertices[:, 1].min() >= 0.0  # cells of positive beta only, and their images
     assert any(words in text.get_text() for text in ax.get_legend().get_texts())
-    assert not [each for each in design_map(data, "limit_pressure").patches if each.get_gid() == "slack"]
+    for other in ("limit_pressure", "blocked_torque"):
+        assert not [each for each in design_map(data, other).patches if each.get_gid() == "slack"]
     assert not [each for each in design_map(data, slack=False).patches if each.get_gid() == "slack"]
     pyplot.close("all")

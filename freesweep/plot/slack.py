@@ -33,8 +33,9 @@ def hatch(ax, sheet, where, pattern, gid, colour=style.QUIET):
 
 def draw_slack(ax, dataset, variable, sheet, select) -> list:
     """Hatch, on a map of both angles, the free states in which a family is slack; returns what the legend says of it."""
-    if "slack_fiber" not in dataset or set(dataset[variable].dims) != set(dataset["slack_fiber"].dims):
-        return []  # no free state, or none at a pressure
+    free = "slack_fiber" in dataset and status_of(variable) == "status"
+    if not free or set(dataset[variable].dims) != set(dataset["slack_fiber"].dims):  # held, or at no pressure
+        return []
     dataset = between(dataset, variable, select, ("alpha", "beta"))
     where = ~np.ma.getmaskarray(sheet.values) & (flag(dataset, variable, "slack_fiber", "alpha", "beta", select) > 0)
     if not where.any():
