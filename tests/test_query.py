@@ -400,3 +400,26 @@ def test_interpolators_give_the_same_numbers_and_their_gradients(atlas):
     assert single(*POINT.values()) == atlas.query(**POINT, variables="rotation")["rotation"]
     with pytest.raises(QueryError, match="found 2 values; give 5"):
         single(1.0, 2.0)
+
+
+def test_a_locked_energy_that_varies_in_the_wall_is_answered_beside_what_does_not(tmp_path):
+    """Of a family the fullest variable tells the axes."""
+    import freesweep as fs
+
+    atlas = fs.sweep(
+        alpha=np.arange(20.0, 31.0), beta=np.arange(-50.0, -39.0), length=0.15, radius=5e-3, out=tmp_path / "walls.nc",
+        wall=[1e-3, 1.25e-3, 1.5e-3, 1.75e-3, 2e-3], c10=[1e5, 1.5e5, 2e5, 2.5e5], c01=5e4, pressure=[0.0, 1e5],
+        progress=False,
+    )  # fmt: skip
+    names = ["locked_strain_energy", "locked_rotation"]
+    answer = atlas.query(names, alpha=24.5, beta=-44.5, wall=1.3e-3, c10=1.3e5)
+    rubber = fs.MooneyRivlin(1.3e5, 5e4)
+    tube = fs.Actuator(alpha=24.5, beta=-44.5, length=0.15, radius=5e-3, wall=1.3e-3, material=rubber)
+    exact = fs.lock(tube)
+    assert answer["locked_status"] == 0
+    for name in names:
+        missed = abs(float(answer[name] - exact[name.removeprefix("locked_")]))
+        assert missed <= float(answer[f"{name}_error"]), name
+    assert float(atlas.query(names[:1], alpha=24.5, beta=-44.5, wall=1.3e-3, c10=1.3e5)[names[0]]) == float(
+        answer[names[0]]
+    )

@@ -43,6 +43,11 @@ class Frame:
             self._axes[name] = make_axis(name, self.values[name])
         return self._axes[name]
 
+    def axes_of(self, variables) -> tuple:
+        """The axes along which any of these variables varies: the locked energy does in the wall, too."""
+        fullest = max((self.dims[name] for name in variables if name in self.dims), key=len)
+        return tuple(name for name in fullest if self.varies(name))
+
     def varies(self, name) -> bool:
         """Whether a name is an axis along which points are told apart."""
         return name == "design" or (name not in self.by_design and len(self.values[name]) > 1)

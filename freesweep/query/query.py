@@ -41,15 +41,14 @@ class Reader:
     def table(self, key, values=None) -> Table:
         """The table of a family of variables; with ``values`` (axis -> (n,)) one that serves to answer at them."""
         if key not in self._tables:
-            some = next(name for name in FAMILIES[key].variables if name in self.frame.dims)
-            names = tuple(name for name in self.frame.dims[some] if self.frame.varies(name))
+            names = self.frame.axes_of(FAMILIES[key].variables)
             self._tables[key] = Parts(lambda box: Table(self.data, self.frame, key, box), self.frame, names)
         return self._tables[key].table(values)
 
     def factors(self, name) -> calibration.Factors:
         """What was measured of one variable's stated errors."""
         if name not in self._factors:
-            names = [axis for axis in self.frame.dims[name] if self.frame.varies(axis)]
+            names = list(self.frame.axes_of(FAMILIES[FAMILY_OF[name]].variables))
             axes = names + [""] * (2 - sum(axis != "design" for axis in names))  # the kernels' own
             self._factors[name] = calibration.factors(self.data, name, axes)
         return self._factors[name]

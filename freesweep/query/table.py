@@ -39,8 +39,7 @@ class Table:
     def __init__(self, data, frame, key, box=None):
         self.data, self.frame = data, frame
         self.family = physical(FAMILIES[key]) if frame.model.is_physical else FAMILIES[key]
-        some = next(name for name in self.family.variables if name in frame.dims)
-        self.names = tuple(name for name in frame.dims[some] if frame.varies(name))
+        self.names = frame.axes_of(self.family.variables)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
         whole = [frame.axis(name) for name in self.names]
         self.ranks = [ranks(len(axis.nodes))[slice(*self.box[axis.name])] for axis in whole]
@@ -118,6 +117,7 @@ class Table:
         variable = self.data[name]
         part = {name: slice(*self.box[name]) if name in self.names else 0 for name in variable.dims}
         array = np.asarray(variable.isel(part).values)
+        array = array[tuple(slice(None) if name in variable.dims else None for name in self.names)]
         array = np.broadcast_to(array.reshape(array.shape + (1,) * self.padding), self.shape)
         return np.ascontiguousarray(array).ravel()
 
