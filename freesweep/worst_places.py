@@ -35,7 +35,8 @@ def worst_places(tube, profiles, stations, slack_fiber) -> dict:
         found |= _largest(name, *_with_error(function, tube, part, x / tube.length))
     for bit, family in enumerate(FAMILIES, 1):
         tension, error = part[f"fiber_tension_{family}"], part[f"fiber_tension_{family}_error"]
-        least = _largest(f"least_tension_{family}", -tension, error)
+        top = _top(-tension)
+        least = _largest(f"least_tension_{family}", -tension, top, _taken(error, top)[..., 0])
         found |= {name: value if name.endswith("_error") else -value for name, value in least.items()}
         found |= _share(f"slack_{family}", tension, (slack_fiber & bit) > 0, x)
     return found
@@ -73,27 +74,34 @@ def _largest_stretch(tube, y, alpha, beta, share):
 
 
 def _with_error(function, tube, part, share):
-    """A function of the profiles along the tube, and its bound from theirs."""
+    """A function of the profiles along the tube, and its bound from theirs where it is largest."""
     names = ("deformed_radius", "alpha_deformed", "beta_deformed")
     at = [part[name] for name in names]
     with np.errstate(invalid="ignore", divide="ignore"):
-        value, error = function(tube, *at, share), 0.0
+        value = function(tube, *at, share)
+        top = _top(value)
+        here, where, error = [_taken(one, top) for one in at], share[top], 0.0
         for k, name in enumerate(names):
-            moved = [one + part[f"{name}_error"] if j == k else one for j, one in enumerate(at)]
-            error = error + np.abs(function(tube, *moved, share) - value)
-    return value, error
+            moved = [one + _taken(part[f"{name}_error"], top) if j == k else one for j, one in enumerate(here)]
+            error = error + np.abs(function(tube, *moved, where) - _taken(value, top))
+    return value, top, error[..., 0]
 
 
-def _largest(name, value, error):
-    """The largest along the last axis, with what its samples may miss."""
-    bend = np.abs(np.diff(value, n=2, axis=-1))
-    top = np.argmax(np.nan_to_num(value, nan=-np.inf), axis=-1)[..., None]
-    near = np.clip(top - 1 + np.arange(-1, 2), 0, bend.shape[-1] - 1)
-    missed = CURVED * np.max(np.take_along_axis(bend, near, axis=-1), axis=-1)
+def _top(value):
+    """Where the last axis is largest: (..., 1)."""
+    return np.argmax(np.nan_to_num(value, nan=-np.inf), axis=-1)[..., None]
+
+
+def _taken(array, place):
+    return np.take_along_axis(array, place, axis=-1)
+
+
+def _largest(name, value, top, error):
+    """The largest along the last axis, at ``top`` with this ``error``, and what its samples may miss."""
+    near = np.clip(top - 1 + np.arange(-2, 4), 0, value.shape[-1] - 1)
+    missed = CURVED * np.max(np.abs(np.diff(_taken(value, near), n=2, axis=-1)), axis=-1)
     inside = (top[..., 0] > 0) & (top[..., 0] < value.shape[-1] - 1)  # at an end nothing lies beyond
-    bound = np.take_along_axis(np.broadcast_to(error, value.shape), top, axis=-1)[..., 0]
-    largest = np.take_along_axis(value, top, axis=-1)[..., 0]
-    return {name: largest, f"{name}_error": bound + np.where(inside, missed, 0.0)}
+    return {name: _taken(value, top)[..., 0], f"{name}_error": error + np.where(inside, missed, 0.0)}
 
 
 def _share(name, tension, somewhere, x):
