@@ -27,13 +27,20 @@ ALONG_MU = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 @numba.njit
-def density(y, v, cell, load):
+def at_point(y, v, cell, load):
     mu = load[3]
     if cell[0] == BRATU:
         growth = mu * exp(y - 1.0)
         return 1.0, growth, -v, growth, 0.0, -1.0
     root = sqrt(1.0 + v * v)
     return y - mu, -root, -(y - mu) * v / root, 0.0, -v / root, -(y - mu) / root**3
+
+
+@numba.njit
+def density(y, v, cell, load):
+    if len(cell) > 4:  # and what is handed on from cell to cell: nothing
+        return (*at_point(y, v, cell, load), cell[4])
+    return at_point(y, v, cell, load)
 
 
 @numba.njit
@@ -49,6 +56,8 @@ def conjugate(y, v, cell, load, direction):
 def integrands(y, v, cell, load):
     """Length of the axis, volume/pi, length of the meridian, area/(2 pi)."""
     root = sqrt(1.0 + v * v)
+    if len(cell) > 4:
+        return 1.0, y * y, root, y * root, 0.0, cell[4]
     return 1.0, y * y, root, y * root, 0.0
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from freesweep.solver import membrane, physical, wall
+from freesweep.solver import membrane, physical, relaxed, wall
+from freesweep.solver.mesh import nothing_yet
 
 QUICK, MANY = 2000, 100_000
 
@@ -33,7 +34,7 @@ def random_point(draw, loose=1.0, room=0.02):
 
 def value(y, v, cell, load):
     """L itself."""
-    _, s, G_1, psi, *_ = physical.state(y, v, cell, load)
+    _, s, G_1, psi, *_ = physical.state(y, v, cell, load, nothing_yet(0.0))
     W = wall.energy(y, G_1, psi, cell[2], load[1], load[2])[0]
     return (load[3] * y * y + load[4]) * s - W + load[5] * psi
 
@@ -70,7 +71,7 @@ def check_maximum(draw):
     H, D, area = cell
     T, t = load[3] * y * y + load[4], np.array([H + D, H - D])
     most = load[0] ** 2 * (1 + t * t)
-    _, _, G_1, psi, *_ = physical.state(y, v, cell, load)
+    _, _, G_1, psi, *_ = physical.state(y, v, cell, load, nothing_yet(0.0))
     gaps = 1 + G_1 + y * y * (t + psi) ** 2 - most
     assert np.all(gaps <= 1e-12 * (1 + most))
     low = max(v * v, wall.narrowest(y, load[2]))
@@ -111,6 +112,29 @@ def test_partial_derivatives_are_those_of_the_density(loose):
     assert np.mean([alike for alike, _ in seen]) > 0.98
     kinds = {kind for _, kind in seen}
     assert len(kinds) == (4 if loose else 1)  # every set of taut families was met
+
+
+def test_what_a_neighbour_hands_on_changes_nothing_but_the_way():
+    """Begun from a point nearby, from one on the other side of a change of the taut families, or from nothing."""
+    draw, changed = np.random.default_rng(9), 0
+    for _ in range(QUICK // 4):
+        y, v, cell, load = random_point(draw, room=0.05)
+        T = load[3] * y * y + load[4]
+        _, G_1, psi, alpha, beta = relaxed.settle(
+            y, v, cell[0], cell[1], load[0] ** 2, T, load[5], cell[2], load[1], load[2]
+        )
+        alone = physical.state(y, v, cell, load, nothing_yet(0.0))
+        far = 10 ** draw.uniform(-5, 0)
+        beside = y * (1 + far * draw.uniform(-1, 1)), v + far * draw.uniform(-1, 1)
+        there = physical.state(*beside, cell, load, nothing_yet(0.0))
+        after = physical.state(y, v, cell, load, physical.handed_on(there, *beside, load))
+        changed += there.kind != alone.kind
+        for at in (alone, after):
+            assert at.kind == alpha + 2.0 * beta
+            wanted, found = (G_1, psi, alone.L_y), (at.G_1, at.psi, at.L_y)
+            for one, other, unit in zip(wanted, found, (1e-11, 1e-11, 1e-8)):
+                assert abs(one - other) <= unit * (1.0 + abs(one))
+    assert changed >= 5
 
 
 def test_no_optimizer_finds_a_better_place():

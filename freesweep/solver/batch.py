@@ -15,6 +15,7 @@ from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
 NOTHING = np.empty(0)
+FEW_DOUBLINGS, MANY_DOUBLINGS = 3, 6  # of the base mesh, in vectors
 FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
@@ -117,13 +118,22 @@ def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, fo
     for carry, solve, kind, some in _kinds(problems):
         carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, cosines)
         carried = some[owners] & asked & np.isfinite(stretches)
-        for cells in (base, FINER * base):
+        for fineness in rounds(base, len(kind) > 1):
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_steepness(cosines[rows]), kind="stable")
             solve(
-                problems, owners, pressures, stretches, rows[alike], *kind, cells, accuracy, *found[:4],
+                problems, owners, pressures, stretches, rows[alike], *kind, *fineness, accuracy, *found[:4],
                 *(drawn if len(kind) == 1 else ()),
             )  # fmt: skip
+
+
+def rounds(base, physical):
+    """Cells of the base mesh, and for physical tubes the most doublings, of one try after the other: of tubes whose fibers
+    go slack some need many, and a vector is at work as long as any of its states.
+    """
+    if not physical:
+        return (base,), (FINER * base,)
+    return (base, FEW_DOUBLINGS), (base, MANY_DOUBLINGS), (FINER * base, MANY_DOUBLINGS)
 
 
 def _kinds(problems):

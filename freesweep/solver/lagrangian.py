@@ -5,7 +5,8 @@
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
 wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
 ``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point; with the length h of a cell of a mesh behind, the
-density is that of the cell (:mod:`over_cell`). The length of a tuple is known when code is made: none is for the others.
+density is that of the cell (:mod:`over_cell`); with what the cell before handed on behind that, what the next one may have
+is answered, too. The length of a tuple is known when code is made: none is for the others.
 """
 
 from ..jit import kernel
@@ -25,6 +26,7 @@ from .membrane import (  # noqa: F401
     scales,
     strain_energy,
 )
+from .mesh import behind, nothing_yet
 
 
 @kernel
@@ -35,10 +37,14 @@ def density(y, v, cell, load):
 
 @kernel
 def _density(y, v, cell, load, wall):
+    if len(cell) > 4:
+        if len(wall) == 1:
+            return (*membrane.density(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
+        return over_cell.density(y, v, cell, load)
     if len(wall) == 1:
         return membrane.density(y, v, (cell[0], cell[1], cell[2]), load)
     if len(cell) > 3:
-        return over_cell.density(y, v, cell, load)
+        return over_cell.density(y, v, behind(cell, cell[3], nothing_yet(0.0 * y)), load)[:6]
     return physical.density(y, v, cell, load)
 
 
@@ -63,10 +69,14 @@ def integrands(y, v, cell, load):
 
 @kernel
 def _integrands(y, v, cell, load, wall):
+    if len(cell) > 4:
+        if len(wall) == 1:
+            return (*membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
+        return over_cell.integrands(y, v, cell, load)
     if len(wall) == 1:
         return membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load)
     if len(cell) > 3:
-        return over_cell.integrands(y, v, cell, load)
+        return over_cell.integrands(y, v, behind(cell, cell[3], nothing_yet(0.0 * y)), load)[:5]
     return physical.integrands(y, v, cell, load)
 
 
@@ -81,7 +91,7 @@ def _conjugate(y, v, cell, load, direction, wall):
     if len(wall) == 1:
         return membrane.conjugate(y, v, (cell[0], cell[1], cell[2]), load, direction)
     if len(cell) > 3:
-        return over_cell.conjugate(y, v, cell, load, direction)
+        return over_cell.conjugate(y, v, behind(cell, cell[3], nothing_yet(0.0 * y)), load, direction)
     return physical.conjugate(y, v, cell, load, direction)
 
 

@@ -33,6 +33,18 @@ def of_length(cell, h):
 
 
 @kernel
+def behind(cell, h, near):
+    """The cell, with its length and what the cell before it handed on."""
+    return cell[0], cell[1], cell[2], h, near
+
+
+@kernel
+def nothing_yet(zero):
+    """What is handed on to a first cell: what the numbers mean is the density's own affair, the first is not negative."""
+    return zero - 1.0, zero, zero, zero, zero, zero, zero, zero, zero
+
+
+@kernel
 def largest(cells):
     """The largest sizes of what varies along the tube."""
     a, b, c = abs(cells[0, 0]), abs(cells[0, 1]), abs(cells[0, 2])

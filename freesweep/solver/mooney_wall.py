@@ -12,14 +12,11 @@ from .membrane import excess
 
 
 @kernel
-def weigh(area, inner, count, places, weights, at):
+def weigh(area, inner, count, reciprocal):
     """Sums over the layers of 1, d, and 1/rho^2."""
     if count == 1:
         return area, 0.0 * area, area
-    total = 0.0 * area
-    for j in range(count):
-        total += area * weights[at + j] / (inner + area * places[at + j])
-    return area, area * (inner + 0.5 * area - 1.0), total
+    return area, area * (inner + 0.5 * area - 1.0), area * reciprocal
 
 
 @kernel
@@ -45,8 +42,8 @@ def stored(y, G_1, psi, area, c, k, inner, count, places, weights, at):
 
 
 @kernel
-def slopes(y, G_1, psi, area, c, k, inner, count, places, weights, at):
-    """``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
+def slopes(y, G_1, psi, area, c, k, inner, count, places, weights, at, reciprocal):
+    """With the mean of 1/rho^2 over the layers: ``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
     G = 1.0 + G_1
     e = 1.0 / G
     root = sqrt(e)
@@ -62,7 +59,7 @@ def slopes(y, G_1, psi, area, c, k, inner, count, places, weights, at):
         part = part * z
         two_q += part
         three_q += part * z
-    whole, d, i = weigh(area, inner, count, places, weights, at)
+    whole, d, i = weigh(area, inner, count, reciprocal)
     per_root = G * root  # 1/root
     d_two = (one_q - y2 * two_q) * per_root
     d_three = (two_q - y2 * three_q) * per_root

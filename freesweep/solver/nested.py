@@ -32,14 +32,16 @@ UNREACHED = 3  # the accuracy was not met on the finest mesh
 def integrate(integrands, x, y, n, cells, load, row):
     """Integrals over the tube on one mesh; whether the kind of cell, in which the density is smooth, changes along it."""
     length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
-    broken, before = False, -1.0
+    broken, before, near = False, -1.0, mesh.nothing_yet(0.0)
     varying = len(cells) > 1
     cell = mesh.cell_at(cells, 0)
     for j in range(n):
         if varying:
             cell = mesh.cell_at(cells, j)
         h = x[j + 1] - x[j]
-        s, v, t, w, kind = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, mesh.of_length(cell, h), load)
+        s, v, t, w, kind, near = integrands(
+            0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, mesh.behind(cell, h, near), load
+        )
         broken = broken or (kind != before and j > 0)
         before = kind
         length += h * s

@@ -4,12 +4,13 @@ The functional itself is discretized, on midpoint cells, so the gradient is the 
 Hessian is symmetric tridiagonal. A maximum of J is sought: gradient g and Hessian H are those of -J, and H is positive
 definite at a maximum. The pivots of its LDL^T factors count the directions in which a state is unstable (Sylvester).
 
-``density(y, v, cell, load) -> (room, L_y, L_v, L_yy, L_yv, L_vv)`` is handed in; a state is admissible where room > 0
-and y > 0. ``y[0]`` is held; so is ``y[n]`` unless ``free`` (a plane of symmetry: the natural condition).
+``density(y, v, cell, load) -> (room, L_y, L_v, L_yy, L_yv, L_vv)`` is handed in, which from cell to cell hands on what it
+likes (:func:`mesh.behind`); a state is admissible where room > 0 and y > 0. ``y[0]`` is held; so is ``y[n]`` unless ``free``
+(a plane of symmetry: the natural condition).
 """
 
 from ..jit import kernel
-from .mesh import cell_at, of_length
+from .mesh import behind, cell_at, nothing_yet, of_length
 
 MAX_ITERATIONS = 60  # a warm start takes 1 to 3, a bad first guess at a small angle 25
 MAX_HALVINGS = 30  # of one step: below 1e-9 of it nothing is gained
@@ -31,7 +32,7 @@ def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
     fits = True
     varying = len(cells) > 1
     cell = cell_at(cells, 0)
-    g_left, d_left = 0.0, 0.0
+    g_left, d_left, near = 0.0, 0.0, nothing_yet(0.0)
     for j in range(n):
         if varying:
             cell = cell_at(cells, j)
@@ -39,7 +40,7 @@ def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
         per_h = 1.0 / h
         v = (y[j + 1] - y[j]) * per_h
         middle = 0.5 * (y[j] + y[j + 1])
-        space, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, of_length(cell, h), load)
+        space, L_y, L_v, L_yy, L_yv, L_vv, near = density(middle, v, behind(cell, h, near), load)
         fits = fits and space > MIN_ROOM * least[j] and middle > 0.0  # a NaN counts as no room
         room[j] = space
         if convex:

@@ -4,110 +4,151 @@ A midpoint stands for a cell as long as the density is smooth there. Where the a
 C1, and between two families that hold one after the other lies a stretch as narrow as one likes in which both do: L_y all
 but jumps. Along a cell y is linear, so the mean of L over it is::
 
-    L(y, v) = 1/2 integral of L(y + r v, v) dr/(h/2),   r from -h/2 to h/2
+    L(y, v) = 1/h integral of L(y + r v, v) dr,   r from -h/2 to h/2
 
-by Simpson's rule, on PANELS panels where its three points are not of one kind; r is the share of L_v that moves the place.
-It is one more functional, with all its derivatives, so Newton's method and the nested meshes take it as they take others.
+by Simpson's rule, on four panels where its three points are not of one kind; r is the share of L_v that moves the place. It
+is one more functional, with all its derivatives, so Newton's method and the nested meshes take it as they take others.
 
-``cell`` is that of :mod:`lagrangian` with the length h of the cell behind.
+``cell`` is that of :mod:`lagrangian` with the length h of the cell behind, and what the cell before handed on, where fibers
+are looked for first; these functions hand on, last, what the next one may have.
 """
 
 from ..jit import kernel
 from . import physical
 from .either import select, some
 
-HUGE = 1e300
-PANELS = 4  # of a cell in which the kind changes
-MIXED = 4.0  # beside the kinds of :mod:`physical`
+EIGHTHS = 8  # of a cell lie between the points of the finer rule
+MIXED = 4.0  # beside the kinds of :mod:`relaxed`
 
 
 @kernel
-def weight(k, panels):
-    """Share of point k of Simpson's rule."""
-    return (1.0 if k == 0 or k == 2 * panels else 4.0 if k % 2 == 1 else 2.0) / (6.0 * panels)
+def along_cell(k, h):
+    """``(place from the middle, weight in 24ths)`` of point k of the finer rule, from 0 to EIGHTHS."""
+    return h * (k / EIGHTHS - 0.5), 4.0 if k % 2 == 1 else 2.0
+
+
+@kernel
+def plus(total, weight, part):
+    """Five sums, with one part more."""
+    return (
+        total[0] + weight * part[0],
+        total[1] + weight * part[1],
+        total[2] + weight * part[2],
+        total[3] + weight * part[3],
+        total[4] + weight * part[4],
+    )
+
+
+@kernel
+def mean(changes, ends, middle, between):
+    """Simpson's rule, on four panels where the kind ``changes``: the points ``between`` are weighted already."""
+    sixth, part = 1.0 / 6.0, 1.0 / 24.0
+    coarse = plus(ends, 4.0, middle)
+    fine = plus(plus(ends, 2.0, middle), 1.0, between)
+    return (
+        select(changes, part * fine[0], sixth * coarse[0]),
+        select(changes, part * fine[1], sixth * coarse[1]),
+        select(changes, part * fine[2], sixth * coarse[2]),
+        select(changes, part * fine[3], sixth * coarse[3]),
+        select(changes, part * fine[4], sixth * coarse[4]),
+    )
+
+
+@kernel
+def middle_of(y, v, cell, load):
+    """``(cell without its length, State in its middle, what is handed on)``."""
+    point = (cell[0], cell[1], cell[2])
+    at = physical.state(y, v, point, load, cell[4])
+    return point, at, physical.handed_on(at, y, v, load)
+
+
+@kernel
+def slopes_at(at, y, r, v, load):
+    """``(room, (L_y, L_v, L_yy, L_yv, L_vv))`` of the place r from the middle, as what the cell is differentiated by."""
+    room, by_y, by_v, by_yy, by_yv, by_vv = physical.partials(at, y, v, load)
+    return room, (by_y, by_v + r * by_y, by_yy, by_yv + r * by_yy, by_vv + 2.0 * r * by_yv + r * r * by_yy)
 
 
 @kernel
 def density(y, v, cell, load):
-    """``(room, L_y, L_v, L_yy, L_yv, L_vv)``: room is the least along the cell."""
-    point, half = (cell[0], cell[1], cell[2]), 0.5 * cell[3]
+    """``(room, L_y, L_v, L_yy, L_yv, L_vv, what is handed on)``: room is the least along the cell."""
+    point, at, near = middle_of(y, v, cell, load)
+    room, middle = slopes_at(at, y, 0.0, v, load)
     if not load[2][2] > 0.0:
-        return physical.density(y, v, point, load)
-    coarse, changes, panels = (y, y, y, y, y, y), y > y, 1
-    while True:
-        room, L_y, L_v = HUGE + 0.0 * y, 0.0 * y, 0.0 * y
-        L_yy, L_yv, L_vv, before = 0.0 * y, 0.0 * y, 0.0 * y, -1.0 + 0.0 * y
-        for k in range(2 * panels + 1):
-            part, r = weight(k, panels), half * (k / panels - 1.0)
-            space, by_y, by_v, by_yy, by_yv, by_vv, kind = physical.partials(y + r * v, v, point, load)
-            room = min(room, space)
-            L_y += part * by_y
-            L_v += part * (by_v + r * by_y)
-            L_yy += part * by_yy
-            L_yv += part * (by_yv + r * by_yy)
-            L_vv += part * (by_vv + 2.0 * r * by_yv + r * r * by_yy)
-            if panels == 1 and k > 0:
-                changes = changes | (abs(kind - before) > 0.5)
-            before = kind
-        if panels > 1:
-            break
-        coarse = room, L_y, L_v, L_yy, L_yv, L_vv
-        if not some(changes):
-            return coarse
-        panels = PANELS
-    return (
-        select(changes, room, coarse[0]), select(changes, L_y, coarse[1]), select(changes, L_v, coarse[2]),
-        select(changes, L_yy, coarse[3]), select(changes, L_yv, coarse[4]), select(changes, L_vv, coarse[5]),
-    )  # fmt: skip
+        return room, middle[0], middle[1], middle[2], middle[3], middle[4], near
+    zero = 0.0 * y
+    ends, between, changes = (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
+    for k in range(0, EIGHTHS + 1, EIGHTHS):
+        r, _ = along_cell(k, cell[3])
+        here = physical.state(y + r * v, v, point, load, near)
+        space, part = slopes_at(here, y + r * v, r, v, load)
+        room, ends, changes = min(room, space), plus(ends, 1.0, part), changes | (abs(here.kind - at.kind) > 0.5)
+    if some(changes):
+        last, least = near, room
+        for k in range(1, EIGHTHS):
+            if 2 * k == EIGHTHS:
+                continue
+            r, weight = along_cell(k, cell[3])
+            here = physical.state(y + r * v, v, point, load, last)
+            last = physical.handed_on(here, y + r * v, v, load)
+            space, part = slopes_at(here, y + r * v, r, v, load)
+            least, between = min(least, space), plus(between, weight, part)
+        room = select(changes, least, room)
+    by_y, by_v, by_yy, by_yv, by_vv = mean(changes, ends, middle, between)
+    return room, by_y, by_v, by_yy, by_yv, by_vv, near
 
 
 @kernel
 def integrands(y, v, cell, load):
-    """Axial length, volume, twist, strain energy; and the kind of the cell, which is MIXED where it changes in it."""
-    point, half = (cell[0], cell[1], cell[2]), 0.5 * cell[3]
-    coarse, changes, panels = physical.integrands(y, v, point, load), y > y, 1
+    """Axial length, volume, twist, strain energy; the kind of the cell, which is MIXED where it changes in it; and what is
+    handed on.
+    """
+    point, at, near = middle_of(y, v, cell, load)
+    middle = physical.integrals(at, y, point, load)
     if not load[2][2] > 0.0:
-        return coarse
-    middle = coarse[4]
-    while True:
-        s, volume, twist, energy = 0.0 * y, 0.0 * y, 0.0 * y, 0.0 * y
-        for k in range(2 * panels + 1):
-            part, r = weight(k, panels), half * (k / panels - 1.0)
-            s_here, volume_here, twist_here, energy_here, kind = physical.integrands(y + r * v, v, point, load)
-            s += part * s_here
-            volume += part * volume_here
-            twist += part * twist_here
-            energy += part * energy_here
-            changes = changes | (abs(kind - middle) > 0.5)
-        if panels > 1:
-            break
-        coarse = s, volume, twist, energy, middle
-        if not some(changes):
-            return coarse
-        panels = PANELS
-    return (
-        select(changes, s, coarse[0]), select(changes, volume, coarse[1]), select(changes, twist, coarse[2]),
-        select(changes, energy, coarse[3]), select(changes, MIXED, middle),
-    )  # fmt: skip
+        return middle[0], middle[1], middle[2], middle[3], middle[4], near
+    zero = 0.0 * y
+    ends, between, changes = (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
+    for k in range(0, EIGHTHS + 1, EIGHTHS):
+        r, _ = along_cell(k, cell[3])
+        here = physical.state(y + r * v, v, point, load, near)
+        ends = plus(ends, 1.0, physical.integrals(here, y + r * v, point, load))
+        changes = changes | (abs(here.kind - at.kind) > 0.5)
+    if some(changes):
+        last = near
+        for k in range(1, EIGHTHS):
+            if 2 * k == EIGHTHS:
+                continue
+            r, weight = along_cell(k, cell[3])
+            here = physical.state(y + r * v, v, point, load, last)
+            last = physical.handed_on(here, y + r * v, v, load)
+            between = plus(between, weight, physical.integrals(here, y + r * v, point, load))
+    s, volume, twist, energy, _ = mean(changes, ends, middle, between)
+    return s, volume, twist, energy, select(changes, MIXED, at.kind), near
 
 
 @kernel
 def conjugate(y, v, cell, load, direction):
     """``(c, c_y, c_v, c_mu)`` of :func:`physical.conjugate`."""
-    point, half, panels = (cell[0], cell[1], cell[2]), 0.5 * cell[3], 1
+    point, at, near = middle_of(y, v, cell, load)
+    middle = physical.along(at, y, v, direction)
     if not load[2][2] > 0.0:
-        return physical.conjugate(y, v, point, load, direction)
-    middle = physical.integrands(y, v, point, load)[4]
-    for k in range(2):
-        kind = physical.integrands(y + (2.0 * k - 1.0) * half * v, v, point, load)[4]
-        if kind != middle:
-            panels = PANELS
-    c, c_y, c_v, c_mu = 0.0, 0.0, 0.0, 0.0
-    for k in range(2 * panels + 1):
-        part, r = weight(k, panels), half * (k / panels - 1.0)
-        here, by_y, by_v, by_mu = physical.conjugate(y + r * v, v, point, load, direction)
-        c += part * here
-        c_y += part * by_y
-        c_v += part * (by_v + r * by_y)
-        c_mu += part * by_mu
+        return middle
+    ends, between, changes = (0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0), False
+    for k in range(0, EIGHTHS + 1, EIGHTHS):
+        r, _ = along_cell(k, cell[3])
+        here = physical.state(y + r * v, v, point, load, near)
+        c, c_y, c_v, c_mu = physical.along(here, y + r * v, v, direction)
+        ends, changes = plus(ends, 1.0, (c, c_y, c_v + r * c_y, c_mu, 0.0)), changes or here.kind != at.kind
+    if changes:
+        last = near
+        for k in range(1, EIGHTHS):
+            if 2 * k == EIGHTHS:
+                continue
+            r, weight = along_cell(k, cell[3])
+            here = physical.state(y + r * v, v, point, load, last)
+            last = physical.handed_on(here, y + r * v, v, load)
+            c, c_y, c_v, c_mu = physical.along(here, y + r * v, v, direction)
+            between = plus(between, weight, (c, c_y, c_v + r * c_y, c_mu, 0.0))
+    c, c_y, c_v, c_mu, _ = mean(changes, ends, (*middle, 0.0), between)
     return c, c_y, c_v, c_mu

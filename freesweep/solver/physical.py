@@ -7,19 +7,62 @@ have no derivatives along the tube, so they are eliminated point by point: first
 of ``T s - e W + m psi - sum mu_i g_i``, whose second ones (``K``) give those of L along ``(1, dG/dy, dpsi/dy)``, from the
 stationarity system of the families that are taut. L is C1 and piecewise C2.
 
-Functions and arguments as in :mod:`membrane`; ``wall`` = load[2] is (k, inner, loose).
+Functions and arguments as in :mod:`membrane`; ``wall`` = load[2] is (k, inner, loose); ``near`` is what the neighbouring
+cell handed on, see :func:`relaxed.beside`.
 """
 
 from math import sqrt
+from typing import NamedTuple
 
 from ..jit import kernel
 from .either import isnt, select, some
-from .relaxed import both_reach, multipliers, settle, taut_twist
-from .wall import least_square, lies_inside, slopes, stored
+from .mesh import nothing_yet
+from .relaxed import (
+    ALPHA_TAUT,
+    BETA_TAUT,
+    BOTH_TAUT,
+    NONE_TAUT,
+    beside,
+    both_reach,
+    is_taut,
+    multipliers,
+    settle,
+    spread_of,
+    taut_twist,
+)
+from .wall import is_loose, least_square, lies_inside, slopes, stored
 
 NO_ROOM = 1e-30  # as in :mod:`membrane`
 LEAST = 1e-6  # of G: where a state is refused, its numbers stay finite
-NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
+
+
+class State(NamedTuple):
+    """What lies behind L at one point: room, axial stretch, G - 1, twist rate, slopes of L; second derivatives K of what is
+    maximized; derivatives of G and psi; which families are taut, their multipliers, and tan(angle) as the twist leaves it.
+    """
+
+    room: float
+    s: float
+    G_1: float
+    psi: float
+    L_y: float
+    L_v: float
+    K_yy: float
+    K_yG: float
+    K_yp: float
+    K_vG: float
+    K_GG: float
+    K_Gp: float
+    K_pp: float
+    G_y: float
+    psi_y: float
+    G_v: float
+    psi_v: float
+    kind: float
+    a: float
+    b: float
+    ta: float
+    tb: float
 
 
 @kernel
@@ -42,20 +85,48 @@ def place(y, v, T, cell, load):
 
 
 @kernel
-def state(y, v, cell, load):
-    """What lies behind L at one point: ``(room, s, G - 1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y,
-    psi_y, G_v, psi_v, which families are taut)``.
+def place_beside(y, v, T, cell, load, near):
+    """:func:`place` from a neighbour's, as far as that leads.
+
+    Returns ``(room, G - 1, psi, dG, dpsi, taut alpha, taut beta, slopes of W)``; the last changes are not made yet, and too
+    small to look once more.
     """
+    wall, area, zero = load[2], load[6] * cell[2], 0.0 * y
+    if not wall[2] > 0.0:
+        room, G_1, psi, alpha, beta = place(y, v, T, cell, load)
+        return room, G_1, psi, zero, zero, alpha, beta, slopes(y, G_1, psi, area, load[1], wall)
+    low, widest, _, _ = spread_of(y, v, cell[0], cell[1], load[0] * load[0], wall)
+    room = min(widest - low, T)
+    known, kind, G_1, psi, dG, dpsi, W = beside(
+        y, v, cell[0], cell[1], load[0] * load[0], max(T, NO_ROOM), load[5], area, load[1], wall, near
+    )
+    alpha, beta = is_taut(kind)
+    if some(isnt(known)):
+        other, width, twist, with_alpha, with_beta = place(y, v, T, cell, load)
+        V = slopes(y, width, twist, area, load[1], wall)
+        room, G_1, psi = select(known, room, other), select(known, G_1, width), select(known, psi, twist)
+        dG, dpsi = select(known, dG, zero), select(known, dpsi, zero)
+        alpha, beta = (known & alpha) | (isnt(known) & with_alpha), (known & beta) | (isnt(known) & with_beta)
+        W = (
+            select(known, W[0], V[0]), select(known, W[1], V[1]), select(known, W[2], V[2]), select(known, W[3], V[3]),
+            select(known, W[4], V[4]), select(known, W[5], V[5]), select(known, W[6], V[6]), select(known, W[7], V[7]),
+            select(known, W[8], V[8]),
+        )  # fmt: skip
+    return room, G_1, psi, dG, dpsi, alpha, beta, W
+
+
+@kernel
+def state(y, v, cell, load, near):
+    """The :class:`State` at one point."""
     H, D, gg = cell[0], cell[1], load[0] * load[0]
     p, m = load[3], load[5]
     T, T_y = p * y * y + load[4], 2.0 * p * y
-    room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
-    W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    room, G_1, psi, dG, dpsi, taut_alpha, taut_beta, W = place_beside(y, v, T, cell, load, near)
+    W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = W
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     i = 1.0 / s
     i3 = i * i * i
     a, b = multipliers(y, s, psi, taut_alpha, taut_beta, H, D, T, m, W_G, W_p)
-    kind = kind_of(taut_alpha, taut_beta)
     ta, tb = H + D + psi, H - D + psi
     turned, squared = a * ta + b * tb, a * ta * ta + b * tb * tb
     L_y, L_v = T_y * s - W_y - 2.0 * y * squared, -T * v * i
@@ -66,8 +137,8 @@ def state(y, v, cell, load):
     K_GG = -0.25 * T * i3 - W_GG
     K_Gp = -W_Gp
     K_pp = -W_pp - 2.0 * y * y * (a + b)
-    t, both = gg / (y * y), taut_alpha & taut_beta
-    psi_y, G_y = -2.0 * H * t / y, -2.0 * D * D * y + 2.0 * gg * H * H * t / y
+    ratio, both = gg / (y * y), taut_alpha & taut_beta
+    psi_y, G_y = -2.0 * H * ratio / y, -2.0 * D * D * y + 2.0 * gg * H * H * ratio / y
     psi_v = G_v = 0.0 * y
     if some(isnt(both)):
         t = select(taut_alpha, ta, tb)
@@ -85,26 +156,46 @@ def state(y, v, cell, load):
             wide_v, turn_v = select(none, -K_pp * K_vG / det, wide_v), select(none, K_Gp * K_vG / det, turn_v)
         psi_y, G_y = select(both, psi_y, turn_y), select(both, G_y, wide_y)
         psi_v, G_v = select(both, 0.0, turn_v), select(both, 0.0, wide_v)
-    return room, s, G_1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind
+        # what the changes that are not made yet do, to first order; the multiplier changes, too
+        pulls = select(none, 0.0, k)
+        L_y = L_y + select(both, 0.0, (K_yG - pulls * K_GG) * dG + (K_yp - pulls * K_Gp) * dpsi)
+        L_v = L_v + select(both, 0.0, K_vG * dG)
+    G_1, psi = G_1 + dG, psi + dpsi
+    s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
+    kind = kind_of(taut_alpha, taut_beta)
+    return State(
+        room, s, G_1, psi, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind, a, b, ta, tb
+    )  # fmt: skip
 
 
 @kernel
-def partials(y, v, cell, load):
-    """``(room, L_y, L_v, L_yy, L_yv, L_vv, which families are taut)``."""
-    room, s, G_1, _, L_y, L_v, K_yy, K_yG, K_yp, K_vG, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, _, kind = state(
-        y, v, cell, load
-    )
+def handed_on(at, y, v, load):
+    """What the next cell may start from; bonded fibers leave it no choice."""
+    if not is_loose(load[2]):
+        return nothing_yet(0.0 * y)
+    kind = select(at.room > 0.0, at.kind, -1.0)
+    return kind, y, v, at.psi, at.psi_y, at.psi_v, at.G_1, at.G_y, at.G_v
+
+
+@kernel
+def partials(at, y, v, load):
+    """``(room, L_y, L_v, L_yy, L_yv, L_vv)``."""
     T = load[3] * y * y + load[4]
-    L_yy = K_yy + 2.0 * (K_yG * G_y + K_yp * psi_y) + (K_GG * G_y + 2.0 * K_Gp * psi_y) * G_y + K_pp * psi_y * psi_y
-    L_yv = -2.0 * load[3] * y * v / s + K_vG * G_y
-    L_vv = -T * (1.0 + G_1) / (s * s * s) + K_vG * G_v
-    return room, L_y, L_v, L_yy, L_yv, L_vv, kind
+    L_yy = (
+        at.K_yy
+        + 2.0 * (at.K_yG * at.G_y + at.K_yp * at.psi_y)
+        + (at.K_GG * at.G_y + 2.0 * at.K_Gp * at.psi_y) * at.G_y
+        + at.K_pp * at.psi_y * at.psi_y
+    )
+    L_yv = -2.0 * load[3] * y * v / at.s + at.K_vG * at.G_y
+    L_vv = -T * (1.0 + at.G_1) / (at.s * at.s * at.s) + at.K_vG * at.G_v
+    return at.room, at.L_y, at.L_v, L_yy, L_yv, L_vv
 
 
 @kernel
 def density(y, v, cell, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv)``."""
-    return partials(y, v, cell, load)[:6]
+    return partials(state(y, v, cell, load, nothing_yet(0.0 * y)), y, v, load)
 
 
 @kernel
@@ -119,8 +210,14 @@ def uniform_tube(y, cell, load):
 
 
 @kernel
-def integrands(y, v, cell, load):
+def integrals(at, y, cell, load):
     """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut."""
+    return at.s, y * y * at.s, at.psi, stored(y, at.G_1, at.psi, cell[2], load[1], load[2]), at.kind
+
+
+@kernel
+def integrands(y, v, cell, load):
+    """:func:`integrals` at one point."""
     _, G_1, psi, taut_alpha, taut_beta = place(y, v, load[3] * y * y + load[4], cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     return s, y * y * s, psi, stored(y, G_1, psi, cell[2], load[1], load[2]), kind_of(taut_alpha, taut_beta)
@@ -129,19 +226,34 @@ def integrands(y, v, cell, load):
 @kernel
 def conjugate(y, v, cell, load, direction):
     """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load; loose fibers let G and psi change with it."""
-    _, s, _, psi, _, _, _, _, _, _, K_GG, K_Gp, K_pp, G_y, psi_y, G_v, psi_v, kind = state(y, v, cell, load)
+    return along(state(y, v, cell, load, nothing_yet(0.0 * y)), y, v, direction)
+
+
+@kernel
+def along(at, y, v, direction):
+    """:func:`conjugate` where the :class:`State` is known."""
     T, T_y, m = direction[3] * y * y + direction[4], 2.0 * direction[3] * y, direction[5]
-    half = 0.5 / s
-    pull, c_mu = T * half, 0.0
-    if kind == NONE_TAUT:
-        det = K_GG * K_pp - K_Gp * K_Gp
-        c_mu = (2.0 * K_Gp * pull * m - K_pp * pull * pull - K_GG * m * m) / det
-    elif kind != BOTH_TAUT:
-        t = cell[0] + (cell[1] if kind == ALPHA_TAUT else -cell[1]) + psi
-        b = 2.0 * y * y * t
+    pull, c_mu = 0.5 * T / at.s, 0.0
+    if at.kind == NONE_TAUT:
+        det = at.K_GG * at.K_pp - at.K_Gp * at.K_Gp
+        c_mu = (2.0 * at.K_Gp * pull * m - at.K_pp * pull * pull - at.K_GG * m * m) / det
+    elif at.kind != BOTH_TAUT:
+        b = 2.0 * y * y * (at.ta if at.kind == ALPHA_TAUT else at.tb)
         rise = m - b * pull
-        c_mu = -rise * rise / (b * b * K_GG - 2.0 * b * K_Gp + K_pp)
-    return T * s + m * psi, T_y * s + pull * G_y + m * psi_y, pull * (G_v - 2.0 * v) + m * psi_v, c_mu
+        c_mu = -rise * rise / (b * b * at.K_GG - 2.0 * b * at.K_Gp + at.K_pp)
+    return (
+        T * at.s + m * at.psi,
+        T_y * at.s + pull * at.G_y + m * at.psi_y,
+        pull * (at.G_v - 2.0 * v) + m * at.psi_v,
+        c_mu,
+    )
+
+
+@kernel
+def tensions(y, v, cell, load, near):
+    """Multipliers of both families, and what is handed on."""
+    at = state(y, v, cell, load, near)
+    return at.a, at.b, handed_on(at, y, v, load)
 
 
 @kernel

@@ -13,6 +13,9 @@ other. So the signs of the two slopes there tell which side to go to, if any, an
 
 falls all along: Newton's method between bounds finds its root. Where ``mu`` is 0 the family is slack, too, and G is where
 ``T/(2 s) = W_G``.
+
+Along a tube neighbours are alike: what is known of one point is the first guess of the next (:func:`beside`). As there is
+one maximum, a place where no taut family is pushed and no slack one overreached is the one, however it was come to.
 """
 
 from math import sqrt
@@ -27,6 +30,8 @@ SHORT = 0.1  # share of the way to the edge of the domain that a step in G leave
 LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
+NEARBY = 8  # looks from a neighbour's place; two do nearly always, four where a family goes slack
+NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
 
 
 @kernel
@@ -99,20 +104,96 @@ def is_between(at, near, far, side):
 
 
 @kernel
-def settle(y, v, H, D, gg, T, m, area, rubber, wall):
-    """``(room, G - 1, psi, taut alpha, taut beta)``: where loose fibers leave the wall.
-
-    ``room`` is that of the widest G beyond v^2, or beyond where the innermost layer would reach the axis.
-    """
+def spread_of(y, v, H, D, gg, wall):
+    """``(low, widest, psi, best)``: bounds of G - 1, the twist of both taut and that at which G may be widest."""
     stretch = gg - 1.0
-    psi, G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, stretch)
+    psi = taut_twist(y, H, gg)
     low = max(v * v, narrowest(y, wall)) - 1.0
     # beyond the twist of both taut (to the right) alpha is the nearer if D > 0; its reach is widest at psi = -t
     right, left = H + abs(D), H - abs(D)
     best = min(max(psi, -right), -left)
     apart = (psi < -right) | (psi > -left)
-    widest = select(apart, reach(y, best, select(psi < -right, right, left), stretch), G_1)
-    room = widest - low
+    side = select(psi < -right, right, left)
+    return low, select(apart, reach(y, best, side, stretch), both_reach(y, H, D, gg, stretch)), psi, best
+
+
+@kernel
+def is_taut(kind):
+    """Which families are taut, alpha and beta, from one number."""
+    return (kind == ALPHA_TAUT) | (kind == BOTH_TAUT), (kind == BETA_TAUT) | (kind == BOTH_TAUT)
+
+
+@kernel
+def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
+    """Newton's method for G and psi from what a neighbour handed on, ``near`` = (which families are taut, or -1 where
+    nothing is known, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v). A family that would have to push goes slack, a slack one
+    that is overreached goes taut; where none does any more, this is the maximum.
+
+    Returns ``(known, which families are taut, G - 1, psi, dG, dpsi, slopes of W)``. The last change, which is too small to
+    look once more, is not yet made.
+    """
+    stretch, low, still = gg - 1.0, max(v * v, narrowest(y, wall)) - 1.0, 0.0 * y
+    kind = select(near[0] >= 0.0, near[0], BOTH_TAUT)
+    on, steeper = y - near[1], v - near[2]
+    both_psi, both_G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, stretch)
+    psi, G_1 = near[3] + on * near[4] + steeper * near[5], near[6] + on * near[7] + steeper * near[8]
+    both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
+    G_1 = select(both, both_G_1, select(kind == NONE_TAUT, G_1, reach(y, psi, t, stretch)))
+    psi = select(both, both_psi, psi)
+    known = y > 0.0
+    dpsi, dG, going, W = still, still, known, (still, still, still, still, still, still, still, still, still)
+    for _ in range(NEARBY):
+        known = known & (isnt(going) | (G_1 > low))
+        going = going & known
+        if not some(going):
+            break
+        W = slopes(y, G_1, psi, area, rubber, wall)
+        _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = W
+        s, before = axial(1.0 + G_1, v), kind
+        a, b = multipliers(y, s, psi, both, both, H, D, T, m, W_G, W_p)
+        total = 0.5 * T / s - W_G
+        kind = select(
+            both,
+            select(a >= 0.0, ALPHA_TAUT, NONE_TAUT) + select(b >= 0.0, BETA_TAUT, NONE_TAUT),
+            select(total >= 0.0, kind, NONE_TAUT),
+        )
+        both, none = kind == BOTH_TAUT, kind == NONE_TAUT
+        one, t = isnt(both | none), H + select(kind == ALPHA_TAUT, D, -D)
+        F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
+        known = known & (isnt(going & one) | (F_p < 0.0))
+        dpsi = select(one, -F / F_p, still)
+        dG = select(one, reach(y, psi + dpsi, t, stretch) - G_1, still)
+        if some(none):
+            twist, bend = m - W_p, 0.25 * T / (s * s * s) + W_GG
+            det = bend * W_pp - W_Gp * W_Gp
+            dpsi = select(none, (bend * twist - W_Gp * total) / det, dpsi)
+            dG = select(none, (W_pp * total - W_Gp * twist) / det, dG)
+        to_psi, to_G_1 = psi + dpsi, G_1 + dG
+        slack_alpha, slack_beta = reach(y, to_psi, H + D, stretch) - to_G_1, reach(y, to_psi, H - D, stretch) - to_G_1
+        nearer = select(slack_alpha < slack_beta, ALPHA_TAUT, BETA_TAUT)
+        over = select(
+            kind == ALPHA_TAUT, slack_beta, select(kind == BETA_TAUT, slack_alpha, min(slack_alpha, slack_beta))
+        )
+        more = isnt(both) & (over < 0.0)
+        then = select(more, select(none, nearer, BOTH_TAUT), kind)
+        last = (abs(then - before) < 0.5) & (y * abs(dpsi) < CLOSE) & (abs(dG) < CLOSE * s * s)
+        kind = select(going, then, before)
+        going = going & isnt(last)
+        both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
+        to_G_1 = select(both, both_G_1, select(more & none, reach(y, to_psi, t, stretch), to_G_1))
+        psi, G_1 = select(going, select(both, both_psi, to_psi), psi), select(going, to_G_1, G_1)
+    return known & isnt(going), kind, G_1, psi, dG, dpsi, W
+
+
+@kernel
+def settle(y, v, H, D, gg, T, m, area, rubber, wall):
+    """``(room, G - 1, psi, taut alpha, taut beta)``: where loose fibers leave the wall.
+
+    ``room`` is that of the widest G beyond v^2, or beyond where the innermost layer would reach the axis.
+    """
+    stretch, right, left = gg - 1.0, H + abs(D), H - abs(D)
+    low, widest, psi, best = spread_of(y, v, H, D, gg, wall)
+    G_1, room = both_reach(y, H, D, gg, stretch), widest - low
     inside = (room > 0.0) & (y > 0.0)
     if not some(inside):
         return room, G_1, psi, isnt(inside), isnt(inside)

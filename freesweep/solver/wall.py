@@ -13,7 +13,7 @@ A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick
 many as its integrand, a rational function of rho^2 with poles at 0 and where q vanishes, asks for.
 
 ``wall`` is (k, inner, loose): ``inner`` = rho_i^2, or 0 for a membrane; ``loose`` is :mod:`relaxed`'s. In vectors of designs
-it is (k, inner, loose, layers), the last two the same for all of them.
+it is (k, inner, loose, layers, mean of 1/rho^2 over the layers), the third and fourth the same for all of them.
 """
 
 from math import sqrt
@@ -58,6 +58,25 @@ def layers(area, wall):
     if len(wall) > 3:
         return wall[3]
     return points(wall[1], area) if wall[1] > 0.0 else MEMBRANE
+
+
+@kernel
+def reciprocal(area, inner, count):
+    """Mean of 1/rho^2 over so many layers."""
+    total, at = 0.0 * area, first_place(count)
+    if count == 1:
+        return 1.0 + total
+    for j in range(count):
+        total += WEIGHTS[at + j] / (inner + area * PLACES[at + j])
+    return total
+
+
+@kernel
+def reciprocal_of(area, wall, count):
+    """:func:`reciprocal` of a wall; those in vectors know that of themselves."""
+    if len(wall) > 3:
+        return wall[4]
+    return reciprocal(area, wall[1], count)
 
 
 @kernel
@@ -155,8 +174,9 @@ def slopes(y, G_1, psi, area, rubber, wall):
         return of_any(y, G_1, psi, area, rubber, wall)[1:]
     count = layers(area, wall)
     return mooney_wall.slopes(
-        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count)
-    )
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count),
+        reciprocal_of(area, wall, count),
+    )  # fmt: skip
 
 
 @kernel

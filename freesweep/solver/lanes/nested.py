@@ -1,13 +1,13 @@
 """Nested meshes of :mod:`freesweep.solver.nested` for a vector of designs: the same values, the same bounds.
 
 Three meshes suffice where bounds that are more generous by EARLY meet the accuracy. A lane whose bounds meet the accuracy
-keeps its numbers; the others go on to finer meshes. A lane that needs more than ``LANE_DOUBLINGS``, or fails, is left to
-the scalar kernels.
+keeps its numbers; the others go on to finer meshes. A lane that needs more than the ``most`` doublings, or fails, is left
+to another try or the scalar kernels.
 """
 
 from ...jit import kernel
 from .. import finest, lagrangian
-from ..mesh import of_length
+from ..mesh import behind, nothing_yet
 from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..newton import SMALL_STEP
 from . import mesh, middle, newton
@@ -35,14 +35,14 @@ def integrate(x, y, n, cell, load, row):
     """Integrals over the tube on one mesh, and the stretch in the middle; where the kind of cell, in which the density is
     smooth, changes along it.
     """
-    broken, before = mask_of(0), 0.0
+    broken, before, near = mask_of(0), 0.0, nothing_yet(spread(0.0))
     length, volume, twist, energy = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     x_left, y_left = get(x, 0), get(y, 0)
     for j in range(n):
         x_right, y_right = get(x, j + 1), get(y, j + 1)
         h = x_right - x_left
-        s, v, t, w, kind = lagrangian.integrands(
-            0.5 * (y_left + y_right), (y_right - y_left) / h, of_length(cell, h), load
+        s, v, t, w, kind, near = lagrangian.integrands(
+            0.5 * (y_left + y_right), (y_right - y_left) / h, behind(cell, h, near), load
         )
         if j > 0:
             broken = broken | differ(kind, before, load[2])
@@ -140,11 +140,13 @@ def keep(ready, count, error, coarsest_x, coarsest_y, coarse_x, coarse_y, x, y, 
 
 
 @kernel
-def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out, kept, doublings):
+def solve(
+    x, y, n, u, cell, load, length, active, most, accuracy, meshes, work, table, sizes, found, out, kept, doublings
+):
     """Solve the ``active`` lanes, whose uniform tubes have stretch ``u``; ``x`` and ``y`` (n + 1, WIDTH) are the graded base
     mesh and a first guess, replaced by its solution.
 
-    ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
+    ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
     values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH, 5, ...), unless None, takes
     their finest meshes as :func:`profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
     fibers would have to push, beta fibers would)``.
@@ -183,7 +185,7 @@ def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table,
     put(table[0], MIDDLE, middle.stretch(half_y, n // 2, n, u, long, share, room))
     met, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
     level, count = 1, n
-    while some(todo) and level <= LANE_DOUBLINGS:
+    while some(todo) and level <= most:
         level += 1
         mesh.split(x, n, 1 << (level - 1), fine_x)
         foresee(half_x, half_y, here_x, here_y, count, fine_x, fine_y, work[0], work[1])

@@ -23,7 +23,7 @@ from ..problem import (
 )
 from ..profile import at_stations
 from ..status import COMPRESSED, INVALID, OK
-from ..wall import layers
+from ..wall import layers, reciprocal
 from .nested import OUTPUTS
 from .vector import WIDTH, get
 
@@ -57,7 +57,8 @@ def wall_in(columns, walls, count):
     """
     if len(walls) == 1:
         return (get(columns, SHEAR),)
-    return get(columns, SHEAR), get(columns, INNER), columns[LOOSE, 0], count
+    inner = get(columns, INNER)
+    return get(columns, SHEAR), inner, columns[LOOSE, 0], count, reciprocal(get(columns, AREA), inner, count)
 
 
 @entry_point

@@ -1,9 +1,9 @@
 """Fibers that would have to push, or are slack, of :mod:`freesweep.solver.slack`, for a vector of designs."""
 
 from ...jit import kernel
-from .. import lagrangian
+from .. import lagrangian, physical
 from ..axial import axial_stretch
-from ..mesh import of_length
+from ..mesh import nothing_yet, of_length
 from ..slack import NOTHING, TENSIONLESS, TENSIONLESS_END
 from ..wall import is_loose
 from .vector import get, mask_of
@@ -36,11 +36,11 @@ def of_physical(x, y, n, cell, load):
     least, at_end = -TENSIONLESS * (load[3] + abs(load[4])), -TENSIONLESS_END * (load[3] + abs(load[4]))
     if is_loose(load[2]):
         least = at_end = NOTHING + 0.0 * least
-    alpha, beta = mask_of(0), mask_of(0)
+    alpha, beta, near = mask_of(0), mask_of(0), nothing_yet(0.0 * least)
     for j in range(n):
         h, rise = get(x, j + 1) - get(x, j), get(y, j + 1) - get(y, j)
         middle, v = 0.5 * (get(y, j) + get(y, j + 1)), rise / h
-        _, tension_alpha, tension_beta = lagrangian.at_slope(middle, v, cell, load)
+        tension_alpha, tension_beta, near = physical.tensions(middle, v, cell, load, near)
         alpha, beta = alpha | (tension_alpha < least), beta | (tension_beta < least)
         if j == 0:
             _, L_y, L_v, _, _, _ = lagrangian.density(middle, v, of_length(cell, h), load)

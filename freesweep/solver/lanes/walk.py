@@ -87,14 +87,14 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
 
 @kernel
 def solve(
-    problems, owners, pressures, stretches, order, constants, walls, layers, base, accuracy, values, bounds, status, slack,
-    stations, profiles,
+    problems, owners, pressures, stretches, order, constants, walls, layers, base, most, accuracy, values, bounds, status,
+    slack, stations, profiles,
 ):  # fmt: skip
     """Solve the rows in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]`` and has the uniform
     stretch ``stretches[i]``. Other arguments as of :func:`follow_many`; rows that a lane could not do keep the status
     that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
     """
-    size = (base << nested.LANE_DOUBLINGS) + 2
+    size = (base << most) + 2
     space = aligned(23, size)
     meshes, work, table, out, found = space[:7], space[7:11], space[11:19], space[19:21], space[21:]
     shape, small = aligned(2, base + 1), aligned(3, COLUMNS)
@@ -122,8 +122,8 @@ def solve(
         u, half = get(start, 0), get(columns, HALF)
         layer.begin(u, cell, load, half, base, work, meshes, x, y)
         met, alpha, beta = nested.solve(
-            x, y, base, u, cell, load, half, mask_of((1 << count) - 1), accuracy, meshes, work, table, sizes, found, out,
-            kept, doublings,
+            x, y, base, u, cell, load, half, mask_of((1 << count) - 1), most, accuracy, meshes, work, table, sizes, found,
+            out, kept, doublings,
         )  # fmt: skip
         met = met & guide.within(y, base, u, cell, load, half)
         done = bits(met)
@@ -151,17 +151,17 @@ def solve_lanes(
 ):  # fmt: skip
     """:func:`solve` the source's tubes."""
     solve(
-        problems, owners, pressures, stretches, order, constants, SOURCE, 1, base, accuracy, values, bounds, status, slack,
-        stations, profiles,
+        problems, owners, pressures, stretches, order, constants, SOURCE, 1, base, nested.LANE_DOUBLINGS, accuracy, values,
+        bounds, status, slack, stations, profiles,
     )  # fmt: skip
 
 
 @entry_point
 def solve_physical(
-    problems, owners, pressures, stretches, order, constants, layers, base, accuracy, values, bounds, status, slack,
+    problems, owners, pressures, stretches, order, constants, layers, base, most, accuracy, values, bounds, status, slack,
 ):  # fmt: skip
-    """:func:`solve` physical tubes."""
+    """:func:`solve` physical tubes, with ``most`` doublings of the base mesh."""
     solve(
-        problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, base, accuracy, values, bounds, status,
-        slack, None, None,
+        problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, base, most, accuracy, values, bounds,
+        status, slack, None, None,
     )  # fmt: skip
