@@ -1,5 +1,6 @@
 """Fixtures that several files of tests share, and the machine code that all of them need."""
 
+import signal
 import subprocess
 import sys
 
@@ -48,6 +49,12 @@ kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes", "seek_lanes
 PHYSICAL = """
 fs.inflate(fs.Actuator(alpha=30, beta=-30, model="physical", **sections), 1e4)
 """
+
+
+def pytest_configure():
+    """What a shell starts in the background ignores interrupts, and so would the commands that tests interrupt."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.hookimpl(optionalhook=True)
