@@ -122,14 +122,14 @@ def test_plain_python_gives_up_in_time(entry, monkeypatch, capsys):
     """A state that never ends: arguments as they were, the compiler is announced, and no second try is made."""
     monkeypatch.setattr(interpret, "SECONDS", 0.2)
     slow, numbers = jit.kernel(dawdle), np.ones(1)
-    begun = time.perf_counter()
+    begun = time.thread_time()
     assert not interpret.at_once(1, slow, slow, numbers)
-    assert 0.2 <= time.perf_counter() - begun < 2.0
+    assert 0.2 <= time.thread_time() - begun < 2.0
     assert numbers == 1.0
     assert "compiling the kernels" in capsys.readouterr().err
-    begun = time.perf_counter()
+    begun = time.thread_time()
     assert not interpret.at_once(1, slow, slow, numbers)
-    assert time.perf_counter() - begun < 0.1
+    assert time.thread_time() - begun < 0.1
     assert interpret.at_once(1, entry, entry, numbers)  # another kernel has a time of its own
 
 
