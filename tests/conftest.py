@@ -52,9 +52,12 @@ fs.inflate(fs.Actuator(alpha=30, beta=-30, model="physical", **sections), 1e4)
 
 
 def pytest_configure():
-    """What a shell starts in the background ignores interrupts, and so would the commands that tests interrupt."""
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    """What a shell starts in the background ignores interrupts, under nohup that its terminal closes: so would the commands
+    on which tests try both.
+    """
+    for number, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIGHUP, lambda *_: None)):
+        if signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, handler)
 
 
 DEAREST = """

@@ -133,6 +133,22 @@ def test_plain_python_gives_up_in_time(entry, monkeypatch, capsys):
     assert interpret.at_once(1, entry, entry, numbers)  # another kernel has a time of its own
 
 
+def doze(numbers):
+    for _ in range(5):
+        time.sleep(0.1)
+        numbers[0] = rest(numbers[0])
+
+
+doze.__module__ = invert.__module__
+
+
+def test_time_in_which_others_had_the_processor_does_not_count(entry, monkeypatch):
+    """A busy machine: half a second on the wall, next to none of this thread's."""
+    monkeypatch.setattr(interpret, "SECONDS", 0.2)
+    kernel = jit.kernel(doze)
+    assert interpret.at_once(1, kernel, kernel, np.ones(1))
+
+
 def test_only_what_vectors_leave_counts(monkeypatch):
     """Many states of which vectors solve all but one: plain Python is asked for one."""
     asked = []
