@@ -18,7 +18,10 @@ from numba.core.dispatcher import Dispatcher
 from .jit import cache_folder
 from .kernel_cache import compiled, stem
 
-FEW, SECONDS = 32, 3.0  # states, and [s], in one process: from here on the compiler's time is well spent
+FEW, SECONDS = (
+    32,
+    3.0,
+)  # states, and [s] of processor time, in one process: from here on the compiler's time is well spent
 FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
 _spent = {}  # awaited entry point -> [states, seconds] in plain Python
@@ -27,7 +30,20 @@ _making = threading.RLock()  # of twins: one that is found knows all its names
 
 
 class _Clock(threading.local):
-    end = np.inf  # [s]
+    """Of a thread's processor time [s], as a busy machine delays the compiler just as much. Less cheap to ask than the
+    clock on the wall, which is not behind it: until that says ``look``, there is no need to.
+    """
+
+    end = look = np.inf
+
+    def allow(self, seconds):
+        self.end, self.look = time.thread_time() + seconds, time.perf_counter() + seconds
+
+    def check(self):
+        left = self.end - time.thread_time()
+        if left < 0.0:
+            raise _TooLong
+        self.look = time.perf_counter() + left
 
 
 class _TooLong(Exception):
@@ -72,15 +88,15 @@ def _folder(entry):
 def _is_done(entry, arguments, spent, seconds):
     """Whether plain Python did it before ``seconds`` were spent."""
     copies = [argument.copy() if isinstance(argument, np.ndarray) else argument for argument in arguments]
-    begun = time.perf_counter()
-    _clock.end = begun + seconds - spent[1]
+    begun = time.thread_time()
+    _clock.allow(seconds - spent[1])
     try:
         with np.errstate(all="ignore"):
             _twin(entry.py_func)(*copies)
     except (ArithmeticError, ValueError, _TooLong):
         return False
     finally:
-        spent[1] += time.perf_counter() - begun
+        spent[1] += time.thread_time() - begun
     for argument, copy in zip(arguments, copies):
         if isinstance(argument, np.ndarray):
             argument[...] = copy
@@ -95,8 +111,8 @@ def _twin(function):
             plain = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__)
 
             def twin(*arguments):
-                if time.perf_counter() > _clock.end:
-                    raise _TooLong
+                if time.perf_counter() > _clock.look:
+                    _clock.check()
                 return plain(*arguments)
 
             _twins[function] = twin

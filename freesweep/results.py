@@ -35,16 +35,25 @@ def dataset(tube, axes, stations, found, without=()):
     along = profiles(tube, found["fields"], found["values"], found["bounds"], every)
     data |= {name: (names, array) for name, array in worst_places(tube, along, every, found["slack_fiber"]).items()}
     data |= {name: ((*names, "x"), array[..., np.searchsorted(every, stations)]) for name, array in along.items()}
-    coordinates = {name: (name, np.atleast_1d(value)) for name, value in axes.items()} | {"x": ("x", stations)}
-    result = xr.Dataset(data, coordinates)
-    result = result.isel({name: 0 for name, value in axes.items() if np.ndim(value) == 0})
-    for name in result.variables:
-        result[name].attrs = attributes(name)
+    coordinates = {name: ((name,), np.atleast_1d(value)) for name, value in axes.items()} | {"x": (("x",), stations)}
+    single = {name for name, value in axes.items() if np.ndim(value) == 0}
+    result = xr.Dataset(
+        {name: _kept(name, *given, single) for name, given in data.items()},
+        {name: _kept(name, *given, single) for name, given in coordinates.items()},
+    )
     if np.any(result["status"] == status.NOT_CONVERGED):
         warnings.warn(status.STATUSES[status.NOT_CONVERGED].sentence, stacklevel=4)
     if not np.any(np.isinf(axes["pressure"])):  # the locked shape is that of any material
         warn_beyond_range(tube, result, stacklevel=5)
     return result
+
+
+def _kept(name, dims, array, single):
+    """A variable without the ``single`` dimensions, of one number each, and its attributes. Of a Dataset, once it is made,
+    xarray would take as long for both as all else takes.
+    """
+    index = tuple(0 if dim in single else slice(None) for dim in dims)
+    return tuple(dim for dim in dims if dim not in single), array[index], attributes(name)
 
 
 def near_stations(tube, stations, whole):

@@ -1,5 +1,6 @@
 """Fixtures that several files of tests share, and the machine code that all of them need."""
 
+import signal
 import subprocess
 import sys
 
@@ -50,11 +51,34 @@ fs.inflate(fs.Actuator(alpha=30, beta=-30, model="physical", **sections), 1e4)
 """
 
 
+def pytest_configure():
+    """What a shell starts in the background ignores interrupts, under nohup that its terminal closes: so would the commands
+    on which tests try both.
+    """
+    for number, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIGHUP, lambda *_: None)):
+        if signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, handler)
+
+
+DEAREST = """
+verify inverse branch thesis_claims calibration_scalars calibration first_integral lanes newton loose_states lanes_physical
+docs notebooks explorer_browser atlas_objects hard_states profiles explorer sweep_faults hostile_files calibration_campaign
+plot_map sweep_resume statics_shape holding_states types interpret elastomer sweep_kernels derivatives holding_buckled yeoh
+"""
+ORDER = {f"test_{name}": place for place, name in enumerate(DEAREST.split())}
+
+
+def pytest_collection_modifyitems(items):
+    """The files that take longest come first: at the end no worker waits for a long one."""
+    items.sort(key=lambda item: ORDER.get(item.path.stem, len(ORDER)))
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
     """A file's tests go to one worker: its fixtures are made once."""
     from xdist.scheduler import LoadFileScheduling
 
+    config.option.loadscopereorder = False  # that would be by the number of tests
     return LoadFileScheduling(config, log)
 
 

@@ -23,6 +23,7 @@ import numpy as np
 import sympy as sp
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq, minimize_scalar
+from sympy.printing.numpy import NumPyPrinter
 
 PARAMETERS = sp.symbols("H D a g c k p f m e c2 c3", real=True)
 Y, V = sp.symbols("y v", real=True)
@@ -42,12 +43,27 @@ def _gauss(n):
 
 NODES, WEIGHTS = _gauss(16)
 NODES, WEIGHTS = 0.5 * (NODES + 1), 0.5 * WEIGHTS  # on 0..1
+FEW_NODES, FEW_WEIGHTS = _gauss(8)  # for short stretches of a smooth function
+FEW_NODES, FEW_WEIGHTS = 0.5 * (FEW_NODES + 1), 0.5 * FEW_WEIGHTS
 DEEP = 34.0  # e-folds between end and middle beyond which the middle is uniform to rounding
 ENERGIES = {"principal": 0, "full": 1}
 
 
 class NoState(Exception):
     """The branch from the undeformed cylinder does not reach this load, or not as a shape between 1 and u."""
+
+
+class Products(NumPyPrinter):
+    """Whole and half powers as products and roots: ``powl`` costs as much as thirty of them."""
+
+    def _print_Pow(self, expr, rational=False):
+        base, power = expr.as_base_exp()
+        if not (2 * power).is_Integer or power == sp.S.Half:
+            return super()._print_Pow(expr, rational)
+        printed = f"({self._print(base)})"
+        whole, half = divmod(abs(int(2 * power)), 2)
+        product = "*".join([printed] * whole + [f"numpy.sqrt({printed})"] * half)
+        return f"({product})" if power > 0 else f"(1.0/({product}))"
 
 
 @cache
@@ -83,8 +99,8 @@ def compiled():
     have = expressions()
     arguments = (Y, PARAMETERS)
 
-    def numpy_function(*what):
-        return sp.lambdify(arguments, what, "numpy", cse=True)
+    def numpy_function(*what, of=arguments):
+        return sp.lambdify(of, what, "numpy", cse=True, printer=Products)
 
     return {
         "state": numpy_function(have["G"], have["psi"], have["w"], have["T"]),
@@ -92,7 +108,7 @@ def compiled():
         "slopes": numpy_function(sp.diff(have["U"], Y), sp.diff(have["U"], Y, 2)),
         "curvature": numpy_function(sp.diff(have["U"], Y, 2)),
         "w_yy": numpy_function(sp.diff(have["w"], Y, 2)),
-        "canonical": sp.lambdify((Y, V, PARAMETERS), (sp.diff(have["L"], Y), have["G"], have["T"]), "numpy", cse=True),
+        "canonical": numpy_function(sp.diff(have["L"], Y), have["G"], have["T"], of=(Y, V, PARAMETERS)),
     }
 
 
@@ -206,8 +222,9 @@ class _Quadrature:
         out = direct / z**2
         small = np.abs(direct) < 1e-7 * size
         if np.any(small):
-            inner = self.u - self.sign * z[small][:, None] * NODES
-            out[small] = -(functions["curvature"](inner, self.values)[0] * WEIGHTS * (1 - NODES)).sum(axis=1)
+            inner = self.u - self.sign * z[small][:, None] * FEW_NODES
+            weights = FEW_WEIGHTS * (1 - FEW_NODES)
+            out[small] = -(functions["curvature"](inner, self.values)[0] * weights).sum(axis=1)
         return out
 
     def energy(self, y, w):
@@ -302,8 +319,8 @@ class _FromMiddle(_Quadrature):
         fall = self.at_u - value
         small = np.abs(fall) < 1e-7 * size
         if np.any(small):
-            inner = self.u - self.sign * z[small][:, None] * NODES
-            fall[small] = z[small] * self.sign * (functions["slopes"](inner, self.values)[0] * WEIGHTS).sum(axis=1)
+            inner = self.u - self.sign * z[small][:, None] * FEW_NODES
+            fall[small] = z[small] * self.sign * (functions["slopes"](inner, self.values)[0] * FEW_WEIGHTS).sum(axis=1)
         G, psi, w, T = functions["state"](y, self.values)
         if not (np.all(fall > 0) and np.all(G > 0) and np.all(T > 0)):
             raise NoState("no monotonic shape between 1 and the middle")

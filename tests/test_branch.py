@@ -61,7 +61,7 @@ def test_the_independent_solutions_agree():
     for where, loads in cases:
         shape = first_integral(**where, wall_ratio_area_a=WALL, c_ratio=0.5, **loads, stations=[0.2, 1.0, 3.0])
         cell = (where["alpha"], where["beta"], WALL)
-        path = [0.1, 0.4, 1.0, 2.0, inf] if where["p"] == inf else [where["p"] * t for t in (0.3, 0.6, 1.0)]
+        path = [0.4, 2.0, inf] if where["p"] == inf else [where["p"]]
         *other, y = collocation(cell, where["length_over_radius"], 0.5, path, **loads, stations=[0.2, 1.0, 3.0])[-1]
         mine = [shape.length, shape.volume, shape.rotation, shape.energy, shape.middle]
         assert mine == pytest.approx([float(q) for q in other], rel=1e-9, abs=1e-9)

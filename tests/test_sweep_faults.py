@@ -82,7 +82,7 @@ def struck(out, call, moment, kind, monkeypatch, code=errno.ENOSPC):
 
 @pytest.mark.parametrize("call", CALLS)
 def test_a_full_disk_costs_nothing_but_a_sentence(call, reference, tmp_path, monkeypatch):
-    for k, moment in enumerate(moments(call, tmp_path, monkeypatch, 7)):
+    for k, moment in enumerate(moments(call, tmp_path, monkeypatch, 4)):
         folder = tmp_path / str(moment)
         folder.mkdir()
         out = folder / "atlas.nc"
@@ -163,7 +163,7 @@ def test_short_writes_are_completed(reference, tmp_path, monkeypatch):
 
 
 def test_a_disk_that_loses_a_write_is_found_out(reference, tmp_path, monkeypatch):
-    for moment in moments("pwrite", tmp_path, monkeypatch, 12):
+    for moment in moments("pwrite", tmp_path, monkeypatch, 6):
         out = tmp_path / f"{moment}.nc"
         with pytest.raises(EnvironmentFault, match="other bytes are read back than were written"):
             struck(out, "pwrite", moment, "lost", monkeypatch)
