@@ -2,8 +2,8 @@
 
 The estimate is what the next order would add, and a share of the bounds of what is stored, which hold but are far from
 sharp. Where the grid resolves the physics well it is sharp; where not, it falls short by factors that the measurement finds:
-one for each decade of the estimate relative to the value, beside holes and elsewhere. The ends of an axis have scales of
-their own, measured as well.
+one for each decade of the estimate relative to the value, beside holes or where fibers go slack between the nodes, and
+elsewhere. The ends of an axis have scales of their own, measured as well.
 """
 
 import json
@@ -11,14 +11,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..tube_model import model_of
+
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
-ESTIMATES = 2  # which estimates were measured: of others, factors say nothing
+ESTIMATES, OF_PHYSICAL = 2, 3  # which estimates were measured, of physical tubes too: of others, factors say nothing
 DEFAULT_TOLERANCE = 1e-4
 DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
 CLASSES = len(DECADES) + 1
 RANKS = 5  # of the pieces of an axis: the first, the next, those between, the last but one, the last
 UNMEASURED = 12.0  # factor of an atlas that was not measured, or of a class with too few samples
+KINKED = 40.0  # the same of loose tubes where fibers go slack between the nodes
 
 
 class Factors(NamedTuple):
@@ -31,11 +34,11 @@ class Factors(NamedTuple):
     scales: np.ndarray
 
 
-def cautious(count) -> Factors:
-    """Factors of a variable over ``count`` axes that was not measured."""
-    return Factors(
-        np.full((2, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS))
-    )  # bounds hold as they are
+def cautious(count, loose=False) -> Factors:
+    """Factors of a variable over ``count`` axes that was not measured: bounds hold as they are."""
+    classes = np.full((2, CLASSES), UNMEASURED)
+    classes[1] = KINKED if loose else UNMEASURED
+    return Factors(classes, 1.0 / UNMEASURED, np.ones((count, RANKS)))
 
 
 def factors(data, name, axes=()) -> Factors:
@@ -50,7 +53,7 @@ def factors(data, name, axes=()) -> Factors:
             return Factors(numbers, share, scales)
     except (AttributeError, KeyError, TypeError, ValueError):
         pass
-    return cautious(len(axes))
+    return cautious(len(axes), model_of(data.attrs).is_loose)
 
 
 def read(data) -> dict:
@@ -61,7 +64,12 @@ def read(data) -> dict:
         return {}
     if not isinstance(found, dict) or not isinstance(found.get("variables", {}), dict):
         return {}
-    return found if found.get("estimates") == ESTIMATES else {}
+    return found if found.get("estimates") == estimates(data) else {}
+
+
+def estimates(data) -> int:
+    """Which estimates answers of an atlas are told from."""
+    return OF_PHYSICAL if model_of(data.attrs).is_physical else ESTIMATES
 
 
 def tolerance(data) -> float:

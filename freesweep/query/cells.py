@@ -13,11 +13,12 @@ NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; on
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
 
 
-def describe(values, noise, doubt, bad, axes):
+def describe(values, noise, doubt, bad, phases, axes):
     """What is known of all cells (nodes, ROUGH + d) of a grid over ``axes``.
 
     ``values`` (nodes,) are end effects, holes filled; ``noise`` (nodes,) their bounds; ``doubt`` (nodes,) how far numbers
-    that were put in may be off; ``bad`` (nodes,) marks nodes that had none.
+    that were put in may be off; ``bad`` (nodes,) marks nodes that had none; ``phases`` (nodes,) are alike where numbers are
+    smooth, or None if they are everywhere.
     """
     shape = [len(axis.nodes) for axis in axes]
     slabs, size = shape[0], len(values) // shape[0]
@@ -49,6 +50,8 @@ def describe(values, noise, doubt, bad, axes):
         for column in (BESIDE, DOUBT, *(ROUGH + a for a in inner)):
             _over_corners(own[column], kept[0])
         own[BESIDE] += first_reached
+    if phases is not None:
+        own[BESIDE] += _differ(phases.reshape(shape), kept).reshape(slabs, size)
     cells = np.empty((slabs, size, len(own)), np.float32)
     for slab in range(slabs):
         cells[slab] = own[:, slab].T
@@ -102,6 +105,16 @@ def _reached(bad, extents, axes):
             _over_corners(reached, extent)
         near |= reached
     return near
+
+
+def _differ(phases, axes):
+    """Cells whose corners are not of one phase, shape as ``phases``."""
+    least, most = phases.copy(), phases.copy()
+    for a in axes:
+        for kept, choose in ((least, np.minimum), (most, np.maximum)):
+            nodes = np.moveaxis(kept, a, 0)
+            choose(nodes[:-1], nodes[1:], out=nodes[:-1])
+    return least != most
 
 
 def _reach(bad, extent, first, reached):
