@@ -21,7 +21,6 @@ DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over val
 CLASSES = len(DECADES) + 1
 RANKS = 5  # of the pieces of an axis: the first, the next, those between, the last but one, the last
 UNMEASURED = 12.0  # factor of an atlas that was not measured, or of a class with too few samples
-KINKED = 40.0  # the same of loose tubes where fibers go slack between the nodes
 
 
 class Factors(NamedTuple):
@@ -34,11 +33,9 @@ class Factors(NamedTuple):
     scales: np.ndarray
 
 
-def cautious(count, loose=False) -> Factors:
+def cautious(count) -> Factors:
     """Factors of a variable over ``count`` axes that was not measured: bounds hold as they are."""
-    classes = np.full((2, CLASSES), UNMEASURED)
-    classes[1] = KINKED if loose else UNMEASURED
-    return Factors(classes, 1.0 / UNMEASURED, np.ones((count, RANKS)))
+    return Factors(np.full((2, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS)))
 
 
 def factors(data, name, axes=()) -> Factors:
@@ -53,7 +50,7 @@ def factors(data, name, axes=()) -> Factors:
             return Factors(numbers, share, scales)
     except (AttributeError, KeyError, TypeError, ValueError):
         pass
-    return cautious(len(axes), model_of(data.attrs).is_loose)
+    return cautious(len(axes))
 
 
 def read(data) -> dict:
