@@ -133,3 +133,11 @@ def test_at_nodes_and_at_rest_numbers_are_those_stored(crossed):
         np.testing.assert_array_equal(found[name].values, crossed[name].values.ravel())
     near = Atlas(crossed, "crossed.nc").query(pressure=1.0, variables=["deformed_length"])
     assert near["status"].item() == status.OK
+
+
+def test_vectors_that_know_no_physical_tube_hold_none():
+    """They would hold the source's instead: prototype B's closed form, eight times what loose threads give."""
+    here = points(4, alpha=0.0, beta=30.0, pressure=3e4)
+    found = solve(reference.ROTATION_HELD, here, "full", 1e-6, model=PHYSICAL, thorough=False)
+    assert set(found["status"]) == {status.NOT_CONVERGED}
+    assert np.isnan(found["torque"]).all()
