@@ -10,6 +10,10 @@ H = (tan(alpha) + tan(beta))/2 and D = (tan(alpha) - tan(beta))/2::
 
 The forces are positive in tension: opposite to Eq. 2.11, as in the source's plots. Where a formula has a pole or no
 meaning (a straight fiber cannot stretch; alpha = -beta cannot rotate; region I has no blocked force) the result is NaN.
+
+What is held undeformed strains no wall, so both blocked loads hold for thick walls, too, with r0 the radius of the fibers.
+Of threads that cannot push they hold where both families pull (:func:`held_shares`): ``fibers="loose"`` gives NaN elsewhere,
+where the tube deforms and only the held state (``freesweep.blocked_torque``) tells. The locked uniform tube is the same.
 """
 
 import functools
@@ -23,6 +27,7 @@ from .faults import ActuatorError
 from .given import numbers
 from .options import read_choice
 from .quantities import Quantities
+from .tube_model import FIBERS
 
 Formula = TypeVar("Formula", bound=Callable[..., Any])
 
@@ -31,6 +36,8 @@ UNITS = {
     **{"length": "m", "radius": "m", "wall": "m", "pressure": "Pa", "c10": "Pa", "c01": "Pa"},
 }
 REGIONS = ("AF", "DF", "I", "IIa", "IIb", "LM")
+HELD = ("rotation", "length")
+ROUNDING = 1e-12  # of the pressure: a family without tension does not push
 ANGLE_TOLERANCE = 1e-9  # [degree] and, for the product of tangents, relative: what counts as lying on a line
 
 
@@ -53,6 +60,10 @@ def _formula(function: Formula) -> Formula:
         except ValueError:
             found = ", ".join(f"{name} {shape}" for name, shape in sorted(shapes.items()) if shape)
             faults.append(f"the arrays do not broadcast: {found}; give equal lengths")
+        if "held" in bound.arguments:
+            read_choice("held", bound.arguments["held"], HELD, faults)
+        if "fibers" in bound.arguments:
+            read_choice("fibers", bound.arguments["fibers"], FIBERS, faults)
         if "energy" in bound.arguments:
             read_choice("energy", bound.arguments["energy"], ("full", "principal"), faults)
         if faults:
@@ -121,21 +132,57 @@ def locked_manifold(alpha: Quantities) -> Any:
 
 
 @_formula
-def blocked_force(alpha: Quantities, beta: Quantities, radius: Quantities, pressure: Quantities) -> Any:
-    """Force [N] that keeps the length at pressure [Pa] with the ends free to rotate (Eq. 2.16); ``radius`` [m]."""
+def blocked_force(
+    alpha: Quantities, beta: Quantities, radius: Quantities, pressure: Quantities, fibers: str = "bonded"
+) -> Any:
+    """Force [N] that keeps the length at pressure [Pa] with the ends free to rotate (Eq. 2.16); ``radius`` is that of
+    the fibers [m].
+
+    ``fibers``: "loose" threads pull wherever there is such a force.
+    """
     ta, tb = _tangents(alpha, beta)
     product = ta * tb
     force = -np.pi * np.asarray(radius) ** 2 * pressure * (1.0 + 2.0 / product)
-    return np.where((product < 0.0) & ~_on(alpha, beta), force, np.nan)
+    return np.where((product < 0.0) & ~_on(alpha, beta) & _hold(alpha, beta, "length", fibers), force, np.nan)
 
 
 @_formula
-def blocked_torque(alpha: Quantities, beta: Quantities, radius: Quantities, pressure: Quantities) -> Any:
-    """Torque [N m] that keeps the rotation at pressure [Pa] with the length free (Eqs. 2.19, 2.20); ``radius`` [m]."""
+def blocked_torque(
+    alpha: Quantities, beta: Quantities, radius: Quantities, pressure: Quantities, fibers: str = "bonded"
+) -> Any:
+    """Torque [N m] that keeps the rotation at pressure [Pa] with the length free (Eqs. 2.19, 2.20); ``radius`` of the fibers
+    [m].
+
+    ``fibers``: with "loose" threads NaN where one family would have to push, that is unless one angle is above, the other
+    below 54.7 degrees in size.
+    """
     ta, tb = _tangents(alpha, beta)
     torque = np.pi * np.asarray(radius) ** 3 * pressure * (2.0 + ta * tb) / (ta + tb)
     on_af = np.abs(np.add(alpha, beta)) < ANGLE_TOLERANCE
-    return np.where(on_af | _on(alpha, beta), np.nan, torque)
+    return np.where(~on_af & ~_on(alpha, beta) & _hold(alpha, beta, "rotation", fibers), torque, np.nan)
+
+
+def _hold(alpha, beta, held, fibers):
+    """Whether fibers hold an undeformed tube so."""
+    return True if fibers == "bonded" else np.minimum(*held_shares(alpha, beta, held)) >= -ROUNDING
+
+
+@_formula
+def held_shares(alpha: Quantities, beta: Quantities, held: str = "rotation") -> tuple[Any, Any]:
+    """How both families share the pressure where an undeformed tube's ``held`` "rotation" or "length" is blocked.
+
+    Returns the multipliers of both constraints over the pressure [-], ``(alpha's, beta's)``: a family's tension is
+    ``2 pi r0^2 P`` times its own, over the cosine of its angle; negative, it would have to push. NaN where nothing is
+    blocked in closed form.
+    """
+    ta, tb = _tangents(alpha, beta)
+    if held == "length":
+        shares = 1.0 / (ta * (ta - tb)), 1.0 / (tb * (tb - ta))
+        open_ = ta * tb >= 0.0
+    else:
+        shares = (1.0 - 0.5 * tb**2) / (ta**2 - tb**2), (0.5 * ta**2 - 1.0) / (ta**2 - tb**2)
+        open_ = np.abs(np.add(alpha, beta)) < ANGLE_TOLERANCE
+    return tuple(np.where(open_ | _on(alpha, beta), np.nan, share) for share in shares)
 
 
 @_formula
@@ -151,9 +198,10 @@ def critical_pressure(
 ) -> Any:
     """Pressure [Pa] from which a cylinder whose rotation is held buckles: its first mode is antisymmetric.
 
-    Lengths in [m], constants in [Pa]; infinite where it never does. Linear stability of y = 1 under Eq. 2.20, where nothing
-    is strained: of a Yeoh rubber only c1 counts, given as ``c10``. No safe limit: stable buckled states may exist below it,
-    down to ``least_buckled_pressure`` of ``blocked_torque(..., buckled=True)``.
+    Of a membrane with bonded fibers at ``radius``. Lengths in [m], constants in [Pa]; infinite where it never does. Linear
+    stability of y = 1 under Eq. 2.20, where nothing is strained: of a Yeoh rubber only c1 counts, given as ``c10``. No safe
+    limit: stable buckled states may exist below it, down to ``least_buckled_pressure`` of ``blocked_torque(...,
+    buckled=True)``.
     """
     ta, tb = _tangents(alpha, beta)
     half_sum, half_difference, q = 0.5 * (ta + tb), 0.5 * (ta - tb), ta * tb

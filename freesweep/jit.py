@@ -31,22 +31,23 @@ _INNER = {"no_cpython_wrapper": True, "pipeline_class": PartCompiler}  # nor the
 
 
 @functools.cache
-def source_hash(room: str) -> str:
-    """Hash of how kernels are compiled, of every source in one room ("solver", "query"), of Numba's version and Python's."""
+def source_hash(*rooms: str) -> str:
+    """Hash of how kernels are compiled, of the sources of ``rooms`` ("solver", "query"), of Numba's version and Python's."""
     here = Path(__file__).parent
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    for path in [Path(__file__), here / "compiler.py", *sorted((here / room).rglob("*.py"))]:
+    sources = [path for room in rooms for path in sorted((here / room).rglob("*.py"))]
+    for path in [Path(__file__), here / "compiler.py", *sources]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 
 
-def cache_folder(room: str) -> str | None:
-    """Where the machine code of a room's very sources lies; None: nobody is at home here, nothing is kept."""
+def cache_folder(*rooms: str) -> str | None:
+    """Where the machine code of some rooms' very sources lies; None: nobody is at home here, nothing is kept."""
     try:
         base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     except RuntimeError:  # neither HOME nor an entry of this user's
         return None
-    return str(Path(base) / "freesweep" / "kernels" / f"{room}-{source_hash(room)}")
+    return str(Path(base) / "freesweep" / "kernels" / f"{'+'.join(rooms)}-{source_hash(*rooms)}")
 
 
 def kernel(function, **more):
@@ -66,9 +67,9 @@ def kernel(function, **more):
 _with_door = functools.cache(numba.njit(**_POLICY))
 
 
-def entry_point(function):
-    """Compile a kernel that Python calls, and keep its machine code on disk."""
+def entry_point(function, others=()):
+    """Compile a kernel that Python calls, and keep its machine code on disk; ``others``: rooms whose kernels it calls."""
     dispatcher = numba.njit(**_POLICY)(function)
-    if folder := cache_folder(function.__module__.split(".")[1]):
+    if folder := cache_folder(function.__module__.split(".")[1], *others):
         dispatcher._cache = KernelCache(function, folder)
     return dispatcher

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from freesweep import closed_form
+from freesweep import Actuator, ActuatorError, MooneyRivlin, blocked_torque, closed_form
 
 PLANE = [(30, -30), (0, 30), (10, 50), (70, 20), (20, -80), (60, 55), (-40, -15), (85, -85), (2, -75)]
+RUBBER = MooneyRivlin(c10=0.17e6, c01=0.08e6)
 AREA = np.pi * 4.76e-3**2  # [m2]
 
 
@@ -167,3 +168,50 @@ def test_arrays_broadcast_and_scalars_stay_scalar():
     pressures = np.array([[1e4], [2e4]])
     assert closed_form.blocked_force(30, [-30.0, -50, -60], 1, pressures).shape == (2, 3)
     assert [part.shape for part in closed_form.uniform_state(alpha, beta, 1.01)] == [(2, 3)] * 4
+
+
+def test_shares_of_the_pressure_balance_it():
+    """At y = 1, where nothing is strained: the sums of section 10 of loads along, around and about the axis."""
+    draw = np.random.default_rng(4)
+    alpha, beta = draw.uniform(1, 80, 50), draw.uniform(-80, 80, 50)
+    ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
+    for held, kind in (("rotation", closed_form.blocked_torque), ("length", closed_form.blocked_force)):
+        a, b = closed_form.held_shares(alpha, beta, held)
+        load = kind(alpha, beta, 1.0, 1.0) / np.pi  # per pressure, in radii of the fibers
+        known = np.isfinite(load)
+        assert (known == np.isfinite(a)).all()
+        assert known.sum() > 20
+        f, m = (load, 0.0) if held == "length" else (0.0, load)
+        np.testing.assert_allclose((a * ta**2 + b * tb**2)[known], 1.0, rtol=1e-10)
+        np.testing.assert_allclose((a + b - 0.5 * (1.0 + f))[known], 0.0, atol=1e-9)
+        np.testing.assert_allclose((a * ta + b * tb - 0.5 * m)[known], 0.0, atol=1e-8)
+
+
+def test_of_loose_threads_closed_forms_are_given_where_both_pull():
+    alpha, beta = np.meshgrid(np.arange(2.0, 80.0, 3.0), np.arange(-80.5, 80.0, 3.0))
+    bonded = closed_form.blocked_torque(alpha, beta, 5e-3, 1e5)
+    loose = closed_form.blocked_torque(alpha, beta, 5e-3, 1e5, fibers="loose")
+    magic = np.degrees(np.arctan(np.sqrt(2.0)))
+    astride = (alpha < magic) != (np.abs(beta) < magic)
+    assert (np.isfinite(loose) == astride).all()
+    np.testing.assert_array_equal(loose[astride], bonded[astride])
+    force = closed_form.blocked_force(alpha, beta, 5e-3, 1e5)
+    np.testing.assert_array_equal(closed_form.blocked_force(alpha, beta, 5e-3, 1e5, fibers="loose"), force)
+    assert closed_form.held_shares(0.0, 30.0)[0] == pytest.approx(-2.5)  # prototype B's straight family
+    with pytest.raises(ActuatorError, match=r"fibers.*'bonded'") as error:
+        closed_form.blocked_torque(10, 40, 1, 1, fibers="glued")
+    assert "glued" in str(error.value)
+    with pytest.raises(ActuatorError, match="held"):
+        closed_form.held_shares(10, 40, held="torque")
+
+
+@pytest.mark.long  # minutes of compiling
+@pytest.mark.parametrize(("alpha", "beta", "pulls"), [(20.0, 62.0, True), (15.0, 45.0, False)])
+def test_held_tubes_with_loose_threads_and_thick_walls_meet_the_closed_form_where_it_is_given(alpha, beta, pulls):
+    tube = Actuator(alpha=alpha, beta=beta, length=0.1, radius=5e-3, wall=1.5e-3, material=RUBBER, model="physical")
+    held = blocked_torque(tube, 2e4, x=0.0, accuracy=1e-4)
+    by_bonded = closed_form.blocked_torque(alpha, beta, 6.5e-3, 2e4)
+    by_loose = closed_form.blocked_torque(alpha, beta, 6.5e-3, 2e4, fibers="loose")
+    assert np.isfinite(by_loose) == pulls
+    assert (held["slack_fiber"].item() == 0) == pulls
+    assert (held["torque"].item() == pytest.approx(by_bonded, rel=1e-5)) == pulls

@@ -452,6 +452,7 @@ def test_the_shipped_sweeps_have_the_size_they_say():
         "curves",
         "design-space",
         "physical",
+        "physical-map",
         "prototypes",
         "quick",
         "validity-full",

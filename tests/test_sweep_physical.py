@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from grids import FIXED, completed, make, spec, store
+from grids import FIXED, completed, make, spec
 from shards import same_bits
 
-from freesweep import Actuator, MooneyRivlin, inflate, open_atlas
+from freesweep import Actuator, MooneyRivlin, inflate
 from freesweep.atlas.content import dimensions, faults
 from freesweep.query.exact import solve
 from freesweep.query.reference import COLUMNS, LOADED
@@ -93,36 +93,6 @@ def test_an_atlas_tells_its_model_and_strangers_are_refused():
     assert dimensions("locked_rotation", data) == ("alpha", "beta")
     assert dimensions("locked_rotation", told) == ("alpha", "beta", "wall")  # with the wall the fibers' radius grows
     assert any("fibers is 'glued'" in fault for fault in faults(data.assign_attrs(fibers="glued")))
-
-
-def kinked(tmp_path, slack):
-    """A made-up atlas of loose tubes, whose slack fibers along the pressure are these."""
-    pressures = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5]
-    coords = {"alpha": 20.0, "beta": [-60.0, -55.0, -50.0, -45.0], "pressure": pressures}
-    coords |= {"fiber_extension": 1.0, "force": 0.0, "torque": 0.0}
-    shape = (4, len(pressures))
-    data = xr.Dataset(coords=coords)
-    for name in ("deformed_length", "mid_radius"):
-        data[name] = ("beta", "pressure"), np.broadcast_to(0.1 - 1e-7 * np.array(pressures), shape)
-    for name, flag in (("status", 0), ("stable", 1)):
-        data[name] = ("beta", "pressure"), np.full(shape, flag, np.int8)
-    data["slack_fiber"] = ("beta", "pressure"), np.broadcast_to(np.array(slack, np.int8), shape).copy()
-    data = completed(data).assign_attrs(PHYSICAL, interpolation_tolerance=0.1)
-    store(data, tmp_path / "atlas.nc")
-    return open_atlas(tmp_path / "atlas.nc")
-
-
-def test_nothing_is_interpolated_across_fibers_that_go_slack(tmp_path):
-    """At rest nothing pulls: the flag stored there is no change. A node is given as it is."""
-    between, nodes = [5e3, 1.5e4, 3e4, 6e4], [0.0, 1e4, 4e4]
-    with kinked(tmp_path, [0, 3, 3, 1, 1, 1]) as atlas:
-        asked = {"beta": -52.0, "variables": ["deformed_length"]}
-        found = atlas.query(pressure=between, **asked)
-        assert (found.status != 9).values.tolist() == [True, True, False, True]
-        assert found.slack_fiber.values[[0, 1, 3]].tolist() == [3, 3, 1]
-        stored = atlas.query(pressure=nodes, beta=-50.0, variables=["deformed_length"])
-        assert stored.status.values.tolist() == [0, 0, 0]
-        assert stored.slack_fiber.values.tolist() == [0, 3, 1]
 
 
 @pytest.mark.long  # a minute of compiling

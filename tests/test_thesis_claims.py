@@ -68,6 +68,17 @@ def test_numbers_of_the_two_energies():
     assert "up to 222 kPa" in row.full
 
 
+def test_threads_that_cannot_push_decide_what_the_text_says_of_torque():
+    said = {
+        "(Eq. 2.20).": "disagrees: B 0.26, 0.41, 1.12 times",
+        "exceed Eq. 2.20 at higher": "agrees: 13.5 % shorter at 100 kPa, more torque than Eq. 2.20 from 95 kPa",
+        "also seen in C": "agrees: 2.37",
+        "nearly no torque": "agrees: 0.26 times Eq. 2.20 at 30 kPa without any extension",
+    }
+    for words, found in said.items():
+        assert only(words).physical.startswith(found)
+
+
 def test_every_section_with_claims_is_there():
     sections = {one.where for one in table.CLAIMS}
     assert {"2.2", "2.3.3", "2.3.4", "2.3.5", "2.4.1", "2.4.2", "2.5.1", "2.5.2", "3.4", "3.5", "3.3"} <= sections

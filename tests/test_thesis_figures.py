@@ -171,6 +171,21 @@ def test_exact_torque_leaves_the_formula_at_the_critical_pressure():
     assert np.interp(100.0, *corrected.get_data()) / np.interp(100.0, *line("2-12", "C Eq. 2.20").get_data()) < 1.0
 
 
+def test_torque_of_b_once_threads_cannot_push_is_that_of_brute_force():
+    """0.264193 and 1.119730 times Eq. 2.20 at 30 and 100 kPa on 100 cells of tests/loose_tubes.py; C holds as it is."""
+    ratio = {
+        name: line("2-12-physical", f"{name} physical").get_ydata()
+        / line("2-12-physical", f"{name} Eq. 2.20").get_ydata()
+        for name in "BC"
+    }
+    at = line("2-12-physical", "B physical").get_xdata()
+    np.testing.assert_allclose(np.interp([30.0, 100.0], at, ratio["B"]), [0.264193, 1.119730], atol=2e-6)
+    np.testing.assert_allclose(ratio["C"], (6.35 / 4.76) ** 3, rtol=1e-9)
+    table = rows("2-13-physical")
+    lengths = [max(row["axial_position"] for row in table if row["model"] == model) for model in ("source", "physical")]
+    assert lengths == pytest.approx([0.131, 17.8394 * 6.35e-3], rel=1e-4)
+
+
 def test_rotator_turns_and_keeps_its_length():
     assert line("2-16-found", "found rotation").get_ydata()[-1] > 149.9
     assert np.max(np.abs(line("2-16-found", "found length_change").get_ydata())) < 0.1  # [mm]

@@ -8,7 +8,7 @@ from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED
 from .holes import MIXED
 from .place import place
-from .slack import UNKNOWN, slack_families
+from .slack import UNKNOWN
 
 CUBIC, LINEAR = "cubic", "linear"
 SORTED = 2000  # points from which on sorting pays
@@ -23,17 +23,14 @@ class Inquiry:
         self.table, self.method = table, method
         asked = np.stack([values[name] for name in table.known], axis=1)
         self.size, d = len(asked), len(table.axes)
-        self.points, self.states = (
-            np.empty((self.size, len(reference.COLUMNS))),
-            np.empty((self.size, reference.UNIFORM)),
-        )
+        self.points = np.empty((self.size, len(reference.COLUMNS)))
         self.pieces, self.shares = np.zeros((self.size, d), np.int64), np.zeros((self.size, d))
         self.marks = np.empty((self.size, 7), np.int64)
         place(
             asked, table.kinds, table.bounds, table.fixed, table.options, table.knots, table.shape, table.coordinates,
             table.strides, table.codes, table.cells, self.points, self.pieces, self.shares, self.marks,
         )  # fmt: skip
-        reference.uniform_states(table.family.kind, self.points, table.shear, self.states)
+        self.states = table.predictor.states(table.family.kind, self.points)
         self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
         self.node = self.marks[:, 4]
         self.exact = self.node >= 0
@@ -139,17 +136,14 @@ class Inquiry:
             found[table.family.flag] = np.where(self.codes == MIXED, 0, self.codes >> 4 & 1)
         if table.has_slack:
             slack, exchanged = self.marks[:, 2], self.marks[:, 5] == 1
-            if table.is_kinked:  # where corners differ there is no answer; at rest nothing pulls
-                at_corners = np.where(self.codes == MIXED, 0, self.codes >> 1 & 0x30)
-                slack = np.where(self.exact & (slack != MIXED), slack, at_corners)
             look = (slack == MIXED) & self.valued
             slack = np.where(slack == MIXED, 0, slack >> 4)
+            slack[self.exact] = table.stored("slack_fiber")[self.node[self.exact]]
             if look.any():
                 places = np.flatnonzero(look)
                 effects, nothing = self.effects("mid_radius", self.orders(), places)[places], np.zeros(len(places))
                 middle, _, _ = self._restored("mid_radius", places, effects, nothing, nothing)
-                told = np.empty(len(places), np.uint8)
-                slack_families(self.points[places], self.states[places], middle, table.shear, told)
+                told = table.predictor.slack_families(self.points[places], self.states[places], middle)
                 slack[places] = np.where(told == UNKNOWN, 0, told)
                 self.status[places[told == UNKNOWN]] = NOT_INTERPOLABLE
             found["slack_fiber"] = np.where(exchanged, (slack & 1) << 1 | slack >> 1 & 1, slack)

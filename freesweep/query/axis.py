@@ -93,6 +93,20 @@ def make_axis(name: str, values) -> Axis:
     return Axis(name, values, kind, nodes, first, left, right, remainder)
 
 
+def extrapolation(axis: Axis) -> np.ndarray:
+    """Weights (2, n, 6) of what a node differs by from those beyond the piece: its right one from the three nearest to the
+    left, its left one from those to the right. Both sizes together are the change of slope times the width.
+    """
+    weights = np.zeros((2, len(axis.nodes), WINDOW))
+    for i in range(len(axis.nodes) - 1):
+        first, last = axis.first[i], axis.first[i] + axis.window
+        sides = np.arange(max(i - 2, first), i + 1), np.arange(i + 1, min(i + 4, last))
+        for side, at, own in zip(sides, (i + 1, i), weights):
+            own[i, side - first] = -_lagrange(axis.nodes[side], axis.nodes[at])
+            own[i, at - first] += 1.0
+    return weights
+
+
 def part_of(axis: Axis, start, stop) -> Axis:
     """Nodes ``start`` to ``stop`` of an axis; pieces whose window lies among them keep it, others have one that does."""
     if stop - start == len(axis.nodes):

@@ -2,8 +2,8 @@
 
 The estimate is what the next order would add, and a share of the bounds of what is stored, which hold but are far from
 sharp. Where the grid resolves the physics well it is sharp; where not, it falls short by factors that the measurement finds:
-one for each decade of the estimate relative to the value, beside holes and elsewhere. The ends of an axis have scales of
-their own, measured as well.
+one for each decade of the estimate relative to the value, beside holes or where fibers go slack between the nodes, and
+elsewhere. The ends of an axis have scales of their own, measured as well.
 """
 
 import json
@@ -11,9 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..tube_model import model_of
+
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
-ESTIMATES = 2  # which estimates were measured: of others, factors say nothing
+ESTIMATES, OF_PHYSICAL = 2, 3  # which estimates were measured, of physical tubes too: of others, factors say nothing
 DEFAULT_TOLERANCE = 1e-4
 DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
 CLASSES = len(DECADES) + 1
@@ -32,10 +34,8 @@ class Factors(NamedTuple):
 
 
 def cautious(count) -> Factors:
-    """Factors of a variable over ``count`` axes that was not measured."""
-    return Factors(
-        np.full((2, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS))
-    )  # bounds hold as they are
+    """Factors of a variable over ``count`` axes that was not measured: bounds hold as they are."""
+    return Factors(np.full((2, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS)))
 
 
 def factors(data, name, axes=()) -> Factors:
@@ -61,7 +61,12 @@ def read(data) -> dict:
         return {}
     if not isinstance(found, dict) or not isinstance(found.get("variables", {}), dict):
         return {}
-    return found if found.get("estimates") == ESTIMATES else {}
+    return found if found.get("estimates") == estimates(data) else {}
+
+
+def estimates(data) -> int:
+    """Which estimates answers of an atlas are told from."""
+    return OF_PHYSICAL if model_of(data.attrs).is_physical else ESTIMATES
 
 
 def tolerance(data) -> float:

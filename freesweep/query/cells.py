@@ -6,18 +6,20 @@ slab by slab along the first axis, as much as a cache holds; an extent is (count
 
 import numpy as np
 
-from .axis import LABEL, WINDOW
+from .axis import LABEL, WINDOW, extrapolation
 from .holes import weigh
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
+KINK = (0.25, 0.04, 0.01)  # of a change of slope times the width: what cubics miss in its piece, and one and two beside
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
 
 
-def describe(values, noise, doubt, bad, axes):
+def describe(values, noise, doubt, bad, phases, axes):
     """What is known of all cells (nodes, ROUGH + d) of a grid over ``axes``.
 
     ``values`` (nodes,) are end effects, holes filled; ``noise`` (nodes,) their bounds; ``doubt`` (nodes,) how far numbers
-    that were put in may be off; ``bad`` (nodes,) marks nodes that had none.
+    that were put in may be off; ``bad`` (nodes,) marks nodes that had none; ``phases`` (nodes,) are alike where numbers are
+    smooth, or None if they are everywhere.
     """
     shape = [len(axis.nodes) for axis in axes]
     slabs, size = shape[0], len(values) // shape[0]
@@ -27,6 +29,7 @@ def describe(values, noise, doubt, bad, axes):
     first_reached = np.zeros((slabs, size), bool)
     if 0 in kept:
         _remainders(values, axes[0], kept[0], own[ROUGH].reshape(-1))
+        _kinks(values, phases, axes[0], kept[0], own[ROUGH].reshape(-1))
         _reach(bad, kept[0], axes[0].first, first_reached.reshape(-1))
     for slab in range(slabs):
         here = slice(slab * size, (slab + 1) * size)
@@ -41,6 +44,7 @@ def describe(values, noise, doubt, bad, axes):
             if a > 0:
                 _remainders(values[here], axes[a], inner[a], rough)
                 _smooth_over(rough, inner[a])
+                _kinks(values[here], None if phases is None else phases[here], axes[a], inner[a], rough)
             for extent in (extent for other, extent in inner.items() if other != a):
                 _over_corners(rough, extent)
     if 0 in kept:
@@ -49,6 +53,8 @@ def describe(values, noise, doubt, bad, axes):
         for column in (BESIDE, DOUBT, *(ROUGH + a for a in inner)):
             _over_corners(own[column], kept[0])
         own[BESIDE] += first_reached
+    if phases is not None:
+        own[BESIDE] += _differ(phases.reshape(shape), kept).reshape(slabs, size)
     cells = np.empty((slabs, size, len(own)), np.float32)
     for slab in range(slabs):
         cells[slab] = own[:, slab].T
@@ -61,6 +67,26 @@ def _remainders(values, axis, extent, rough):
     weigh(values, *extent, axis.first, axis.remainder, out)
     np.abs(out, out=out)
     rough[:] = np.where(out < np.inf, out, np.inf)
+
+
+def _kinks(values, phases, axis, extent, rough):
+    """Where phases (nodes,) change along one axis, at least what a kink leaves there, and in the pieces that it reaches."""
+    if phases is None:
+        return
+    nodes = phases.reshape(-1, *extent)
+    changes = nodes[:, :-1] != nodes[:, 1:]
+    if not changes.any():
+        return
+    jump, part = np.zeros(len(values)), np.empty(len(values))
+    for weights in extrapolation(axis):
+        weigh(values, *extent, axis.first, weights, part)
+        jump += np.abs(part)
+    pieces = rough.reshape(-1, *extent)[:, :-1]
+    jump = np.where(changes, np.where(jump < np.inf, jump, np.inf).reshape(-1, *extent)[:, :-1], 0.0)
+    np.maximum(pieces, KINK[0] * jump, out=pieces)
+    for apart, share in enumerate(KINK[1:], 1):
+        np.maximum(pieces[:, apart:], share * jump[:, :-apart], out=pieces[:, apart:])
+        np.maximum(pieces[:, :-apart], share * jump[:, apart:], out=pieces[:, :-apart])
 
 
 def _over_corners(numbers, extent):
@@ -102,6 +128,16 @@ def _reached(bad, extents, axes):
             _over_corners(reached, extent)
         near |= reached
     return near
+
+
+def _differ(phases, axes):
+    """Cells whose corners are not of one phase, shape as ``phases``."""
+    least, most = phases.copy(), phases.copy()
+    for a in axes:
+        for kept, choose in ((least, np.minimum), (most, np.maximum)):
+            nodes = np.moveaxis(kept, a, 0)
+            choose(nodes[:-1], nodes[1:], out=nodes[:-1])
+    return least != most
 
 
 def _reach(bad, extent, first, reached):

@@ -108,7 +108,7 @@ def _held(kind, rows, own, accuracy, cells, thorough):
     from ..solver import hold_batch
     from ..solver.batch import uniform
     from ..solver.find import HELD_LENGTH, HELD_ROTATION
-    from ..solver.problem import LENGTH
+    from ..solver.problem import LENGTH, PROBLEM_SIZE
 
     count = len(rows)
     length = kind == reference.LENGTH_HELD
@@ -121,6 +121,7 @@ def _held(kind, rows, own, accuracy, cells, thorough):
         found = hold_batch.hold_all(*asked, uniform(cells), accuracy, soon=True)
     else:
         found = hold_batch._pending(count)
-        hold_batch._hold_lanes(*asked, cells, accuracy, found)
+        if rows.shape[1] == PROBLEM_SIZE:  # vectors hold the source's tubes only
+            hold_batch._hold_lanes(*asked, cells, accuracy, found)
         found.status[found.status == PENDING] = NOT_CONVERGED
     return found.values[:, None], found.bounds[:, None], found.status, np.zeros(count, np.int64), found.stable

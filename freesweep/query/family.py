@@ -23,17 +23,6 @@ _SHAPE = {
 }
 
 
-def physical(family) -> Family:
-    """The family of tubes that are not the source's: what stands behind them is a membrane with bonded fibers, and its
-    middle may be narrower than theirs.
-    """
-    if family.kind != r.LOADED:
-        return family
-    return family._replace(
-        variables={name: r.SWELLING if of == r.MID_RADIUS else of for name, of in family.variables.items()}
-    )
-
-
 FAMILIES = {
     "state": Family(r.LOADED, _SHAPE, "status", "stable"),
     "locked": Family(r.LOCKED, {f"locked_{name}": variable for name, variable in _SHAPE.items()}, "locked_status"),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .axis import LABEL
-from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, WALL, uniform_states
+from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, WALL
 
 
 class GridPoints:
@@ -38,7 +38,7 @@ class GridPoints:
 class GridStates:
     """Uniform states of a grid, made and kept once for axes that they do not vary with (``without``)."""
 
-    def __init__(self, points: GridPoints, kind, shear, without):
+    def __init__(self, points: GridPoints, kind, predictor, without):
         axes = [
             axis for axis, column in zip(points.axes, points.columns) if column < 0 or COLUMNS[column] not in without
         ]
@@ -49,10 +49,7 @@ class GridStates:
             if column >= 0 and COLUMNS[column] in without:
                 fixed[:, column] = axis.values[0]
         own = GridPoints(axes, columns, fixed, points.fiber_share, points.by_length)
-        found = []
-        for slab in own.slabs():
-            found.append(np.empty((len(slab), UNIFORM)))
-            uniform_states(kind, slab, shear, found[-1])
+        found = [predictor.states(kind, slab) for slab in own.slabs()]
         self.states = np.concatenate(found).reshape(*self.shape, UNIFORM)
         self.whole = points.shape
 

@@ -116,12 +116,12 @@ class Interpolator:
             rate = inquiry.effects(name, inquiry.orders(a)) * axis.rate(inquiry.points[:, column])
             ends = []
             for sign in (-1.0, 1.0):
-                points, states = inquiry.points.copy(), np.empty_like(inquiry.states)
+                points = inquiry.points.copy()
                 points[:, column] += sign * steps
                 if own in ("radius", "wall") and table.options[0] >= 0.0:
                     share = 1.0 if own == "radius" else table.options[0]
                     points[:, reference.FIBERS] += share * sign * steps
-                reference.uniform_states(family.kind, points, table.shear, states)
+                states = table.predictor.states(family.kind, points)
                 end = np.empty((3, inquiry.size))
                 _restore(table, name, points, states, effects + sign * steps * rate, end)
                 ends.append(end[0])

@@ -18,9 +18,10 @@ from .refine import exact_answers
 
 SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
-FEWEST = 2_000  # at least, of physical tubes, which take a thousand times as long
+FEWEST, FEW = 2_000, 10_000  # at least, and at most, of physical tubes, which take a thousand times as long
 HELD_SHARE = 2  # held states cost more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
+LOOSE_SHARPER = 1.0  # where fibers go slack digits are dear, and what lies between nodes errs by far more
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
 REGIONS = ("I", "IIa", "IIb")
 
@@ -43,8 +44,8 @@ def measured(data, designs=None) -> dict:
     if not reader.frame.uniform_along_x:
         return {}
     answered, variables = {}, {}
-    least = FEWEST if reader.frame.model.is_physical else LEAST
-    count = designs or int(np.clip(data["status"].size // EACH, least, MOST))
+    least, most = (FEWEST, FEW) if reader.frame.model.is_physical else (LEAST, MOST)
+    count = designs or int(np.clip(data["status"].size // EACH, least, most))
     for key, family in FAMILIES.items():
         names = sorted((name for name in family.variables if name in data), key=lambda name: name != "mid_radius")
         if key == "limit" or not names or not reader.table(key).names:
@@ -54,7 +55,7 @@ def measured(data, designs=None) -> dict:
         share, results = _family(reader, key, names, drawn)
         answered[key] = share
         variables |= results
-    head = {"designs": count, "seed": SEED, "estimates": calibration.ESTIMATES}
+    head = {"designs": count, "seed": SEED, "estimates": calibration.estimates(data)}
     return head | {"answered": answered, "variables": variables}
 
 
@@ -75,7 +76,8 @@ def _family(reader, key, names, values):
     inquiry = Inquiry(table, values)
     inquiry.flags()
     places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
-    accuracy = max(SHARPER * reader.frame.accuracy, ACCURACIES[0])
+    sharper = LOOSE_SHARPER if reader.frame.model.is_loose else SHARPER
+    accuracy = max(sharper * reader.frame.accuracy, ACCURACIES[0])
     exact = exact_answers(reader, key, inquiry.points[places], names, accuracy)
     solved = np.isin(exact[table.family.status], VALUED)
     with ThreadPoolExecutor(TOGETHER if table.size <= MUCH else 1) as pool:

@@ -4,8 +4,7 @@ A stored number is ``offset + scale * end_effect``, or ``offset + base * exp(sca
 the poles (blocked force at straight fibers, blocked torque at alpha = -beta), the swelling near alpha = beta and the
 lengthening near 90 degrees. The scale vanishes where the ends change nothing: the end effect is a smooth number near one,
 and small values stay relatively exact. Rotation carries H, every change of shape q - 1, the energy that of the uniform wall.
-Volumes and the middle's radius, which the ends may change by decades, are taken as logarithms. Of physical tubes this
-closed form is only near: what is left is the effect of wall and threads, too, and their middle's radius is SWELLING.
+Volumes and the middle's radius, which the ends may change by decades, are taken as logarithms.
 """
 
 import math
@@ -23,9 +22,10 @@ COLUMNS = (
 ALPHA, BETA, LENGTH, RADIUS, WALL, FIBERS, EXTENSION, C10, C01, FORCE, TORQUE, PRESSURE, HELD, C20, C30 = range(15)
 
 NONE, LOADED, LOCKED, LENGTH_HELD, ROTATION_HELD = range(5)  # kinds of states; and variables:
-PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE, SWELLING = range(9)
+PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE = range(8)
 
-UNIFORM = 9  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier and its rounding
+UNIFORM = 10  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier, its rounding, and
+TAUT = 9  # which fibers of a loose tube are taut: 0 none, 1 alpha, 2 beta, 3 both
 TINY = 1e-5  # what the middle of a long tube lacks is not told from nothing below it, of its swelling
 CANCELLATION = 1e-15  # of the energy of a unit of strain
 ROUNDING = 1e-13  # of a value, and of the closed form
@@ -102,8 +102,6 @@ def reference(variable, point, u):
     if variable == VOLUME:
         inside = math.pi * (r * r - point[RADIUS] ** 2) * length  # an incompressible wall keeps its volume
         return -inside, math.pi * r * r * length * q * u[4], (math.sqrt(q) - 1.0) * r / length
-    if variable == SWELLING:
-        return r, 0.0, r * swelling
     if variable == MID_RADIUS:  # what the middle lacks falls off exponentially with the length
         wider = r * (math.sqrt(q) - 1.0)
         return r + wider * (1.0 + TINY), -wider, 1.0 if wider != 0.0 else 0.0

@@ -9,10 +9,11 @@ from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
 from .cells import describe
-from .family import FAMILIES, physical
+from .family import FAMILIES
 from .frame import DEFAULTS
 from .grid import GridPoints, GridStates
 from .holes import cell_codes, fill, slopes
+from .predictor import Predictor
 from .reference import COLUMNS, end_effects
 from .tensor import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
@@ -38,7 +39,7 @@ class Table:
 
     def __init__(self, data, frame, key, box=None):
         self.data, self.frame = data, frame
-        self.family = physical(FAMILIES[key]) if frame.model.is_physical else FAMILIES[key]
+        self.family, self.predictor = FAMILIES[key], Predictor(frame.model, frame.energy)
         self.names = frame.axes_of(self.family.variables)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
         whole = [frame.axis(name) for name in self.names]
@@ -57,13 +58,11 @@ class Table:
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
         self.is_kinked = self.has_slack and frame.model.is_physical  # numbers have kinks where slack begins or ends
-        self.is_untold = (
-            frame.model.is_loose and self.family.kind in HELD_NAMES.values()
-        )  # and of held ones nothing is told
-        own = self._codes()
-        self.codes = np.stack([own | self._beyond_rest(slack) << 1 if self.is_kinked else own, slack])
+        # of held loose tubes there is no closed form
+        self.is_untold = frame.model.is_loose and self.family.kind in HELD_NAMES.values()
+        self.codes = np.stack([self._codes(), self._beyond_rest(slack) if self.is_kinked else slack])
         self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
-        self._variables, self._stored, self._errors, self._states = {}, {}, {}, None
+        self._variables, self._stored, self._errors, self._states, self._phases = {}, {}, {}, None, None
 
     def _place(self):
         """What :func:`place` has to know of the columns of a question."""
@@ -88,14 +87,12 @@ class Table:
             elif name in DEFAULTS:
                 self.fixed[:, column] = DEFAULTS[name]
         self.fixed[:, reference.HELD] = 1.0 if kind == reference.LENGTH_HELD else 0.0
-        shear = 0.0 if frame.energy == "principal" else 1.0
         by_length = kind == reference.LENGTH_HELD and "held_length" in frame.values
         columns = self.kinds[:, 0].tolist()
         angles = [
             columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
         ]
         self.options = (frame.fiber_share, by_length, self.family.status is not None, *angles)
-        self.shear = shear
 
     def _packed(self):
         """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`tensor` knows of the axes."""
@@ -188,7 +185,27 @@ class Table:
         table = np.empty((len(effects), NODE))
         table[:, 0], table[:, 1:] = effects, along.T
         del along
-        return Interpolant(table.ravel(), describe(effects, noise, doubt, bad, self.axes))
+        return Interpolant(table.ravel(), describe(effects, noise, doubt, bad, self.phases(), self.axes))
+
+    def states(self) -> GridStates:
+        """Uniform states of the grid."""
+        if self._states is None:
+            without = ("length",) if self.family.kind in (reference.LOADED, reference.LOCKED) else ()
+            self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
+        return self._states
+
+    def phases(self):
+        """Which loose fibers are slack, in the middle of a long tube and anywhere, (nodes,): where it changes, numbers have
+        kinks. None where they have none.
+        """
+        if not (self.has_slack and self.frame.model.is_loose):
+            return None
+        if self._phases is None:
+            size = int(self.strides[0])
+            kinds = [self.states().slab(k)[:, reference.TAUT] for k in range(len(self.codes[1]) // size)]
+            kinds = np.nan_to_num(np.concatenate(kinds), nan=3.0).astype(np.uint8)
+            self._phases = self._beyond_rest(kinds) | self.codes[1]
+        return self._phases
 
     def _end_effects(self, name):
         """End effects of the stored numbers and their bounds, (nodes,)."""
@@ -196,18 +213,12 @@ class Table:
         number = self.is_number(self.codes[0])
         if self.family.kind == reference.NONE:
             return np.where(number, stored, np.nan), errors.astype(np.float32)
-        if self._states is None:
-            without = ("length",) if self.family.kind in (reference.LOADED, reference.LOCKED) else ()
-            self._states = GridStates(self._points(), self.family.kind, self.shear, without)
         effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
         kinds, size = (self.family.variables[name], self.family.kind), int(self.strides[0])
         for k, points in enumerate(self._points().slabs()):
             here = slice(k * size, (k + 1) * size)
             args = (stored[here], errors[here], effects[here], noise[here])
-            end_effects(*kinds, points, self._states.slab(k), *args)
-            if self.frame.model.is_physical and self.family.kind == reference.LOADED:
-                # of the closed form's membrane even the first bit of pressure tells something else
-                effects[here][points[:, reference.PRESSURE] == 0.0] = np.nan
+            end_effects(*kinds, points, self.states().slab(k), *args)
         effects[~number], noise[~number] = np.nan, 0.0
         return effects, noise
 

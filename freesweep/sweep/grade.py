@@ -15,6 +15,7 @@ from ..query import reference
 from ..query.axis import LABEL, make_axis
 from ..query.exact import solve
 from ..query.family import LOOSE
+from ..query.predictor import Predictor
 from ..status import VALUED
 from ..tube_model import fiber_place
 
@@ -89,14 +90,11 @@ def _failing(sweep, axes, name):
     _place_fibers(sweep, around)
     exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy, model=sweep.model)
     nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy, model=sweep.model)
-    shear = 1.0 if sweep.energy == "full" else 0.0
-    at, beside = (np.empty((len(some), reference.UNIFORM)) for some in (points, around))
-    reference.uniform_states(reference.LOADED, points, shear, at)
-    reference.uniform_states(reference.LOADED, around, shear, beside)
+    predictor = Predictor(sweep.model, sweep.energy)
+    at, beside = (predictor.states(reference.LOADED, some) for some in (points, around))
     known = np.isin(exact["status"], VALUED) & np.isin(nodes["status"], VALUED).reshape(DESIGNS, -1).all(axis=1)
     fails = np.zeros(DESIGNS, bool)
-    measured = MEASURED | ({"mid_radius": reference.SWELLING} if sweep.model.is_physical else {})
-    for variable, kind in measured.items():
+    for variable, kind in MEASURED.items():
         effects, noise = np.empty(len(around)), np.empty(len(around))
         stored, errors = nodes[variable], nodes[f"{variable}_error"]
         args = (stored, errors, effects, noise)

@@ -1,6 +1,6 @@
-"""Every figure of the source with content of the model, by its number; and one beyond it, "found"."""
+"""Every figure of the source with content of the model, by its number; beyond it one "found", two of "physical" tubes."""
 
-from . import locked, muscles, rotating, sleeve, space, torque, varying
+from . import locked, muscles, physical, rotating, sleeve, space, torque, varying
 
 FIGURES = {
     "1-2": space.figure_1_2,
@@ -14,7 +14,9 @@ FIGURES = {
     "2-10": rotating.figure_2_10,
     "2-11": rotating.figure_2_11,
     "2-12": torque.figure_2_12,
+    "2-12-physical": physical.figure_2_12,
     "2-13": torque.figure_2_13,
+    "2-13-physical": physical.figure_2_13,
     "2-14": varying.figure_2_14,
     "2-15": varying.figure_2_15,
     "2-16": varying.figure_2_16,

@@ -54,6 +54,13 @@ def rotating(name, energy="principal", extension=1.0) -> Actuator:
     )  # fmt: skip
 
 
+@functools.cache
+def physical_rotating(name) -> Actuator:
+    """The same with a thick wall and threads at its outer radius that cannot push, of the rubber of Table 1."""
+    alpha, beta, length = ROTATING[name]
+    return Actuator(alpha=alpha, beta=beta, length=length, radius=RADIUS, wall=WALL, material=TABLE_1, model="physical")
+
+
 def _switched(first, last):
     return lambda share: first + (last - first) * 0.5 * (1.0 + np.tanh((share - 0.5) / SWITCH))
 

@@ -14,13 +14,16 @@ class Found(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """``where`` in the source, the ``figures`` it belongs to, its ``text``, ``check(energy)`` and a ``remark``."""
+    """``where`` in the source, the ``figures`` it belongs to, its ``text``, ``check(energy)``, a ``remark``; ``physical()``
+    says it of threads that cannot push.
+    """
 
     where: str
     figures: tuple
     text: str
     check: Callable
     remark: str = ""
+    physical: Callable | None = None
 
 
 class Row(NamedTuple):
@@ -32,15 +35,18 @@ class Row(NamedTuple):
     principal: str
     full: str
     verdict: str
+    physical: str
     remark: str
 
 
 def judge(claim: Claim) -> Row:
-    """Computes a claim with both strain energies."""
+    """Computes a claim with both strain energies of the source's tube, and with the physical tube."""
     principal, full = claim.check("principal"), claim.check("full")
+    physical = claim.physical() if claim.physical else None
     return Row(
-        claim.where, claim.figures, claim.text, principal.value, full.value, verdict(principal, full), claim.remark
-    )
+        claim.where, claim.figures, claim.text, principal.value, full.value, verdict(principal, full),
+        f"{physical.holds}: {physical.value}" if physical else "", claim.remark,
+    )  # fmt: skip
 
 
 def verdict(principal: Found, full: Found) -> str:

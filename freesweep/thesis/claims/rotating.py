@@ -7,6 +7,7 @@ import numpy as np
 from ... import closed_form
 from ...holding import blocked_torque, corrected_torque
 from ...statics import inflate
+from .. import physical
 from ..prototypes import RADIUS, ROTATING, rotating
 from ..torque import critical
 from .claim import NO, PARTLY, UNKNOWN, YES, Claim, Found, holds
@@ -145,16 +146,20 @@ CLAIMS = (
           "The measured values are not printed. A alone comes near two turns."),
     Claim("2.4", ("2-10",), "Assumed: both fiber families stay taut (Eqs. 2.3 and 2.4 hold as equalities).",
           pushed_fibers, "The model keeps both families taut; there, one of them would have to push, which a fiber cannot."),
-    Claim("2.4.2", ("2-12",), "The blocked torque is 2 pi r^3 P / tan(beta) (Eq. 2.20).", equation_2_20,
-          "For inextensible fibers, below the critical pressure."),
-    Claim("2.4.2", ("2-12", "2-13"), "Blocked deformation lets the torque of B exceed Eq. 2.20 at higher pressures.",
-          blocked_deformation, "The exact model has it without any superposition, but only beyond a critical pressure."),
+    Claim("2.4.2", ("2-12", "2-12-physical"), "The blocked torque is 2 pi r^3 P / tan(beta) (Eq. 2.20).", equation_2_20,
+          "For inextensible fibers, below the critical pressure.", physical.equation_2_20),
+    Claim("2.4.2", ("2-12", "2-12-physical", "2-13", "2-13-physical"),
+          "Blocked deformation lets the torque of B exceed Eq. 2.20 at higher pressures.", blocked_deformation,
+          "The exact model has it without any superposition, but only beyond a critical pressure; where threads cannot push,"
+          " at all pressures.", physical.blocked_deformation),
     Claim("2.4.2", ("2-12",), "The corrected torque of B exceeds Eq. 2.20, the more so at higher pressure.",
           _corrected("B")),
-    Claim("2.4.2", ("2-12",), "The effect is also seen in C: slightly larger than Eq. 2.20.", _corrected("C"),
-          "The source's own formula gives slightly less for C, whose 60° muscle lengthens."),
-    Claim("2.4.2", ("2-12",), "Fiber extension accounts for nearly no torque of B at 0.03 MPa.", no_torque_at_first,
-          "The extension assumed for B is not printed; 0.5 % and 0.75 % are those of the muscles."),
+    Claim("2.4.2", ("2-12", "2-12-physical"), "The effect is also seen in C: slightly larger than Eq. 2.20.",
+          _corrected("C"), "The source's own formula gives slightly less for C, whose 60° muscle lengthens.",
+          physical.seen_in_c),
+    Claim("2.4.2", ("2-12", "2-12-physical"), "Fiber extension accounts for nearly no torque of B at 0.03 MPa.",
+          no_torque_at_first, "The extension assumed for B is not printed; 0.5 % and 0.75 % are those of the muscles.",
+          physical.no_torque_at_first),
     Claim("2.5.1", ("2-14",), "With constant fiber angles there is no purely rotating actuator.", pure_rotation,
           "True along the whole way; but region I passes its undeformed length once, turned."),
 )  # fmt: skip

@@ -4,7 +4,7 @@ from . import kinematics, muscles, rotating, sleeve, varying
 from .claim import Row, judge
 
 CLAIMS = (*kinematics.CLAIMS, *muscles.CLAIMS, *rotating.CLAIMS, *varying.CLAIMS, *sleeve.CLAIMS)
-COLUMNS = ("where", "figures", "claim", "principal", "full", "verdict", "remark")
+COLUMNS = ("where", "figures", "claim", "principal", "full", "verdict", "physical tube", "remark")
 
 
 def judged(figures=None) -> list[Row]:

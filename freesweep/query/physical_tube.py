@@ -1,0 +1,229 @@
+"""The uniform physical tube: a thick wall, threads that cannot push. What :mod:`uniform_tube` is to the source's tube.
+
+At slope 0 the density of :mod:`freesweep.solver.physical` knows meridional stretch and twist already; what is left is the
+circumferential stretch at which it is stationary. It is continuous in the loads, with a kink where a family goes slack.
+"""
+
+import functools
+import math
+
+from ..jit import entry_point, kernel
+from ..solver.physical import density, kind_of, place, uniform_tube
+from ..solver.relaxed import both_reach, multipliers, reach, taut_twist
+from ..solver.wall import slopes, stored
+from .reference import (
+    ALPHA,
+    BETA,
+    C01,
+    C10,
+    C20,
+    C30,
+    EXTENSION,
+    FIBERS,
+    FORCE,
+    HELD,
+    LENGTH,
+    LENGTH_HELD,
+    LOADED,
+    LOCKED,
+    OF_STRETCH,
+    PRESSURE,
+    RADIUS,
+    ROTATION_HELD,
+    TAUT,
+    TORQUE,
+    WALL,
+)  # fmt: skip
+from .slack import PLACES, UNKNOWN, UNSURE
+from .uniform_tube import locked_squared_stretch
+
+MARCH, REMAINS = 60, 0.8  # steps in search of a bracket, and what each leaves of the way to where the fibers end
+STEPS = 80  # of Newton's method inside it; between two active sets, where L_y all but jumps, of halving
+LAST_STEP = 1e-13  # of the stretch
+PULLS, ENOUGH = 30, 1e-10  # Newton's steps for the resultant, three are usual; share of the load that ends them
+LEAST = 1e-6  # of G, where fibers leave nothing
+MISSING = 1e-5  # of G, what a slack family lacks: below it, the stored state's own end decides otherwise
+MOONEY_RIVLIN, YEOH = (C01,), (C01, C20, C30)
+
+
+@kernel
+def rubber_at(point, columns):
+    """What the solver takes as a rubber: constants over C10."""
+    if len(columns) == 1:
+        return (point[columns[0]] / point[C10],)
+    return point[columns[0]] / point[C10], point[columns[1]] / point[C10], point[columns[2]] / point[C10]
+
+
+@kernel
+def problem(point, thick, loose, columns):
+    """``(cell, load)`` of a point (15,), as the solver takes them."""
+    ta, tb = math.tan(math.radians(point[ALPHA])), math.tan(math.radians(point[BETA]))
+    r, c10, within = point[FIBERS], point[C10], point[RADIUS] / point[FIBERS]
+    area = ((point[RADIUS] + point[WALL]) / r) ** 2 - within * within
+    wall, square = (1.0, within * within * thick, loose), math.pi * r * r * c10
+    loads = point[PRESSURE] / c10, point[FORCE] / square, point[TORQUE] / (square * r)
+    return (0.5 * (ta + tb), 0.5 * (ta - tb), area), (point[EXTENSION], rubber_at(point, columns), wall, *loads, 1.0)
+
+
+@kernel
+def longest(cell, gamma, loose, outward):
+    """The stretch at which taut fibers end: the larger one, or the smaller, which loose ones do not know."""
+    h, d, g2 = cell[0], cell[1], gamma * gamma
+    total = g2 * (1.0 + h * h + d * d)
+    root = math.sqrt(max(total * total - 4.0 * g2 * g2 * d * d * h * h, 0.0))
+    if outward:
+        return math.sqrt(0.5 * (total + root)) / abs(d)
+    return 0.0 if loose else g2 * abs(h) * math.sqrt(2.0 / (total + root))
+
+
+@kernel
+def stretch(cell, load):
+    """The first stationary point met from y = 1; NaN if there is none."""
+    room, start, _, _, _, _ = density(1.0, 0.0, cell, load)
+    if start == 0.0 or (load[3] == 0.0 and load[4] == 0.0 and load[5] == 0.0 and load[0] == 1.0):
+        return 1.0
+    if not (room > 0.0 and abs(start) > 0.0):
+        return math.nan
+    end = longest(cell, load[0], load[2][2] > 0.0, start > 0.0)
+    inner, outer, share, before, value = 1.0, 1.0, 1.0, start, start
+    for _ in range(MARCH):
+        share *= REMAINS
+        outer = end + (1.0 - end) * share
+        room, value, _, _, _, _ = density(outer, 0.0, cell, load)
+        if not (room > 0.0 and value * start > 0.0):
+            break
+        inner, before = outer, value
+    if not (room > 0.0 and value * start <= 0.0):
+        return math.nan
+    y = inner + (outer - inner) * before / (before - value)
+    for _ in range(STEPS):
+        _, value, _, slope, _, _ = density(y, 0.0, cell, load)
+        if value == 0.0:
+            break
+        if value * start > 0.0:
+            inner = y
+        else:
+            outer = y
+        new = y - value / slope
+        if not min(inner, outer) <= new <= max(inner, outer):
+            new = 0.5 * (inner + outer)
+        change = abs(new - y)
+        y = new
+        if change <= LAST_STEP * y:
+            break
+    return y
+
+
+@kernel
+def held_stretch(kind, point, cell, gamma):
+    """The stretch of bonded fibers that are locked, or whose length or rotation is held; NaN if there is none."""
+    h, d, g2 = cell[0], cell[1], gamma * gamma
+    if kind == LOCKED:
+        return math.sqrt(locked_squared_stretch(h, d, gamma))
+    if kind == LENGTH_HELD:  # as in :mod:`reference`
+        middle = g2 * (1.0 + h * h + d * d) - point[HELD] ** 2
+        root = math.sqrt(max(middle * middle - 4.0 * g2 * g2 * d * d * h * h, 0.0))
+        return math.sqrt((middle + root) / (2.0 * d * d) if d * d > h * h else 2.0 * g2 * g2 * h * h / (middle + root))
+    square = g2 / (1.0 + math.radians(point[HELD]) * point[FIBERS] / (point[LENGTH] * h))
+    return math.sqrt(square) if square > 0.0 else math.nan
+
+
+@kernel
+def uniform(kind, point, thick, loose, columns, out):
+    """The uniform state of a kind at a point (15,) into ``out`` (UNIFORM,), as :func:`reference.uniform` has it."""
+    cell, load = problem(point, thick, loose, columns)
+    (h, d, area), (gamma, rubber, wall, p, f, m, _) = cell, load
+    for k in range(len(out)):
+        out[k] = math.nan
+    out[0], out[1], out[2] = h, h * h - d * d, area
+    held = kind == LENGTH_HELD or kind == ROTATION_HELD
+    if d == 0.0 or not (kind == LOADED or kind == LOCKED or (held and loose == 0.0)):
+        return
+    y = math.nan
+    if kind == LOADED:
+        y = stretch(cell, load)
+    else:
+        y = held_stretch(kind, point, cell, gamma)
+    if not y > 0.0:
+        return
+    gg = gamma * gamma
+    G_1, psi, taut_alpha, taut_beta = both_reach(y, h, d, gg, gg - 1.0), taut_twist(y, h, gg), True, True
+    if kind == LOADED and p * y * y + f > 0.0:
+        _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, p * y * y + f, cell, load)
+    if not G_1 > -1.0:
+        return
+    s = math.sqrt(1.0 + G_1)
+    out[3], out[4], out[5], out[6] = y * y, s, psi, stored(y, G_1, psi, area, rubber, wall) / area
+    out[TAUT] = kind_of(taut_alpha, taut_beta)
+    if not held:
+        return
+    t = gg / (y * y)
+    psi_y, s_y = -2.0 * h * t / y, (-d * d * y + h * h * gg * t / y) / s
+    W_y, W_G, W_p, W_yy, _, _, _, _, _ = slopes(y, G_1, psi, area, rubber, wall)
+    along = W_y + 2.0 * s * s_y * W_G + psi_y * W_p
+    T, T_y = p * y * y, 2.0 * p * y
+    out[8] = OF_STRETCH * y * abs(W_yy)
+    if kind == LENGTH_HELD:
+        out[7] = -(T_y * s + T * s_y - along + m * psi_y) / s_y
+        out[8] /= abs(s_y)
+    else:
+        out[7] = -(T_y * s + (T + f) * s_y - along) / psi_y
+        out[8] /= abs(psi_y)
+
+
+@functools.partial(entry_point, others=("solver",))
+def physical_states(kind, points, thick, loose, columns, out):
+    """:func:`uniform` of points (n, 15) into ``out`` (n, UNIFORM); ``thick`` and ``loose``: 0.0 or 1.0; ``columns`` of the
+    rubber's constants: MOONEY_RIVLIN or YEOH.
+    """
+    for k in range(len(points)):
+        uniform(kind, points[k], thick, loose, columns, out[k])
+
+
+@kernel
+def firmness(y, constant, cell, load):
+    """How firmly both families are held where the stretch is ``y``, over the load: multipliers, and of a slack one how much
+    is missing, negative.
+
+    Where nothing varies along a tube, L - v L_v = T' sqrt(G) - W + m psi is ``constant``, with G and psi those at slope 0
+    under T' = T sqrt(G)/s; it rises with T' by sqrt(G).
+    """
+    T = load[3] * y * y + load[4]
+    pull, scale, G_1, psi, taut_alpha, taut_beta = T, load[3] + abs(load[4]), 0.0, 0.0, True, True
+    for _ in range(PULLS):
+        _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, pull, cell, load)
+        s = math.sqrt(max(1.0 + G_1, LEAST))
+        error = pull * s - stored(y, G_1, psi, cell[2], load[1], load[2]) + load[5] * psi - constant
+        pull = max(pull - error / s, 0.5 * pull)
+        if abs(error) <= ENOUGH * scale:
+            break
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load[1], load[2])
+    s = math.sqrt(max(1.0 + G_1, LEAST))
+    alpha, beta = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load[5], W_G, W_p)
+    stretch, h, d = load[0] * load[0] - 1.0, cell[0], cell[1]
+    alpha = alpha / scale if taut_alpha else G_1 - reach(y, psi, h + d, stretch)
+    beta = beta / scale if taut_beta else G_1 - reach(y, psi, h - d, stretch)
+    return alpha, beta
+
+
+@functools.partial(entry_point, others=("solver",))
+def slack_somewhere(points, mid_radius, thick, loose, columns, out):
+    """:func:`slack.slack_families` of physical tubes: of loose ones, which families are slack somewhere."""
+    for k in range(len(points)):
+        point = points[k]
+        cell, load = problem(point, thick, loose, columns)
+        y_middle = mid_radius[k] / point[FIBERS]
+        constant = uniform_tube(y_middle, cell, load)[2]
+        least_alpha, least_beta = math.inf, math.inf
+        for j in range(PLACES + 1):
+            alpha, beta = firmness(1.0 + (y_middle - 1.0) * j / PLACES, constant, cell, load)
+            least_alpha, least_beta = min(least_alpha, alpha), min(least_beta, beta)
+        out[k] = UNKNOWN
+        if is_sure(least_alpha, loose) and is_sure(least_beta, loose):
+            out[k] = (1 if least_alpha < 0.0 else 0) | (2 if least_beta < 0.0 else 0)
+
+
+@kernel
+def is_sure(firm, loose):
+    """Whether a sign is far enough from zero: of a slack thread what is missing, of second order there, is told."""
+    return firm > UNSURE or firm < (-MISSING if loose > 0.0 else -UNSURE)

@@ -1,0 +1,54 @@
+"""Which closed form stands behind the numbers of an atlas: that of its tubes' model, but for the clamped ends."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..tube_model import TubeModel
+from . import reference, slack
+
+
+class Predictor(NamedTuple):
+    """The uniform tubes of a ``model`` whose energy is ``energy``."""
+
+    model: TubeModel
+    energy: str
+
+    @property
+    def shear(self) -> float:
+        """Whether twisting shears the wall: 1.0 or 0.0."""
+        return 0.0 if self.energy == "principal" else 1.0
+
+    def states(self, kind, points) -> np.ndarray:
+        """Uniform states (n, UNIFORM) of a kind at points (n, 15)."""
+        if self.model.is_physical:
+            return self.physical(kind, points)
+        found = np.empty((len(points), reference.UNIFORM))
+        reference.uniform_states(kind, points, self.shear, found)
+        return found
+
+    def physical(self, kind, points) -> np.ndarray:
+        """The same by the kernel of physical tubes, which knows the source's, too."""
+        from .physical_tube import physical_states
+
+        found = np.empty((len(points), reference.UNIFORM))
+        physical_states(kind, points, *self._physical(points), found)
+        return found
+
+    def _physical(self, points):
+        """What kernels of :mod:`physical_tube` take a model for, and the columns of the rubbers' constants."""
+        from .physical_tube import MOONEY_RIVLIN, YEOH
+
+        columns = YEOH if np.any(points[:, [reference.C20, reference.C30]] != 0.0) else MOONEY_RIVLIN
+        return float(self.model.is_thick), float(self.model.is_loose), columns
+
+    def slack_families(self, points, states, mid_radius) -> np.ndarray:
+        """Flags (n,) of :func:`slack.slack_families` at points (n, 15), from the radius in the middle (n,) [m]."""
+        told = np.empty(len(points), np.uint8)
+        if not self.model.is_physical:
+            slack.slack_families(points, states, mid_radius, self.shear, told)
+            return told
+        from .physical_tube import slack_somewhere
+
+        slack_somewhere(points, mid_radius, *self._physical(points), told)
+        return told

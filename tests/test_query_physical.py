@@ -1,0 +1,143 @@
+"""Atlases of physical tubes between their nodes: the uniform tube behind them, and answers where fibers go slack."""
+
+import numpy as np
+import pytest
+from grids import make, spec
+
+from freesweep import Atlas, status
+from freesweep.query import reference
+from freesweep.query.cells import BESIDE
+from freesweep.query.exact import solve
+from freesweep.query.predictor import Predictor
+from freesweep.query.refine import as_points, exact_answers
+from freesweep.query.slack import UNKNOWN
+from freesweep.sweep.spec import parse
+from freesweep.tube_model import MODELS, TubeModel
+
+PHYSICAL = MODELS["physical"]
+BONDED = PHYSICAL._replace(fibers="bonded")
+
+
+def points(count, seed=5, **fixed):
+    """Random designs with fibers at the outer radius (count, 15), [m], [Pa], [degree]."""
+    draw, made = np.random.default_rng(seed), np.zeros((count, len(reference.COLUMNS)))
+    spans = {"alpha": (0, 80), "beta": (-80, 80), "length": (0.08, 0.4), "radius": (3e-3, 8e-3), "pressure": (0, 2e5)}
+    for name, span in spans.items():
+        made[:, reference.COLUMNS.index(name)] = draw.uniform(*span, count)
+    for name, value in {"wall": 1.59e-3, "fiber_extension": 1.0, "c10": 0.17e6, "c01": 0.08e6, **fixed}.items():
+        made[:, reference.COLUMNS.index(name)] = value
+    made[:, reference.FIBERS] = made[:, reference.RADIUS] + made[:, reference.WALL]
+    return made[np.abs(made[:, reference.ALPHA] - made[:, reference.BETA]) > 5.0]
+
+
+KINDS = [
+    (reference.LOADED, {"fiber_extension": 1.003, "force": 0.4}),
+    (reference.LOADED, {"c01": 0.0, "c20": 1e4, "c30": 2e3}),
+    (reference.LOCKED, {}),
+    (reference.LENGTH_HELD, {"held": 0.97, "fiber_extension": 1.002}),
+    (reference.ROTATION_HELD, {"held": 4.0}),
+]
+
+
+@pytest.mark.parametrize(("kind", "fixed"), KINDS)
+def test_of_bonded_membranes_the_physical_tube_is_the_source_s(kind, fixed):
+    here = points(60, **fixed)
+    bonded = TubeModel("outer", "membrane", "bonded")
+    expected = Predictor(bonded, "full").states(kind, here)
+    found = Predictor(bonded, "full").physical(kind, here)
+    known = np.isfinite(expected[:, 3])
+    assert known.mean() > 0.7
+    np.testing.assert_allclose(found[known, :7], expected[known, :7], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(found[known, 7], expected[known, 7], rtol=1e-7, atol=1e-9)
+    assert np.isnan(found[~known, 3]).all()
+
+
+def test_the_force_that_holds_a_thick_tube_s_length_stretches_it_to_that_length():
+    here = points(60, held=0.98)
+    held = Predictor(BONDED, "full").states(reference.LENGTH_HELD, here)
+    here[:, reference.FORCE] = held[:, 7] * np.pi * here[:, reference.FIBERS] ** 2 * here[:, reference.C10]
+    free = Predictor(BONDED, "full").states(reference.LOADED, here)
+    met = np.abs(free[:, 3] - held[:, 3]) < 1e-9  # else another stretch with that force comes first
+    assert met.mean() > 0.3
+    np.testing.assert_allclose(free[met, 4], 0.98, rtol=1e-9)
+
+
+@pytest.mark.parametrize("model", [PHYSICAL, BONDED])
+def test_far_from_its_ends_a_long_physical_tube_is_uniform(model):
+    here = points(24, length=0.8)
+    uniform = Predictor(model, "full").states(reference.LOADED, here)
+    solved = solve(reference.LOADED, here, "full", 1e-6, model=model)
+    stretch = solved["mid_radius"] / here[:, reference.FIBERS]
+    known = np.isfinite(stretch)
+    assert known.mean() > 0.9
+    gap = np.abs(np.sqrt(uniform[:, 3]) - stretch)[known]
+    assert np.median(gap) < 1e-12
+    assert (gap <= 1e-6).mean() > 0.9  # near one fiber family the ends reach into the middle
+    if model is PHYSICAL:
+        assert {1.0, 3.0} <= set(uniform[known, reference.TAUT])
+
+
+def test_which_threads_are_slack_follows_from_the_stretch_in_the_middle():
+    here = points(60)
+    solved = solve(reference.LOADED, here, "full", 1e-6, model=PHYSICAL)
+    known = np.flatnonzero(np.isfinite(solved["mid_radius"]))
+    predictor = Predictor(PHYSICAL, "full")
+    states = predictor.states(reference.LOADED, here[known])
+    told = predictor.slack_families(here[known], states, solved["mid_radius"][known])
+    sure = told != UNKNOWN
+    assert sure.mean() > 0.9
+    np.testing.assert_array_equal(told[sure], solved["slack_fiber"][known][sure])
+    assert len(set(told.tolist())) > 2
+
+
+@pytest.fixture(scope="module")
+def crossed(tmp_path_factory):
+    """Pressures of a tube whose threads are slack all along, then in places, then at the ends only."""
+    grid = {"alpha": [8.0], "beta": [36.0], "length": [0.131], "pressure": [(32.0 * k) ** 2 for k in range(15)]}
+    sweep = parse(spec(grid).replace("[actuator]", '[actuator]\nmodel = "physical"'))
+    return make(tmp_path_factory.mktemp("crossed") / "atlas.nc", sweep).assign_attrs(interpolation_tolerance=1e-2)
+
+
+NAMES = ["deformed_length", "rotation", "mid_radius", "volume", "strain_energy"]
+
+
+def test_where_fibers_go_slack_between_nodes_answers_keep_their_bounds_or_say_why_not(crossed):
+    atlas = Atlas(crossed, "crossed.nc")
+    pressure = np.random.default_rng(2).uniform(0.0, 2.007e5, 150)
+    found = atlas.query(pressure=pressure, variables=NAMES)
+    reader = atlas._reader
+    asked = as_points(reader, "state", reader.complete({"pressure": pressure}, len(pressure)))
+    exact = exact_answers(reader, "state", asked, NAMES)
+    given = found["status"].values == status.OK
+    assert set(found["status"].values) <= {status.OK, status.NOT_INTERPOLABLE}
+    assert given.mean() > 0.5
+    for name in NAMES:
+        gap = np.abs(found[name].values - exact[name]) - exact[f"{name}_error"]
+        assert (gap <= found[f"{name}_error"].values)[given].all(), name
+    np.testing.assert_array_equal(found["slack_fiber"].values[given], exact["slack_fiber"][given])
+    # where flags of both nodes differ, or those of the uniform tube behind them, errors are told by other factors
+    cells = np.searchsorted(crossed["pressure"].values, pressure) - 1
+    flags = crossed["slack_fiber"].values.ravel()
+    assert len(set(flags[1:].tolist())) > 1
+    changes = (flags[cells] != flags[cells + 1]) & (cells > 0)
+    table = reader.table("state")
+    known = table.variable("rotation").cells[cells * table.strides[0], BESIDE] > 0.0
+    assert known[changes].all()
+    assert not known.all()
+
+
+def test_at_nodes_and_at_rest_numbers_are_those_stored(crossed):
+    nodes = crossed["pressure"].values
+    found = Atlas(crossed, "crossed.nc").query(pressure=nodes, variables=NAMES)
+    for name in (*NAMES, "slack_fiber"):
+        np.testing.assert_array_equal(found[name].values, crossed[name].values.ravel())
+    near = Atlas(crossed, "crossed.nc").query(pressure=1.0, variables=["deformed_length"])
+    assert near["status"].item() == status.OK
+
+
+def test_vectors_that_know_no_physical_tube_hold_none():
+    """They would hold the source's instead: prototype B's closed form, eight times what loose threads give."""
+    here = points(4, alpha=0.0, beta=30.0, pressure=3e4)
+    found = solve(reference.ROTATION_HELD, here, "full", 1e-6, model=PHYSICAL, thorough=False)
+    assert set(found["status"]) == {status.NOT_CONVERGED}
+    assert np.isnan(found["torque"]).all()
