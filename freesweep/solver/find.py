@@ -17,6 +17,7 @@ branch turns back, at most designs for good: BEYOND_LIMIT, decided by :mod:`turn
 
 from ..jit import kernel
 from . import guide, held, lagrangian, march, neck_march, neck_shape, nested, newton, pinned, turn
+from .course import fill
 from .march import EVERY, NO_TURN, begin, cylinder_multiplier, from_free, from_rest
 from .pinned import BY_SHARE
 from .problem import GAMMA, rubber_of, wall_of
@@ -203,7 +204,8 @@ def on_meshes(x, y, tube, load, direction, wanted, mu, accuracy, fine, work, tab
             return (OK if status == newton.CONVERGED else INACCURATE), unstable, doublings, now
     for i in range(len(x)):
         x[i], y[i] = kept_x[i], kept_y[i]
-    if pushed(y, held.loaded(load, direction, mu)):
+    own = fill(tube[0], tube[1], x, len(x) - 1, len(x) - 1, tube[2])
+    if pushed(y, own, held.loaded(load, direction, mu)):
         return COMPRESSED, 0, 0, load
     return NOT_CONVERGED, 0, 0, load
 
@@ -246,6 +248,6 @@ def mirrored(tube):
     for k in range(guide.PLACES):
         share = (k + MIRROR_OFFSET) / guide.PLACES
         one, other = guide.cell_along(tube, share), guide.cell_along(tube, 1.0 - share)
-        for i in range(3):
+        for i in range(len(one)):
             same = same and abs(one[i] - other[i]) < MIRROR_TOLERANCE * max(1.0, abs(one[i]))
     return same

@@ -17,13 +17,21 @@ FIRST_STRAIN = 0.02  # |u - 1| at which a climb starts
 
 @kernel
 def cell_along(tube, share):
-    """What varies along the tube at a ``share`` (0 to 1) of its length."""
+    """What varies along the tube at a ``share`` (0 to 1) of its length; of a body, as the cylinder of the radius there."""
     course, _, _, _, _, places = tube
     at = share * places[len(places) - 1]
     segment = 0
     while segment < len(places) - 2 and places[segment + 1] <= at:
         segment += 1
-    return at_point(course, segment, (at - places[segment]) / (places[segment + 1] - places[segment]))
+    return upright(at_point(course, segment, (at - places[segment]) / (places[segment + 1] - places[segment])))
+
+
+@kernel
+def upright(cell):
+    """A cell whose radius does not change along the axis."""
+    if len(cell) == 3:
+        return cell
+    return cell[0], cell[1], cell[2], cell[3], 0.0, cell[5]
 
 
 @kernel

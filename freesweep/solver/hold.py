@@ -7,7 +7,7 @@ import numpy as np
 from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested
 from .buckle import find_buckled
-from .course import copy
+from .course import copy, make_cells, volume
 from .drawing import draw
 from .find import FROM_REST, HELD_LENGTH, find, valued
 from .march import cylinder_multiplier
@@ -23,14 +23,14 @@ THINNEST_LAYER = 100.0  # times it fits into a cell of an even base mesh; thinne
 
 
 @kernel
-def workspace(base, varying):
-    """Scratch for a base mesh of ``base`` cells: see :func:`nested.solve`; and the cells of a tube that varies."""
+def workspace(base, varying, course):
+    """Scratch for a base mesh of ``base`` cells: see :func:`nested.solve`; and the cells of a tube, which may vary."""
     size = (base << nested.MAX_DOUBLINGS) + 2
     space = (
         np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
         np.zeros((5, size)), np.zeros((2, base + 1)),
     )  # fmt: skip
-    return space, np.zeros((size if varying else 1, 3))
+    return space, make_cells(course, size if varying else 1)
 
 
 @kernel
@@ -64,7 +64,7 @@ def find_on_some_mesh(problem, walls, p, other, target, kind, course, tube, accu
     while factor * base <= FINEST and layers(problem, walls, p, other, kind, tube) > THINNEST_LAYER * factor * base:
         factor *= FINER
     if factor > 1:
-        space, cells = workspace(factor * base, len(cells) > 1)
+        space, cells = workspace(factor * base, len(cells) > 1, course)
         tube = (tube[0], factor * edges, cells, free, factor * middle, places)
     copy(course, tube[0])  # a march leaves it changed
     status, unstable, doublings, now, reached, sure, path = find(
@@ -73,7 +73,7 @@ def find_on_some_mesh(problem, walls, p, other, target, kind, course, tube, accu
     doubtful, differed = valued(status) and unstable > 0 and out[0, nested.MIDDLE] != 1.0, False
     while (doubtful or not (status == OK or status == COMPRESSED or sure)) and FINER * factor * base <= FINEST:
         factor *= FINER
-        finer_space, cells = workspace(factor * base, len(cells) > 1)
+        finer_space, cells = workspace(factor * base, len(cells) > 1, course)
         finer_tube, finer_out = (tube[0].copy(), factor * edges, cells, free, factor * middle, places), out.copy()
         copy(course, finer_tube[0])
         again, others, levels, then, came, certain, way = find(
@@ -138,7 +138,7 @@ def hold_many(
     half = len(places) == 2
     middle = base if half else edges[np.argmin(np.abs(places - 0.5 * places[len(places) - 1]))]
     varying = not half or course.shape[1] > 1
-    first_space, cells = workspace(base, varying)
+    first_space, cells = workspace(base, varying, course)
     first_tube = (course.copy(), edges, cells, half, middle, places)
     out = np.zeros((4, nested.OUTPUTS))
     for i in range(len(pressures)):
@@ -161,7 +161,7 @@ def hold_many(
         ):
             rest = 0.5 * problem[LENGTH]
             status[i], stable[i] = OK, 1
-            values[i, 0], values[i, 1], values[i, 4] = rest, rest, 1.0
+            values[i, 0], values[i, 1], values[i, 4] = rest, (1.0 if half else 0.5) * volume(course, places), 1.0
             values[i, 2], values[i, 3], values[i, 5] = 0.0, 0.0, 0.0
             for k in range(6):
                 bounds[i, k] = 0.0

@@ -4,12 +4,13 @@
 
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
 wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
-``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point; with the length h of a cell of a mesh behind, the
-density is that of the cell (:mod:`over_cell`). The length of a tuple is known when code is made: none is for the others.
+``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point of a tube, six numbers are one of a body of revolution
+(:mod:`body`); with the length h of a cell of a mesh behind, the density is that of the cell (:mod:`over_cell`). The length of
+a tuple is known when code is made: none is for the others.
 """
 
 from ..jit import kernel
-from . import membrane, over_cell, physical
+from . import body, membrane, over_cell, physical
 from .membrane import (  # noqa: F401
     DRAWN_IN,
     ENERGY_ROUNDING,
@@ -36,10 +37,19 @@ def density(y, v, cell, load):
 @kernel
 def _density(y, v, cell, load, wall):
     if len(wall) == 1:
-        return membrane.density(y, v, (cell[0], cell[1], cell[2]), load)
-    if len(cell) > 3:
-        return over_cell.density(y, v, cell, load)
-    return physical.density(y, v, cell, load)
+        return _thin_density(y, v, cell, load)
+    if len(cell) == 3:
+        return physical.density(y, v, cell, load)
+    if len(cell) == 6:
+        return body.density(y, v, cell, load)
+    return over_cell.density(y, v, cell, load)
+
+
+@kernel
+def _thin_density(y, v, cell, load):
+    if len(cell) > 4:
+        return body.density(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load)
+    return membrane.density(y, v, (cell[0], cell[1], cell[2]), load)
 
 
 @kernel
@@ -50,6 +60,8 @@ def uniform_tube(y, cell, load):
 
 @kernel
 def _uniform_tube(y, cell, load, wall):
+    if len(cell) > 3:
+        return body.uniform_tube(y, cell, load)
     if len(wall) == 1:
         return membrane.uniform_tube(y, cell, load)
     return physical.uniform_tube(y, cell, load)
@@ -64,10 +76,19 @@ def integrands(y, v, cell, load):
 @kernel
 def _integrands(y, v, cell, load, wall):
     if len(wall) == 1:
-        return membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load)
-    if len(cell) > 3:
-        return over_cell.integrands(y, v, cell, load)
-    return physical.integrands(y, v, cell, load)
+        return _thin_integrands(y, v, cell, load)
+    if len(cell) == 3:
+        return physical.integrands(y, v, cell, load)
+    if len(cell) == 6:
+        return body.integrands(y, v, cell, load)
+    return over_cell.integrands(y, v, cell, load)
+
+
+@kernel
+def _thin_integrands(y, v, cell, load):
+    if len(cell) > 4:
+        return body.integrands(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load)
+    return membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load)
 
 
 @kernel
@@ -79,10 +100,19 @@ def conjugate(y, v, cell, load, direction):
 @kernel
 def _conjugate(y, v, cell, load, direction, wall):
     if len(wall) == 1:
-        return membrane.conjugate(y, v, (cell[0], cell[1], cell[2]), load, direction)
-    if len(cell) > 3:
-        return over_cell.conjugate(y, v, cell, load, direction)
-    return physical.conjugate(y, v, cell, load, direction)
+        return _thin_conjugate(y, v, cell, load, direction)
+    if len(cell) == 3:
+        return physical.conjugate(y, v, cell, load, direction)
+    if len(cell) == 6:
+        return body.conjugate(y, v, cell, load, direction)
+    return over_cell.conjugate(y, v, cell, load, direction)
+
+
+@kernel
+def _thin_conjugate(y, v, cell, load, direction):
+    if len(cell) > 4:
+        return body.conjugate(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load, direction)
+    return membrane.conjugate(y, v, (cell[0], cell[1], cell[2]), load, direction)
 
 
 @kernel
@@ -93,6 +123,8 @@ def at_slope(y, v, cell, load):
 
 @kernel
 def _at_slope(y, v, cell, load, wall):
+    if len(cell) > 3:
+        return body.at_slope(y, v, cell, load)
     if len(wall) == 1:
         return membrane.at_slope(y, v, cell, load)
     return physical.at_slope(y, v, cell, load)
@@ -106,6 +138,8 @@ def at_flux(y, flux, cell, load):
 
 @kernel
 def _at_flux(y, flux, cell, load, wall):
+    if len(cell) > 3:
+        return body.at_flux(y, flux, cell, load)
     if len(wall) == 1:
         return membrane.at_flux(y, flux, cell, load)
     return physical.at_flux(y, flux, cell, load)

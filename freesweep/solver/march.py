@@ -158,7 +158,8 @@ def march(x, y, tube, way, share, until, mu, allowed, work):
             if step < SMALLEST_STEP * (kept_t if share > 0.0 else 1.0):
                 for i in range(n + 1):
                     x[i], y[i] = kept_x[i], kept_y[i]
-                if pushed(y, held.loaded(between(way[0], way[1], kept_t), way[4], kept_mu)):
+                own, load = pinned.at_share(way, tube, x, n, n, kept_t)
+                if pushed(y, own, held.loaded(load, way[4], kept_mu)):
                     return COMPRESSED, kept_mu, kept_t, NO_TURN
                 return (BEYOND_LIMIT if solved else NOT_CONVERGED), kept_mu, kept_t, NO_TURN
         by_mu, by_t = new_mu, new_t

@@ -9,16 +9,25 @@ but jumps. Along a cell y is linear, so the mean of L over it is::
 by Simpson's rule, on PANELS panels where its three points are not of one kind; r is the share of L_v that moves the place.
 It is one more functional, with all its derivatives, so Newton's method and the nested meshes take it as they take others.
 
-``cell`` is that of :mod:`lagrangian` with the length h of the cell behind.
+``cell`` is that of :mod:`lagrangian` with the length h of the cell behind; a body's radius and its slope are those of the
+cell's middle.
 """
 
 from ..jit import kernel
-from . import physical
+from . import body
 from .either import select, some
 
 HUGE = 1e300
 PANELS = 4  # of a cell in which the kind changes
 MIXED = 4.0  # beside the kinds of :mod:`physical`
+
+
+@kernel
+def point_of(cell):
+    """The cell's numbers without its length; and half of that."""
+    if len(cell) == 4:
+        return (cell[0], cell[1], cell[2]), 0.5 * cell[3]
+    return (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), 0.5 * cell[6]
 
 
 @kernel
@@ -30,16 +39,16 @@ def weight(k, panels):
 @kernel
 def density(y, v, cell, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv)``: room is the least along the cell."""
-    point, half = (cell[0], cell[1], cell[2]), 0.5 * cell[3]
+    point, half = point_of(cell)
     if not load[2][2] > 0.0:
-        return physical.density(y, v, point, load)
+        return body.partials(y, v, point, load)[:6]
     coarse, changes, panels = (y, y, y, y, y, y), y > y, 1
     while True:
         room, L_y, L_v = HUGE + 0.0 * y, 0.0 * y, 0.0 * y
         L_yy, L_yv, L_vv, before = 0.0 * y, 0.0 * y, 0.0 * y, -1.0 + 0.0 * y
         for k in range(2 * panels + 1):
             part, r = weight(k, panels), half * (k / panels - 1.0)
-            space, by_y, by_v, by_yy, by_yv, by_vv, kind = physical.partials(y + r * v, v, point, load)
+            space, by_y, by_v, by_yy, by_yv, by_vv, kind = body.partials(y + r * v, v, point, load)
             room = min(room, space)
             L_y += part * by_y
             L_v += part * (by_v + r * by_y)
@@ -64,8 +73,8 @@ def density(y, v, cell, load):
 @kernel
 def integrands(y, v, cell, load):
     """Axial length, volume, twist, strain energy; and the kind of the cell, which is MIXED where it changes in it."""
-    point, half = (cell[0], cell[1], cell[2]), 0.5 * cell[3]
-    coarse, changes, panels = physical.integrands(y, v, point, load), y > y, 1
+    point, half = point_of(cell)
+    coarse, changes, panels = body.integrands(y, v, point, load), y > y, 1
     if not load[2][2] > 0.0:
         return coarse
     middle = coarse[4]
@@ -73,7 +82,7 @@ def integrands(y, v, cell, load):
         s, volume, twist, energy = 0.0 * y, 0.0 * y, 0.0 * y, 0.0 * y
         for k in range(2 * panels + 1):
             part, r = weight(k, panels), half * (k / panels - 1.0)
-            s_here, volume_here, twist_here, energy_here, kind = physical.integrands(y + r * v, v, point, load)
+            s_here, volume_here, twist_here, energy_here, kind = body.integrands(y + r * v, v, point, load)
             s += part * s_here
             volume += part * volume_here
             twist += part * twist_here
@@ -94,18 +103,19 @@ def integrands(y, v, cell, load):
 @kernel
 def conjugate(y, v, cell, load, direction):
     """``(c, c_y, c_v, c_mu)`` of :func:`physical.conjugate`."""
-    point, half, panels = (cell[0], cell[1], cell[2]), 0.5 * cell[3], 1
+    point, half = point_of(cell)
+    panels = 1
     if not load[2][2] > 0.0:
-        return physical.conjugate(y, v, point, load, direction)
-    middle = physical.integrands(y, v, point, load)[4]
+        return body.conjugate(y, v, point, load, direction)
+    middle = body.integrands(y, v, point, load)[4]
     for k in range(2):
-        kind = physical.integrands(y + (2.0 * k - 1.0) * half * v, v, point, load)[4]
+        kind = body.integrands(y + (2.0 * k - 1.0) * half * v, v, point, load)[4]
         if kind != middle:
             panels = PANELS
     c, c_y, c_v, c_mu = 0.0, 0.0, 0.0, 0.0
     for k in range(2 * panels + 1):
         part, r = weight(k, panels), half * (k / panels - 1.0)
-        here, by_y, by_v, by_mu = physical.conjugate(y + r * v, v, point, load, direction)
+        here, by_y, by_v, by_mu = body.conjugate(y + r * v, v, point, load, direction)
         c += part * here
         c_y += part * by_y
         c_v += part * (by_v + r * by_y)

@@ -12,7 +12,7 @@ with three tridiagonal solutions. A way may also have nothing held, ``mu`` being
 
 from ..jit import kernel
 from . import held, lagrangian
-from .course import fill
+from .course import blend, fill
 from .newton import (
     CONVERGED,
     INFEASIBLE,
@@ -30,17 +30,6 @@ from .uniform import between
 SHARE_STEP = 1e-5  # of t, for slopes along it
 BY_SHARE = -1  # node that stands for t pinned
 ITERATIONS = 12  # a step that needs more is too long
-
-
-@kernel
-def blend(course, cell, t, out):
-    """The course a fraction ``t`` of the way from a tube that is ``cell`` all along."""
-    for s in range(course.shape[0]):
-        for piece in range(course.shape[1]):
-            for k in range(3):
-                for power in range(4):
-                    start = cell[k] if power == 0 else 0.0
-                    out[s, piece, k, power] = start + t * (course[s, piece, k, power] - start)
 
 
 @kernel

@@ -110,7 +110,7 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
         ahead = (mu, tangent_mu, made)
         lost = status != FOLLOWED
         if lost and not is_flat(here[0], here[1], path):
-            gone = pushed(track.y, loaded(path.origin, path.direction, here[0]))
+            gone = pushed(track.y, own, loaded(path.origin, path.direction, here[0]))
             return (COMPRESSED if gone else NOT_CONVERGED), here, ahead
         if lost or not is_stable(negative, tangent_mu, sense):
             if lost:  # no step leads round so sharp a fold: it lies here

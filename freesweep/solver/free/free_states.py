@@ -11,6 +11,7 @@ import numpy as np
 from ...jit import entry_point, kernel
 from .. import guide, lagrangian, nested, quadrature
 from ..continuation import FOLLOWED, Path
+from ..course import make_cells, of_problems, seat, volume
 from ..held import loaded
 from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
 from ..retrace import retrace
@@ -45,7 +46,8 @@ def settle(problem, tube, rows):
             rows.status[i] = OK
             for k in range(5):
                 rows.values[i, k], rows.bounds[i, k] = 0.0, 0.0
-            rows.values[i, 0], rows.values[i, 1], rows.values[i, 4] = half, half, 1.0
+            rows.values[i, 0], rows.values[i, 4] = half, 1.0
+            rows.values[i, 1] = (1.0 if tube[3] else 0.5) * volume(tube[0], tube[5])
         elif not p + f > 0.0:
             rows.status[i] = COMPRESSED
 
@@ -238,7 +240,7 @@ def follow_many(
     for k in range(len(places)):
         if abs(places[k] - half) < 1e-9 * half:
             middle = edges[k]
-    own_course, own_places = (np.zeros((1, 1, 3, 4)), np.zeros(2)) if same else (course, places)
+    own_course, own_places = (of_problems(course), np.zeros(2)) if same else (course, places)
     for k in range(len(problems)):
         own = slice(first[k], first[k + 1])
         limits[k, 0], limits[k, 1] = np.nan, np.nan
@@ -246,13 +248,12 @@ def follow_many(
             continue
         if same:
             own_places[1] = 0.5 * problems[k, LENGTH]
-            for i in range(3):
-                own_course[0, 0, i, 0] = problems[k, i]
+            seat(own_course, problems[k])
         for factor in FINER:
             base = factor * edges[len(edges) - 1]
             space = make_space(base, 1 if same else guide.PLACES)
             track, roomy = make_track(base, same), make_track(FINEST * base, same)
-            cells = np.zeros((1 if same else len(space.fine[0]), 3))
+            cells = make_cells(course, 1 if same else len(space.fine[0]))
             tube = (own_course, factor * edges, cells, same, factor * middle, own_places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
             walk(problems[k], walls, settled[k], tube, track, roomy, space, rows, limits[k], accuracy)
