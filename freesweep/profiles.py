@@ -189,7 +189,9 @@ def _pairs(value, unit):
 
 def is_profile(value) -> bool:
     """Whether a value describes a profile rather than a number."""
-    return callable(value) or isinstance(value, Given) or isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    return (
+        callable(value) or isinstance(value, (Given, list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    )
 
 
 def as_profile(value, unit="1") -> Profile:
@@ -198,7 +200,9 @@ def as_profile(value, unit="1") -> Profile:
         return _constant(value, unit)
     if isinstance(value, Given):
         if value.is_free:
-            raise ProfileError("its values are free; an actuator's are given: pairs, a callable, or knots without between")
+            raise ProfileError(
+                "its values are free; an actuator's are given: pairs, a callable, or knots without between"
+            )
         return Profile(value.knots, unit, value.smooth)
     return Profile(value if is_profile(value) else [(0.0, value), (1.0, value)], unit)
 
@@ -297,7 +301,7 @@ def _cut(breaks, missed):
 
 
 def _splines(numbers, low, high, pieces, between):
-    """Coefficients (pieces, numbers, 4) in rising powers of one segment, and the largest relative error ``between`` the nodes."""
+    """Coefficients (pieces, n, 4) in rising powers of one segment, and the largest relative error ``between`` the nodes."""
     from scipy.interpolate import CubicSpline
 
     nodes = np.arange(pieces + 1) / pieces

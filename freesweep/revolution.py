@@ -1,7 +1,7 @@
 """Bodies of revolution: what follows from an inner radius that varies along the axis.
 
-The fibers lie a part of the wall outside the inner radius, on a surface R(x); a wall that varies counts where it is thinnest,
-unless it follows the radius ("constant volume": the section stays that at x = 0). Along that surface::
+The fibers lie a part of the wall outside the inner radius, on a surface R(x); a wall that varies counts where it is
+thinnest, unless it follows the radius ("constant volume": the section stays that at x = 0). Along that surface::
 
     geodesic winding (Clairaut)   sin(angle) = R(0) sin(angle_0)/R
     constant volume               (radius + wall)^2 - radius^2 = that at x = 0
@@ -9,6 +9,7 @@ unless it follows the radius ("constant volume": the section stays that at x = 0
 Where sin(angle) would pass 1 a geodesic turns back: there is no such body.
 """
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,7 @@ PANELS = 64  # of each segment, for volumes: of smooth profiles exact to roundin
 
 
 class Derived(Along):
-    """A quantity that follows from others: ``rule(low, high, share)`` gives its values, ``slope`` its derivative along x/l."""
+    """A quantity that follows from others: ``rule(low, high, share)`` gives its values, ``slope`` its derivative by x/l."""
 
     def __init__(self, rule, parents, slope=None):
         self.within, self.slope = rule, slope
@@ -46,7 +47,7 @@ class Resolved(NamedTuple):
         return (self.alpha, self.beta, self.wall) + ((self.radius,) if self.fibers else ())
 
     def numbers(self, low, high, share):
-        """H, D and the section over the squared fiber radius, (3, n); of a body R, dR/dx and the squared inner radius, too."""
+        """H, D, the section over the squared fiber radius, (3, n); of a body R, dR/dx and the inner radius squared, too."""
         ta, tb = (np.tan(np.radians(angle.within(low, high, share))) for angle in (self.alpha, self.beta))
         length, reference, thick = self.scale
         inner, wall = self.radius.within(low, high, share), self.wall.within(low, high, share)
@@ -72,9 +73,7 @@ def resolved(tube) -> Resolved:
             )  # fmt: skip
         else:
             inside = part * float(np.min(wall.samples())) if part else 0.0
-            fibers = Derived(
-                lambda low, high, share: radius.within(low, high, share) + inside, [radius], radius.slope
-            )
+            fibers = Derived(lambda low, high, share: radius.within(low, high, share) + inside, [radius], radius.slope)
     alpha, beta = (_angle(name, getattr(tube, name), fibers) for name in ("alpha", "beta"))
     reference = float(fibers.at(0.0)[0]) if body else tube.fiber_surface
     return Resolved(alpha, beta, wall, radius, fibers, (tube.length, reference, body and tube.is_thick))
@@ -107,11 +106,11 @@ def _angle(name, value, fibers):
     def angle(low, high, share):
         sine = start * first / fibers.within(low, high, share)
         if np.any(np.abs(sine) >= 1.0):
-            k = int(np.argmax(np.abs(sine)))
+            k = int(np.argmax(np.abs(sine) >= 1.0))  # the first
             at = low + (high - low) * np.ravel(share)[k]
             raise ProfileError(
-                f"{name}: the geodesic that starts at {text} turns back before x/l = {at:.3g}, where the radius of the fibers"
-                f" is {1e3 * np.ravel(fibers.within(low, high, share))[k]:.4g} mm; it needs more than"
+                f"{name}: the geodesic that starts at {text} turns back before x/l = {at:.3g}, where the radius of the"
+                f" fibers is {1e3 * np.ravel(fibers.within(low, high, share))[k]:.4g} mm; it needs more than"
                 f" {1e3 * abs(start) * first:.4g} mm; start it steeper along the axis, or widen the body there"
             )
         return np.degrees(np.arcsin(sine))
@@ -125,7 +124,7 @@ def wall_volume_inside(tube) -> float:
     breaks = np.unique(np.concatenate([profile.breaks for profile in parts.profiles]))
     share = (np.arange(PANELS)[:, None] + 0.5 + 0.5 * GAUSS[0]).ravel() / PANELS
     weight = np.tile(0.5 * GAUSS[1], PANELS) / PANELS
-    for low, high in zip(breaks[:-1], breaks[1:]):
+    for low, high in itertools.pairwise(breaks):
         surface, inner = parts.fibers.within(low, high, share), parts.radius.within(low, high, share)
         total += float(weight @ (surface**2 - inner**2)) * (high - low)
     return np.pi * tube.length * total

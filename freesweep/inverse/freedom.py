@@ -178,7 +178,9 @@ def _read_profile(key, given, found, faults):
     if key not in KNOTTED:
         faults.append(f"free[{key!r}]: only {', '.join(KNOTTED)} may vary along the tube where they are free")
     elif not given.is_free:
-        faults.append(f"free[{key!r}]: its knots are given; give a number of knots, and between, or put it in the template")
+        faults.append(
+            f"free[{key!r}]: its knots are given; give a number of knots, and between, or put it in the template"
+        )
     elif (pair := _read_range(key, given.between, faults)) is not None:
         knots[key] = given.knots
         names += [f"{key}[{k}]" for k in range(given.knots)]

@@ -11,8 +11,8 @@ so the integrands are s -> e s, y^2 s -> e R^2 y^2 s, psi -> e psi/R, energy -> 
 The chain rule gives the derivatives along y and v from those along y and w. Whatever l is, membrane or thick wall, bonded or
 loose fibers, is unchanged; flux = -L_v is R^3 times the tube's.
 
-``cell`` is (H, D, a/R^2, R, R', inner): six numbers, ``inner`` the squared inner radius over R^2, 0 for a membrane; three are
-a tube's, whose density is :mod:`physical`'s here.
+``cell`` is (H, D, a/R^2, R, R', inner): six numbers, ``inner`` the squared inner radius over R^2, 0 for a membrane; three
+are a tube's, whose density is :mod:`physical`'s here.
 """
 
 from math import sqrt

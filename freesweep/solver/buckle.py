@@ -117,8 +117,15 @@ def find_buckled(problem, p, force, target, tube, accuracy, space, out, least):
     """The stable buckled state at pressure ``p``; arguments and what is returned as of :func:`find.find`, but for
     ``least`` (2,): the least pressure at which the branch has a state, and its bound.
     """
+    return _find_buckled(tube[0], problem, p, force, target, tube, accuracy, space, out, least)
+
+
+@kernel
+def _find_buckled(course, problem, p, force, target, tube, accuracy, space, out, least):
+    if course.ndim > 4:  # nothing straight to buckle from
+        return HELD_IMPOSSIBLE, 0, 0, (problem[GAMMA], rubber_of(problem), (problem[SHEAR],), p, force, 0.0, 1.0)
     fine, work, table, shapes = space[0], space[1], space[2], space[4]
-    course, edges, _, _, _, places = tube
+    _, edges, _, _, _, places = tube
     n = edges[len(edges) - 1]
     x, y, cell = shapes[0, : n + 1], shapes[1, : n + 1], at_point(course, 0, 0.0)
     length = places[len(places) - 1]

@@ -4,9 +4,9 @@
 
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
 wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
-``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point of a tube, six numbers are one of a body of revolution
-(:mod:`body`); with the length h of a cell of a mesh behind, the density is that of the cell (:mod:`over_cell`). The length of
-a tuple is known when code is made: none is for the others.
+``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point of a tube, six numbers are one of a body of
+revolution (:mod:`body`); with the length h of a cell of a mesh behind, the density is that of the cell (:mod:`over_cell`).
+The length of a tuple is known when code is made: none is for the others.
 """
 
 from ..jit import kernel

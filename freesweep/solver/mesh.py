@@ -46,7 +46,7 @@ def rise(y, v, cell):
 
 @kernel
 def level(y, cell):
-    """``(v, radius)``: the slope v at which the deformed meridian is parallel to the axis; dr/dx grows with v by the radius."""
+    """``(v, radius)``: the slope v at which the deformed meridian runs along the axis; dr/dx grows by the radius times v."""
     if len(cell) == 3:
         return 0.0, 1.0
     return -cell[4] * y / cell[3], cell[3]

@@ -124,6 +124,8 @@ def solve(
 
     Returns ``(status, doublings, load)``, and what :func:`nested.solve` leaves, with mu in units of ``direction/scale``.
     """
+    if len(cell) > 3:  # a body has no first integral
+        return NOT_CONVERGED, 0, end
     half, now, spare = tube[5][1], np.empty(5), table[quadrature.ROWS]
     if not follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve, table[0], spare, now):
         return NOT_CONVERGED, 0, end
