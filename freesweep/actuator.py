@@ -118,8 +118,12 @@ class Actuator:
 
     def __post_init__(self):
         faults = []
-        read = {name: _read_along(name, getattr(self, name), unit, faults) for name, unit in VARYING.items()}
-        read["length"] = read_number("length", self.length, "m", faults, positive=True)
+        read = {}
+        for name in ("alpha", "beta", "length", "radius", "wall"):
+            if name in VARYING:
+                read[name] = _read_along(name, getattr(self, name), VARYING[name], faults)
+            else:
+                read[name] = read_number(name, getattr(self, name), "m", faults, positive=True)
         if isinstance(read["radius"], float):  # rules follow a radius that varies
             for name in VARYING:
                 if text := rule_of(name, read[name]):

@@ -123,7 +123,8 @@ def read(template, free, faults):
     """The :class:`Space` of a ``template`` and what is ``free``; None after noting faults."""
     if not isinstance(template, Actuator):
         faults.append(f"template: found {described(template)}; give an Actuator")
-    elif template.is_body:
+        return None
+    if template.is_body:
         faults.append("template: its radius varies; designs are looked for among tubes of one radius")
         return None
     if not isinstance(free, dict) or not free:
