@@ -1,6 +1,7 @@
 """Held states: one after another, each on a mesh that holds it."""
 
 from math import atan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -126,14 +127,65 @@ def alike(out, other):
     return same
 
 
+class States(NamedTuple):
+    """Arrays of states: see :func:`hold_many`."""
+
+    values: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    stable: np.ndarray
+    slack: np.ndarray
+    paths: np.ndarray
+    least: np.ndarray
+    stations: np.ndarray
+    profiles: np.ndarray
+
+
 @kernel
-def at_rest(stations, fields, problem):
-    """Fields of the undeformed tube; the fiber angles of one that varies are put in by who asks."""
-    for j in range(len(stations)):
+def blank(states, i):
+    """No value yet."""
+    for k in range(6):
+        states.values[i, k], states.bounds[i, k] = np.nan, np.nan
+    for j in range(len(states.stations)):
+        for k in range(FIELDS):
+            states.profiles[i, k, j] = np.nan
+    states.slack[i], states.stable[i], states.paths[i] = 0, 0, FROM_REST
+    states.least[i, 0], states.least[i, 1] = np.nan, np.nan
+
+
+@kernel
+def leave_at_rest(states, i, problem):
+    """The undeformed tube; the fiber angles of one that varies are put in by who asks."""
+    rest, fields = 0.5 * problem[LENGTH], states.profiles[i]
+    states.status[i], states.stable[i] = OK, 1
+    for k in range(6):
+        states.values[i, k], states.bounds[i, k] = 0.0, 0.0
+    states.values[i, 0], states.values[i, 1], states.values[i, 4] = rest, rest, 1.0
+    for j in range(len(states.stations)):
         for k in range(FIELDS):
             fields[k, j] = 0.0
-        fields[0, j], fields[1, j] = 1.0, stations[j]
+        fields[0, j], fields[1, j] = 1.0, states.stations[j]
         fields[3, j], fields[4, j] = atan(problem[H] + problem[D]), atan(problem[H] - problem[D])
+
+
+@kernel
+def record(states, i, found, tube, space, accuracy, out):
+    """What was found."""
+    states.status[i], states.paths[i] = found.status, found.path
+    if not valued(found.status):
+        return
+    base = tube[1][len(tube[1]) - 1]
+    for k in range(6):
+        share = 0.5 if not tube[3] and k < 4 else 1.0
+        states.values[i, k], states.bounds[i, k] = share * out[0, k], share * out[1, k]
+    states.stable[i] = 1 if found.unstable == 0 else 0
+    states.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << found.doublings, base, tube, found.load)
+    if len(states.stations) > 0:
+        drawn = draw(
+            states.stations, base, found.doublings, tube, found.load, space.fine, space.curve, space.work, accuracy,
+            states.profiles[i],
+        )  # fmt: skip
+        states.status[i] = found.status if drawn else INACCURATE
 
 
 @entry_point
@@ -149,66 +201,26 @@ def hold_many(
     stretch in the middle, multiplier. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2) the least
     pressure of the ``buckled`` branch and its bound.
     """
-    base = edges[len(edges) - 1]
-    half = len(places) == 2
-    middle = base if half else edges[np.argmin(np.abs(places - 0.5 * places[len(places) - 1]))]
+    base, whole, half = edges[len(edges) - 1], places[len(places) - 1], len(places) == 2
+    middle = base if half else edges[np.argmin(np.abs(places - 0.5 * whole))]
     varying = not half or course.shape[1] > 1
-    first_room = make_room(base, half, varying)
+    first_room, out = make_room(base, half, varying), np.zeros((4, nested.OUTPUTS))
     first_tube = course, edges, cells_for(base, varying), half, middle, places
-    out = np.zeros((4, nested.OUTPUTS))
+    states = States(values, bounds, status, stable, slack, paths, least, stations, profiles)
     for i in range(len(pressures)):
-        for k in range(6):
-            values[i, k], bounds[i, k] = np.nan, np.nan
-        for j in range(len(stations)):
-            for k in range(FIELDS):
-                profiles[i, k, j] = np.nan
-        slack[i], stable[i], paths[i] = 0, 0, FROM_REST
-        least[i, 0], least[i, 1] = np.nan, np.nan
+        blank(states, i)
         if status[i] != PENDING:
             continue
-        target = 0.5 * targets[i] if half else targets[i]
-        whole = places[len(places) - 1]
-        if (
-            pressures[i] == 0.0
-            and others[i] == 0.0
-            and target == (whole if kind == HELD_LENGTH else 0.0)
-            and not buckled
-        ):
-            rest = 0.5 * problem[LENGTH]
-            status[i], stable[i] = OK, 1
-            values[i, 0], values[i, 1], values[i, 4] = rest, rest, 1.0
-            values[i, 2], values[i, 3], values[i, 5] = 0.0, 0.0, 0.0
-            for k in range(6):
-                bounds[i, k] = 0.0
-            at_rest(stations, profiles[i], problem)
+        p, other, target = pressures[i], others[i], 0.5 * targets[i] if half else targets[i]
+        natural = target == (whole if kind == HELD_LENGTH else 0.0)
+        if p == 0.0 and other == 0.0 and natural and not buckled:
+            leave_at_rest(states, i, problem)
             continue
         tube, room = first_tube, first_room
         if buckled:
-            found = find_buckled(problem, walls, pressures[i], others[i], target, tube, accuracy, room, out, least[i])
+            found = find_buckled(problem, walls, p, other, target, tube, accuracy, room, out, least[i])
         else:
             found, tube, room = find_on_some_mesh(
-                problem, walls, pressures[i], others[i], target, kind, first_tube, accuracy, first_room, out
+                problem, walls, p, other, target, kind, first_tube, accuracy, first_room, out
             )
-        status[i], paths[i] = found.status, found.path
-        if status[i] == OK or status[i] == INACCURATE:
-            for k in range(6):
-                share = 0.5 if not half and k < 4 else 1.0
-                values[i, k], bounds[i, k] = share * out[0, k], share * out[1, k]
-            stable[i] = 1 if found.unstable == 0 else 0
-            space, cells_of_base = room.space, tube[1][len(tube[1]) - 1]
-            doublings, now = found.doublings, found.load
-            slack[i] = slack_fibers(space.fine[0], space.fine[1], cells_of_base << doublings, cells_of_base, tube, now)
-            if len(stations) > 0:
-                drawn = draw(
-                    stations,
-                    cells_of_base,
-                    doublings,
-                    tube,
-                    now,
-                    space.fine,
-                    space.curve,
-                    space.work,
-                    accuracy,
-                    profiles[i],
-                )
-                status[i] = status[i] if drawn else INACCURATE
+        record(states, i, found, tube, room.space, accuracy, out)

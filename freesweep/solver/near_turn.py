@@ -50,13 +50,34 @@ def pin(track, n, cells, path, node, value, mu, work):
 
 
 @kernel
+def extrapolate(shares, level, scales, broken, unit, space):
+    """The share and its bound from the last four ``shares``, the outputs and theirs from as many rows of the table, with the
+    ``scales`` and floors of these; returns ``(share, its bound, largest scaled bound of the outputs)``.
+    """
+    out, table, size = space.out, space.table, max(abs(unit[4]), abs(unit[5]))
+    third = (4.0 * shares[level] - shares[level - 1]) / 3.0
+    second = (4.0 * shares[level - 1] - shares[level - 2]) / 3.0
+    first = (4.0 * shares[level - 2] - shares[level - 3]) / 3.0
+    for k in range(nested.OUTPUTS):
+        out[2, k], out[3, k] = scales[0][k], scales[1][k]
+    out[2, nested.MULTIPLIER] /= max(size, 1.0)
+    out[3, nested.MULTIPLIER] /= size
+    largest = nested.extrapolate(table, level, out[2], out[3], 0.0, broken, out[0], out[1])
+    finest.leave_loads(
+        table[:, nested.MULTIPLIER], level, out[0, nested.MULTIPLIER], unit, nested.SMALLEST_TOLERANCE, space.fine
+    )
+    order, before = (1.0, 4.0) if broken else (15.0, 225.0)
+    return third, nested.SAFETY * max(abs(third - second) / order, abs(second - first) / before) + ROUNDING, largest
+
+
+@kernel
 def at_value(space, tube, path, node, value, mu, accuracy):
     """The share of the way at which the stretch of a ``node`` of the base mesh has the ``value``, and the outputs there,
     from a state near it in ``space.x``, ``space.y``, with ``mu`` = (share, held load).
 
     Returns ``(whether it was found, share, its bound, doublings, largest scaled bound of outputs, unstable directions)``.
     """
-    fine, table, out, work = space.fine, space.table, space.out, space.work
+    fine, table, work = space.fine, space.table, space.work
     n, shares = len(space.x) - 1, np.empty(nested.MAX_DOUBLINGS + 2)
     course, edges, cells, free, middle, _ = tube
     base = track_on(fine[0], fine[1], space, n, free)
@@ -83,22 +104,9 @@ def at_value(space, tube, path, node, value, mu, accuracy):
             own = track_on(fine[2], fine[3], space, count, free)
             continue
         if level >= 3:
-            third = (4.0 * shares[level] - shares[level - 1]) / 3.0
-            second = (4.0 * shares[level - 1] - shares[level - 2]) / 3.0
-            first = (4.0 * shares[level - 2] - shares[level - 3]) / 3.0
-            bound = nested.SAFETY * max(abs(third - second) / 15.0, abs(second - first) / 225.0) + ROUNDING
-            out[2], out[3] = lagrangian.scales(
-                row, mesh.largest(filled), now, own.x[count] - own.x[0], nested.SMALLEST_TOLERANCE
-            )
-            unit = max(abs(path.held.unit[4]), abs(path.held.unit[5]))
-            out[2, nested.MULTIPLIER] /= max(unit, 1.0)
-            out[3, nested.MULTIPLIER] /= unit
-            largest = nested.extrapolate(table, level, out[2], out[3], 0.0, broken, out[0], out[1])
+            scales = lagrangian.scales(row, mesh.largest(filled), now, own.x[count], nested.SMALLEST_TOLERANCE)
+            third, bound, largest = extrapolate(shares, level, scales, broken, path.held.unit, space)
             if largest <= accuracy or level == nested.MAX_DOUBLINGS + 1:
-                finest.leave_loads(
-                    table[:, nested.MULTIPLIER], level, out[0, nested.MULTIPLIER], path.held.unit,
-                    nested.SMALLEST_TOLERANCE, fine,
-                )  # fmt: skip
                 return True, third, bound, level - 1, largest, negative
         if level == 0:
             level, share = 1, first_share
