@@ -6,9 +6,10 @@ from ..jit import entry_point
 from . import guide, lagrangian, nested
 from .course import of_problems, seat, turns
 from .find import HELD_LENGTH
-from .hold import find_on_some_mesh, workspace
+from .hold import cells_for, find_on_some_mesh
 from .problem import FORCE, GAMMA, LENGTH, TORQUE
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
+from .way import make_room
 
 
 @entry_point
@@ -25,7 +26,7 @@ def block_many(
     """
     base = edges[len(edges) - 1]
     varying = course.shape[0] > 0
-    space, cells = workspace(base, varying, course)
+    room, cells = make_room(base, not varying, varying), cells_for(base, varying, course)
     out = np.zeros((4, nested.OUTPUTS))
     own_course = course if varying else of_problems(course)
     own_places = places.copy() if varying else np.zeros(2)
@@ -35,7 +36,7 @@ def block_many(
         if not varying:
             own_places[1] = 0.5 * problems[k, LENGTH]
             seat(own_course, problems[k])
-        tube = (own_course.copy(), edges, cells, not varying, middle, own_places)
+        tube = (own_course, edges, cells, not varying, middle, own_places)
         rest = (problems[k, GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         clamped = 1.0
         for end in range(2):
@@ -54,11 +55,9 @@ def block_many(
             elif p == 0.0 and other == 0.0 and undeformed:
                 status[row], values[row], bounds[row], stable[row] = OK, 0.0, 0.0, 1
             elif rotates:
-                found, unstable, _, _, _, _, _ = find_on_some_mesh(
-                    problems[k], walls, p, other, targets[k] if varying else 0.5 * targets[k], kind, own_course, tube,
-                    accuracy, space, out,
-                )  # fmt: skip
-                status[row] = found
-                if found == OK or found == INACCURATE:
+                target = targets[k] if varying else 0.5 * targets[k]
+                found, _, _ = find_on_some_mesh(problems[k], walls, p, other, target, kind, tube, accuracy, room, out)
+                status[row] = found.status
+                if found.status == OK or found.status == INACCURATE:
                     values[row], bounds[row] = out[0, nested.MULTIPLIER], out[1, nested.MULTIPLIER]
-                    stable[row] = 1 if unstable == 0 else 0
+                    stable[row] = 1 if found.unstable == 0 else 0

@@ -77,23 +77,6 @@ def fill(course, edges, x, n, base, cells):
 
 
 @kernel
-def copy(course, out):
-    """Make ``out`` the same course."""
-    one, other = course.ravel(), out.ravel()
-    for i in range(len(one)):
-        other[i] = one[i]
-
-
-@kernel
-def blend(course, cell, t, out):
-    """The course a fraction ``t`` of the way from a tube that is ``cell`` all along."""
-    numbers, one, other = len(cell), course.ravel(), out.ravel()
-    for i in range(len(one)):
-        start = cell[(i // 4) % numbers] if i % 4 == 0 else 0.0
-        other[i] = start + t * (one[i] - start)
-
-
-@kernel
 def at_point(course, segment, share):
     """The numbers at a ``share`` (0 to 1) of one segment: three, of a body six."""
     pieces = course.shape[1]
