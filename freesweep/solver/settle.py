@@ -3,8 +3,8 @@
 from ..jit import kernel
 from . import lagrangian, near_turn, neck_march, neck_shape, nested, newton, way
 from .continuation import is_flat
-from .free.fold import locate
 from .course import fill
+from .free.fold import locate
 from .held import loaded
 from .path import load_at
 from .shapes import differ, extremes
