@@ -123,6 +123,9 @@ def test_rest_is_rest(radius, model):
     surface = actuator.fiber_surface_at(rest["x"].values / actuator.length)
     assert rest["deformed_radius"].values == pytest.approx(surface, rel=1e-14)
     assert rest["axial_position"].values == pytest.approx(rest["x"].values, abs=1e-15)
+    widest = np.max(as_profile(actuator.radius).at(np.linspace(0, 1, 201))) + WALL
+    assert rest["outer_radius"].item() == pytest.approx(widest, rel=1e-12)
+    assert rest["largest_stretch"].item() == pytest.approx(1.0, rel=1e-12)
 
 
 # --- against what shares nothing with it
