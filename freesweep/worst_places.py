@@ -69,9 +69,9 @@ def _outer_radius(tube, y, alpha, beta, share):
 
 def _largest_stretch(tube, y, alpha, beta, share):
     meridional, twist = _kinematics(tube, y, alpha, beta, share)
-    largest, inner, surface = np.zeros(np.shape(y)), _inner(tube, share), tube.fiber_surface_at(share)
+    largest, inner, fibers = np.zeros(np.shape(y)), _inner(tube, share), tube.fiber_surface_at(share)
     for rho in (inner, inner + tube.profile("wall").at(share)):
-        r = _layer(surface, y, meridional, rho)
+        r = _layer(fibers, y, meridional, rho)
         hoop, shear = r / rho, r * twist
         # the larger singular value of [[hoop, shear], [0, meridional]]
         square, area = hoop**2 + shear**2 + meridional**2, hoop * meridional
