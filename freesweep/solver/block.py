@@ -5,9 +5,9 @@ import numpy as np
 from ..jit import entry_point
 from . import guide, lagrangian, nested
 from .course import of_problems, seat, turns
-from .find import HELD_LENGTH
 from .hold import cells_for, find_on_some_mesh
 from .problem import FORCE, GAMMA, LENGTH, TORQUE
+from .sought import HELD_LENGTH
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
 from .way import make_room
 

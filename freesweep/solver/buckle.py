@@ -122,11 +122,12 @@ def leave_cylinder(room, tube, path, critical_pressure, multiplier):
 @kernel
 def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
     """Along the branch from the state in the track, at ``first`` = (pressure, the tangent's), until it has a stable state at
-    the ``pressure``. ``least`` takes the lowest at which it turned, and its bound.
+    the ``pressure``, which a mesh moved to the branch may step over, too. ``least`` takes the lowest at which it turned, and
+    its bound.
     """
     track, space, here = room.track, room.space, first
     course, edges, cells, _, _, _ = tube
-    n, step, lowest, nothing = len(track.x) - 1, FIRST_STEP * CHANGE, first[0], path.origin
+    n, step, lowest, nothing, before = len(track.x) - 1, FIRST_STEP * CHANGE, first[0], path.origin, first[0]
     for _ in range(STEPS):
         own = fill(course, edges, track.x, n, n, cells)
         status, _, mu, tangent_mu, made, step = advance(
@@ -139,27 +140,15 @@ def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
             break
         if here[1] < 0.0 and not is_stable(0, tangent_mu, -1.0):  # the least pressure of this branch
             turn = last_alike(
-                lagrangian.density,
-                lagrangian.conjugate,
-                track,
-                n,
-                own,
-                path,
-                here[0],
-                here[1],
-                made,
-                -1.0,
-                True,
-                space.work,
-            )
+                lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], made, -1.0, True, space.work
+            )  # fmt: skip
             value, bound = locate(track, room.roomy, space, tube, path, here, turn, -1.0)
             if value < lowest:
                 least[0], least[1], lowest = value, bound, value
             own = fill(course, edges, track.x, n, n, cells)
             advance(lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], made, space.work)
-        x, y = track.x.copy(), track.y.copy()
-        if (here[0] - pressure) * (mu - pressure) <= 0.0:
-            tangent = track.tangent.copy()
+        if min(before, min(here[0], mu)) <= pressure <= max(before, max(here[0], mu)):
+            x, y, tangent = track.x.copy(), track.y.copy(), track.tangent.copy()
             end = way.land(room, tube, path, here, (mu, tangent_mu, made), pressure)
             if end.status == OK:
                 found = on_meshes(room, tube, path, pressure, accuracy, out)
@@ -169,7 +158,7 @@ def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
                 track.y[i], track.tangent[i] = y[i], tangent[i]
             for i in range(n + 1):
                 track.x[i] = x[i]
-        here = take(track, tube, path, mu, tangent_mu, space.work)
+        before, here = mu, take(track, tube, path, mu, tangent_mu, space.work)
     return failed(HELD_IMPOSSIBLE, nothing)
 
 

@@ -12,7 +12,6 @@ from .course import at_point
 PLACES = 33  # along a tube that varies
 STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u
 FAR_FROM = 0.25  # share of 1 - u by which the middle of a tube drawn in may miss u, whose end is far
-FIRST_STRAIN = 0.02  # |u - 1| at which a climb starts
 
 
 @kernel
@@ -94,23 +93,3 @@ def start(tube, u, load, x, y):
         if not free:
             layer *= 1.0 - exp(-far * (total - x[i]))
         y[i] = 1.0 + (stretch_at(u, x[i] / total) - 1.0) * layer
-
-
-@kernel
-def begin(tube, load, u, ahead, x, y):
-    """A small part of the way to ``load``, half at most, and its first shape; returns that part, 0 where there is none."""
-    rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-    part = 0.5
-    for _ in range(80):
-        now = uniform.between(rest, load, part)
-        for k in range(len(u)):
-            u[k] = 1.0
-        reached = follow(tube, u, rest, now, ahead)
-        largest = 0.0
-        for k in range(len(u)):
-            largest = max(largest, abs(ahead[k] - 1.0))
-        if reached == 1.0 and largest < FIRST_STRAIN:
-            start(tube, ahead, now, x, y)
-            return part
-        part *= 0.5
-    return 0.0
