@@ -19,6 +19,7 @@ from freesweep import (
     inflate,
     interpret,
     lock,
+    material,
     sweep,
 )
 from freesweep.cli import parser
@@ -330,10 +331,10 @@ def test_bodies_that_are_refused(more, message):
 
 def test_a_sweep_of_bodies_is_their_single_states(tmp_path):
     atlas = sweep(
-        alpha=20, beta=-40, radius=CONE, wall="1 mm", length=["50 mm", "60 mm"], c10=RUBBER.c10, c01=RUBBER.c01,
+        alpha=20, beta=-40, radius=CONE, wall="1 mm", length=["50 mm", "60 mm"], material="dragon-skin-30",
         pressure=["30 kPa", "50 kPa"], model="physical", out=tmp_path / "cones.nc", progress=False,
     )  # fmt: skip
-    one = inflate(body(CONE, model="physical"), 5e4, x=0.0)
+    one = inflate(body(CONE, model="physical", material=material("dragon-skin-30")), 5e4, x=0.0)
     with atlas:
         other = atlas.data.sel(length=0.06, pressure=5e4)
         for name in ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius"):
