@@ -33,7 +33,7 @@ _HOMES = {
     "design": "inverse.designing",
     "Goal": "inverse.wishes",
     "Limit": "inverse.wishes",
-    "Profile": "inverse.freedom",
+    "Profile": "along",
     "run_sweep": "sweep.run",
     "to_dataframe": "export.frame",
     "example_atlas": "example",

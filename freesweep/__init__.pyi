@@ -2,6 +2,7 @@ from . import closed_form as closed_form
 from . import plot as plot
 from . import status as status
 from .actuator import Actuator as Actuator
+from .along import Profile as Profile
 from .atlas.store import Atlas as Atlas
 from .atlas.store import UnsealedWarning as UnsealedWarning
 from .atlas.store import open_atlas as open_atlas
@@ -20,7 +21,6 @@ from .holding import blocked_force as blocked_force
 from .holding import blocked_torque as blocked_torque
 from .holding import corrected_torque as corrected_torque
 from .inverse.designing import design as design
-from .inverse.freedom import Profile as Profile
 from .inverse.wishes import Goal as Goal
 from .inverse.wishes import Limit as Limit
 from .material_library import material as material

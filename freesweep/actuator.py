@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .along import Profile as Given
+from .along import rule_of, written
 from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
 from .faults import ActuatorError
 from .given import numbers, read_number
 from .options import read_choice
-from .profiles import Profile, ProfileError, as_profile, is_profile, together
+from .profiles import Along as AlongTube
+from .profiles import ProfileError, as_profile, is_profile, together
 from .quantities import Along, Quantities, Quantity
+from .revolution import resolved
 from .tube_model import DEFAULT, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
 from .unit_warnings import doubts, warn_of
 
@@ -20,11 +24,17 @@ SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked sha
 LARGEST_EXTENSION = 10.0  # of fibers: a stretch, not a percentage
 ENERGIES = ("full", "principal")
 HASHED = np.linspace(0.0, 1.0, 9)  # places of profiles whose values go into a hash
-VARYING = {"alpha": "degree", "beta": "degree", "wall": "m"}
+VARYING = {"alpha": "degree", "beta": "degree", "wall": "m", "radius": "m"}
+POSITIVE = ("wall", "radius")
+EVENLY = np.linspace(0.0, 1.0, 257)  # places of a body at which its wall is held against its radius
 
 
-def _read_along(name, value, unit, faults, positive=False):
-    """A float, pairs of floats or a callable; None after noting what is wrong with a number or a profile along the tube."""
+def _read_along(name, value, unit, faults):
+    """A float, pairs of floats, smooth or not, a callable or a rule; None after noting what is wrong with it."""
+    positive = name in POSITIVE
+    if text := rule_of(name, value):
+        number = read_number(name, text, unit, faults, positive=positive)
+        return None if number is None else written(name, number, unit)
     if not is_profile(value):
         return read_number(name, value, unit, faults, positive=positive)
     try:
@@ -35,7 +45,15 @@ def _read_along(name, value, unit, faults, positive=False):
         return None
     if positive and not np.all(samples > 0.0):
         faults.append(f"{name}: the profile falls to {samples.min():g} {unit}; it has to be above 0")
-    return value if callable(value) else tuple(zip(profile.x.tolist(), profile.values.tolist()))
+    if callable(value):
+        return value
+    pairs = tuple(zip(profile.x.tolist(), profile.values.tolist()))
+    if name == "radius":
+        if np.any((np.diff(profile.x) == 0.0) & (np.diff(profile.values) != 0.0)):
+            faults.append("radius: it jumps; a body's radius may bend at a place, but not jump")
+        if len(set(profile.values.tolist())) == 1:
+            return pairs[0][1]  # a tube
+    return Given(pairs, smooth=True) if isinstance(value, Given) and value.smooth else pairs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,9 +63,12 @@ class Actuator:
     Parameters
     ----------
     alpha, beta : fiber angles from the axis [degree], between -90 and 90, at least 0.5 apart; a number, or a profile
-        along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump) or a callable of x/l (array in, array out)
-    length, radius : undeformed length, inner radius [m]; numbers, texts with units ("4.76 mm") or what carries units
-    wall : wall thickness [m], number or profile
+        along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump), a callable of x/l (array in, array out), or
+        ``Profile(pairs, smooth=True)``, a spline through pairs. On a body of revolution also "geodesic 30 deg": the winding
+        of that angle at x = 0 that does not slip (Clairaut)
+    length, radius : undeformed length, inner radius [m]; numbers, texts with units ("4.76 mm") or what carries units. The
+        radius may be a profile over x/l along the axis, which may bend but not jump: a body of revolution
+    wall : wall thickness [m], number or profile; of a body also "constant volume 1.5 mm": the section stays that at x = 0
     material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or a rubber of the library,
         :func:`freesweep.material`
     fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
@@ -66,7 +87,7 @@ class Actuator:
     alpha: Any
     beta: Any
     length: float
-    radius: float
+    radius: Any
     wall: Any
     material: MooneyRivlin | Yeoh
     fiber_extension: float = 1.0
@@ -84,7 +105,7 @@ class Actuator:
             alpha: Along,
             beta: Along,
             length: Quantity,
-            radius: Quantity,
+            radius: Along,
             wall: Along,
             material: MooneyRivlin | Yeoh,
             fiber_extension: Quantity = 1.0,
@@ -97,10 +118,16 @@ class Actuator:
 
     def __post_init__(self):
         faults = []
-        read = {name: _read_along(name, getattr(self, name), "degree", faults) for name in ("alpha", "beta")}
-        for name in ("length", "radius"):
-            read[name] = read_number(name, getattr(self, name), "m", faults, positive=True)
-        read["wall"] = _read_along("wall", self.wall, "m", faults, positive=True)
+        read = {}
+        for name in ("alpha", "beta", "length", "radius", "wall"):
+            if name in VARYING:
+                read[name] = _read_along(name, getattr(self, name), VARYING[name], faults)
+            else:
+                read[name] = read_number(name, getattr(self, name), "m", faults, positive=True)
+        if isinstance(read["radius"], float):  # rules follow a radius that varies
+            for name in VARYING:
+                if text := rule_of(name, read[name]):
+                    read[name] = read_number(name, text, VARYING[name], faults)
         read["fiber_extension"] = read_number(
             "fiber_extension", self.fiber_extension, "1", faults, least=1.0, most=LARGEST_EXTENSION
         )
@@ -122,11 +149,15 @@ class Actuator:
             try:
                 faults = self._impossible()
             except ProfileError as error:
-                faults = [f"alpha, beta, wall: {error}"]
+                faults = [f"alpha, beta, wall, radius: {error}"]
         if faults:
             raise ActuatorError(faults)
-        numbers = self.design() | {name: self.profile(name).samples() for name in VARYING}
-        warn_of(doubts(**{name: numbers[name] for name in (*VARYING, "length", "radius", "c10")}), stacklevel=3)
+        varying = VARYING if self.is_body else ("alpha", "beta", "wall")
+        numbers = self.design() | {name: self.profile(name).samples() for name in varying}
+        own = {name: numbers[name] for name in (*VARYING, "length", "c10")}
+        if self.is_body:
+            own["thickness"] = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY)
+        warn_of(doubts(**own), stacklevel=3)
 
     @classmethod
     def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":
@@ -173,8 +204,8 @@ class Actuator:
 
     def __hash__(self):
         fields = (
-            self.length, self.radius, self.material, self.fiber_extension, self.fiber_radius, self.energy, self.model,
-            self.wall_model, self.fibers,
+            self.length, self.material, self.fiber_extension, self.fiber_radius, self.energy, self.model, self.wall_model,
+            self.fibers,
         )  # fmt: skip
         varying = tuple(tuple(self.profile(name).at(HASHED).tolist()) for name in VARYING)
         return hash((*fields, varying))
@@ -204,6 +235,13 @@ class Actuator:
                 " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"
                 " keep alpha above beta all along, or below"
             )
+        if self.is_body:
+            if isinstance(self.fiber_radius, float):
+                faults.append(
+                    f"fiber_radius: found {self.fiber_radius:g} m, but the radius varies; choose one of"
+                    f" {', '.join(map(repr, FIBER_PLACES))}"
+                )
+            return faults
         outer = self.radius + float(np.min(self.profile("wall").samples()))
         if isinstance(self.fiber_radius, float) and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):
             faults.append(
@@ -223,8 +261,13 @@ class Actuator:
 
     @property
     def varies(self) -> bool:
-        """Whether a fiber angle or the wall is a profile along the tube."""
+        """Whether a fiber angle, the wall or the radius is a profile along the tube."""
         return any(is_profile(getattr(self, name)) for name in VARYING)
+
+    @property
+    def is_body(self) -> bool:
+        """Whether the radius varies: a body of revolution."""
+        return is_profile(self.radius)
 
     def angles(self, share: Quantities) -> tuple[Any, Any]:
         """Both fiber angles [degree] at shares x/l of the length, 0 to 1; on a jump the left ones.
@@ -239,23 +282,35 @@ class Actuator:
             raise ActuatorError(["share: a place x/l lies beyond the tube; give numbers from 0 to 1"])
         return self.profile("alpha").at(share), self.profile("beta").at(share)
 
-    def profile(self, name: str) -> Profile:
-        """Fiber angle [degree] or wall [m] along the tube, as a :class:`freesweep.profiles.Profile`, numbers too.
+    def profile(self, name: str) -> AlongTube:
+        """Fiber angle [degree], wall or inner radius [m] along the tube, as :class:`freesweep.profiles.Along`, numbers too.
 
-        ``name`` is "alpha", "beta" or "wall". Raises :class:`ActuatorError`.
+        ``name`` is "alpha", "beta", "wall" or "radius". Raises :class:`ActuatorError`.
         """
         faults = []
         if read_choice("name", name, VARYING, faults) is None:
             raise ActuatorError(faults)
-        return as_profile(getattr(self, name), VARYING[name])
+        value = getattr(self, name)
+        return getattr(resolved(self), name) if rule_of(name, value) else as_profile(value, VARYING[name])
 
     @property
     def fiber_surface(self) -> float:
-        """Radius at which the fibers lie [m]; every formula is scaled by it."""
+        """Radius at which the fibers lie [m], of a body at x = 0; every formula is scaled by it."""
+        if self.is_body:
+            return resolved(self).scale[1]
         place = MODELS[self.model].fiber_radius if self.fiber_radius is None else self.fiber_radius
         if isinstance(place, str):
             return fiber_place(place, self.radius, float(np.min(self.profile("wall").samples())))
         return place
+
+    @property
+    def fiber_share(self) -> float:
+        """Share of the wall inside the fibers of a body."""
+        return SHARES[self.fiber_radius or MODELS[self.model].fiber_radius]
+
+    def fiber_surface_at(self, share: Quantities) -> Any:
+        """Radius at which the fibers lie [m] at shares x/l of the length; one number of a tube."""
+        return resolved(self).fibers.at(share) if self.is_body else self.fiber_surface
 
     @property
     def is_thick(self) -> bool:
@@ -274,7 +329,7 @@ class Actuator:
             "alpha": alpha.item(),
             "beta": beta.item(),
             "length": self.length,
-            "radius": self.radius,
+            "radius": self.profile("radius").at(0.5).item(),
             "wall": self.profile("wall").at(0.5).item(),
             "fiber_radius": self.fiber_surface,
             "fiber_extension": self.fiber_extension,

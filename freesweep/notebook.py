@@ -42,7 +42,7 @@ def of_actuator(tube) -> str:
     rows = []
     for name, units in (("alpha", "degree"), ("beta", "degree"), ("length", "m"), ("radius", "m"), ("wall", "m")):
         value = getattr(tube, name)
-        if name in ("alpha", "beta", "wall"):
+        if name != "length":
             samples = tube.profile(name).samples()
             text = quantity(samples[0], units)
             if samples.min() < samples.max():
@@ -54,7 +54,9 @@ def of_actuator(tube) -> str:
         rows.append(("fiber extension", f"{tube.fiber_extension:g}"))
     threads = "loose threads" if tube.is_loose else "bonded fibers"
     wall = "thick wall" if tube.is_thick else "membrane"
-    rows.append(("model", f"{wall}, {threads} at {quantity(tube.fiber_surface, 'm')}"))
+    rows.append(
+        ("model", f"{wall}, {threads} at {quantity(tube.fiber_surface, 'm')}{', at x = 0' if tube.is_body else ''}")
+    )
     rows += [(f"rubber {name}" if name != "source" else name, text) for name, text in _rubber(tube.material)]
     return f'<div style="display:flex;gap:20px">{table("Actuator", rows)}{_wall(tube)}</div>'
 

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from .along import Profile as Given
 from .given import numbers
 
 PIECES = (16, 64, 256, 1024, 4096)  # of a segment, until the splines fit
@@ -19,6 +20,7 @@ FINE, FIT = 1e-12, 1e-9  # relative errors of splines that suffice, and that are
 # of outputs to relative changes of H, D and a all along the tube, each with the worse sign: 45 was the most in 250 random
 # states of steep tubes (a rotation of steep fibers, an energy beside its work); close to a limit pressure it is more
 SENSITIVITY = 100.0
+LEAST = np.array([1e-6, 1e-6, 1e-6, 1.0, 1.0, 1.0])  # of H, D, a, R, R', inner: errors are relative to no less
 SAMPLES = 257  # of a profile, where its values are checked
 DENSE = 1 << 14  # of a callable along the tube: what is narrower than two gaps may be missed
 IN_EACH = 4  # places at least where each piece of a spline is checked
@@ -27,6 +29,7 @@ SEEN = 0.05  # relative error of a spline over the cells of a base mesh: they se
 MOST_SEGMENTS = 48  # into which callables are cut, each with its share of the mesh
 SHORTEST = 1e-6  # of the length: of what lies between two places where something jumps or bends
 SAME = 1e-9  # places of different profiles that only rounding parts, as 0.3 and 0.1 + 0.2
+DEGREE, CUT_OFF = 16, 1e-13  # of polynomials that a callable's slope is taken from; what they may leave
 CELLS = 240  # of a base mesh, shared by its segments, LEAST_CELLS and MOST_CELLS of each
 LEAST_CELLS, MOST_CELLS = 16, 48
 
@@ -35,17 +38,43 @@ class ProfileError(ValueError):
     """A profile that cannot be read; the message says why."""
 
 
-class Profile:
+class Along:
     """One quantity along the tube: ``breaks`` in x/l, and its values within each segment between them."""
 
-    def __init__(self, value, unit="1"):
+    function = None  # of x/l, where it is one that only its values tell
+
+    def within(self, low, high, share):
+        """Values at ``low + (high - low) share``, as seen from inside that interval."""
+        raise NotImplementedError
+
+    def at(self, share):
+        """Values at shares of the length; on a jump the left one."""
+        share = np.atleast_1d(np.asarray(share, float))
+        out = np.empty(share.shape)
+        for low, high in pairwise(self.breaks):
+            here = (share >= low if low == 0.0 else share > low) & (share <= high)
+            out[here] = self.within(low, high, (share[here] - low) / (high - low))
+        return out
+
+    def samples(self):
+        """Values at enough places to check them."""
+        pieces = pairwise(self.breaks)
+        return np.concatenate([self.within(low, high, _shares(high - low, self)) for low, high in pieces])
+
+
+class Profile(Along):
+    """A quantity given by pairs, linear or ``smooth`` between them, or by a callable."""
+
+    def __init__(self, value, unit="1", smooth=False):
         self.unit = unit
         self.function = value if callable(value) else None
+        self.splines = None
         if self.function:
             self.breaks = np.array([0.0, 1.0])
         else:
             self.x, self.values = _pairs(value, unit)
             self.breaks = np.unique(self.x)
+            self.splines = _smooth(self.x, self.values) if smooth else None
 
     def within(self, low, high, share):
         """Values at ``low + (high - low) share``, as seen from inside that interval."""
@@ -53,7 +82,23 @@ class Profile:
         if self.function:
             return self._called(at)
         k = np.searchsorted(self.x, 0.5 * (low + high)) - 1
+        if self.splines:
+            return self.splines[k](at)
         return self.values[k] + (at - self.x[k]) / (self.x[k + 1] - self.x[k]) * (self.values[k + 1] - self.values[k])
+
+    def slope(self, low, high, share):
+        """Derivative along x/l, as seen from inside the interval."""
+        at = low + (high - low) * np.asarray(share, float)
+        if self.function:
+            return self._derivative(at)
+        k = np.searchsorted(self.x, 0.5 * (low + high)) - 1
+        if self.splines:
+            return self.splines[k](at, 1)
+        return np.full(at.shape, (self.values[k + 1] - self.values[k]) / (self.x[k + 1] - self.x[k]))
+
+    @functools.cached_property
+    def _derivative(self):
+        return _derivative(self._called)
 
     def _called(self, at):
         """Values of the callable, whatever a person's may do."""
@@ -72,19 +117,45 @@ class Profile:
             raise ProfileError(f"the profile has values that are not finite; give finite numbers in [{self.unit}]")
         return values
 
-    def at(self, share):
-        """Values at shares of the length; on a jump the left one."""
-        share = np.atleast_1d(np.asarray(share, float))
-        out = np.empty(share.shape)
-        for low, high in pairwise(self.breaks):
-            here = (share >= low if low == 0.0 else share > low) & (share <= high)
-            out[here] = self.within(low, high, (share[here] - low) / (high - low))
+
+def _smooth(x, values):
+    """For each gap between two places the cubic spline that runs through it: one from repeated place to repeated place."""
+    from scipy.interpolate import CubicSpline
+
+    found, first = [], 0
+    for last in [*np.flatnonzero(np.diff(x) == 0.0), len(x) - 1]:
+        spline = CubicSpline(x[first : last + 1], values[first : last + 1])
+        found += [spline] * (last - first)
+        found += [None] if last < len(x) - 1 else []  # the gap of a repeated place has no inside
+        first = last + 1
+    return found
+
+
+def _derivative(function):
+    """The derivative of a function on 0..1, by Chebyshev's polynomials on pieces that are halved until they fit."""
+    pieces, waiting = [], [(0.0, 1.0)]
+    while waiting:
+        low, high = waiting.pop()
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        polynomial = np.polynomial.chebyshev.chebinterpolate(lambda z, m=middle, h=half: function(m + h * z), DEGREE)
+        if np.max(np.abs(polynomial[-3:])) <= CUT_OFF * np.max(np.abs(polynomial)):
+            pieces.append((low, np.polynomial.chebyshev.chebder(polynomial) / half))
+        elif len(pieces) + len(waiting) > MOST_SEGMENTS or high - low < 2.0 * SHORTEST:
+            raise ProfileError(_TOO_FAST.format(places=f"{low:.6g} and {high:.6g}"))
+        else:
+            waiting += [(middle, high), (low, middle)]
+    starts = np.array([low for low, _ in pieces] + [1.0])
+
+    def derivative(at):
+        where = np.clip(np.searchsorted(starts, at, side="right") - 1, 0, len(pieces) - 1)
+        out = np.empty(at.shape)
+        for k, (low, slopes) in enumerate(pieces):
+            here = where == k
+            z = 2.0 * (at[here] - low) / (starts[k + 1] - low) - 1.0
+            out[here] = np.polynomial.chebyshev.chebval(z, slopes)
         return out
 
-    def samples(self):
-        """Values at enough places to check them."""
-        pieces = pairwise(self.breaks)
-        return np.concatenate([self.within(low, high, _shares(high - low, self)) for low, high in pieces])
+    return derivative
 
 
 def _pairs(value, unit):
@@ -118,13 +189,21 @@ def _pairs(value, unit):
 
 def is_profile(value) -> bool:
     """Whether a value describes a profile rather than a number."""
-    return callable(value) or isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    return (
+        callable(value) or isinstance(value, (Given, list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    )
 
 
 def as_profile(value, unit="1") -> Profile:
     """A profile of anything that may vary, numbers included; ``unit`` is that of what pairs and callables give."""
     if isinstance(value, float):
         return _constant(value, unit)
+    if isinstance(value, Given):
+        if value.is_free:
+            raise ProfileError(
+                "its values are free; an actuator's are given: pairs, a callable, or knots without between"
+            )
+        return Profile(value.knots, unit, value.smooth)
     return Profile(value if is_profile(value) else [(0.0, value), (1.0, value)], unit)
 
 
@@ -146,19 +225,14 @@ def together(first, second):
 
 def course(tube):
     """``((course, edges, places), error)`` of a tube that varies: the first as the kernels take them, lengths in radii; the
-    largest relative error of its splines.
+    largest relative error of its splines. A body's course has an axis more (:mod:`freesweep.solver.course`).
 
     Raises :class:`ProfileError` where a profile changes too fast to be followed.
     """
-    profiles = alpha, beta, wall = (
-        as_profile(tube.alpha, "degree"), as_profile(tube.beta, "degree"), as_profile(tube.wall, "m")
-    )  # fmt: skip
+    from .revolution import resolved
 
-    def numbers(low, high, share):
-        ta = np.tan(np.radians(alpha.within(low, high, share)))
-        tb = np.tan(np.radians(beta.within(low, high, share)))
-        area = ((tube.radius + wall.within(low, high, share)) ** 2 - tube.radius**2) / tube.fiber_surface**2
-        return np.stack([0.5 * (ta + tb), 0.5 * (ta - tb), area])
+    parts = resolved(tube)
+    profiles, numbers = parts.profiles, parts.numbers
 
     def splines(low, high, pieces):
         return _splines(numbers, low, high, pieces, _shares(high - low, *profiles, least=IN_EACH * pieces))
@@ -174,7 +248,10 @@ def course(tube):
         raise ProfileError(_TOO_FAST.format(places=_span(breaks, int(np.argmax(errors)))))
     each = min(max(2 * round(CELLS / len(segments) / 2), LEAST_CELLS), MOST_CELLS)
     edges = np.arange(len(breaks), dtype=np.int64) * each
-    return (np.stack(segments), edges, breaks * tube.length / tube.fiber_surface), max(errors)
+    rows = np.stack(segments)
+    if rows.shape[2] == 6:
+        rows = rows.reshape(*rows.shape[:2], 2, 3, 4)
+    return (rows, edges, breaks * tube.length / tube.fiber_surface), max(errors)
 
 
 _TOO_FAST = (
@@ -224,13 +301,13 @@ def _cut(breaks, missed):
 
 
 def _splines(numbers, low, high, pieces, between):
-    """Coefficients (pieces, 3, 4) in rising powers of one segment, and the largest relative error ``between`` the nodes."""
+    """Coefficients (pieces, n, 4) in rising powers of one segment, and the largest relative error ``between`` the nodes."""
     from scipy.interpolate import CubicSpline
 
     nodes = np.arange(pieces + 1) / pieces
     spline = CubicSpline(nodes, numbers(low, high, nodes), axis=1)
     exact = numbers(low, high, between)
-    scale = np.max(np.abs(exact), axis=1, keepdims=True) + 1e-6
+    scale = np.max(np.abs(exact), axis=1, keepdims=True) + LEAST[: len(exact), None]
     error = float(np.max(np.abs(spline(between) - exact) / scale))
     powers = spline.c[::-1] * (1.0 / pieces) ** np.arange(4).reshape(4, 1, 1)
     return np.ascontiguousarray(powers.transpose(1, 2, 0)), error

@@ -9,6 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray as xr
 
+    from .along import Profile
+
 
 class CarriesUnits(Protocol):
     """A quantity of another library (astropy, pint, unyt)."""
@@ -21,6 +23,8 @@ class CarriesUnits(Protocol):
 Quantity: TypeAlias = float | np.number[Any] | str | CarriesUnits
 # one or several; xarray is not loaded for its name
 Quantities: TypeAlias = Union[Quantity, Sequence[Any], np.ndarray[Any, Any], "xr.DataArray"]
-Along: TypeAlias = Quantity | Sequence[Sequence[Quantity]] | Callable[[Any], Any]  # a number or a profile
+Along: TypeAlias = Union[
+    Quantity, Sequence[Sequence[Quantity]], Callable[[Any], Any], "Profile"
+]  # a number or a profile
 Names: TypeAlias = str | Sequence[str] | None
 Path: TypeAlias = str | PathLike[str]

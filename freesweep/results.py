@@ -6,6 +6,7 @@ import numpy as np
 
 from . import status
 from .atlas.schema import PROFILES, attributes
+from .revolution import wall_volume_inside as wall_volume_of_body
 from .scaling import OUTPUTS, output_scales, wall_volume_inside
 from .strain import warn_beyond_range
 from .worst_places import with_own, worst_places
@@ -23,12 +24,14 @@ def dataset(tube, axes, stations, found, without=()):
 
     names = tuple(axes)
     data = {name: (names, found[name].astype(np.int8)) for name in ("status", "slack_fiber", "stable")}
-    scale = output_scales(tube.design())
+    scale, inside = output_scales(tube.design()), wall_volume_inside(tube.design())
+    if tube.is_body:
+        scale["mid_radius"], inside = tube.fiber_surface_at(0.5).item(), wall_volume_of_body(tube)
     for k, name in enumerate(OUTPUTS):
         if name in without:
             continue
         value = found["values"][..., k] * scale[name]
-        data[name] = (names, value - wall_volume_inside(tube.design()) if name == "volume" else value)
+        data[name] = (names, value - inside if name == "volume" else value)
         data[f"{name}_error"] = (names, found["bounds"][..., k] * scale[name])
     data |= found.get("extra", {})
     every = with_own(tube, stations)
@@ -76,7 +79,7 @@ def profiles(tube, fields, values, bounds, stations):
     mirrored = (share > 0.5) & (not whole)
     tension = 2.0 * np.pi * r**2 * tube.material.c10
     units = (
-        r, r, np.degrees(1.0), np.degrees(1.0), np.degrees(1.0),
+        tube.fiber_surface_at(share), r, np.degrees(1.0), np.degrees(1.0), np.degrees(1.0),
         tension / np.cos(np.radians(alpha)), tension / np.cos(np.radians(beta)),
     )  # fmt: skip
     whole_tube = {1: 0, 2: 2}  # what grows along the tube, and which output it grows to

@@ -186,4 +186,4 @@ def read_course(tube, accuracy):
     try:
         return profiles.follow(tube, accuracy)
     except profiles.ProfileError as fault:
-        raise ActuatorError([f"alpha, beta, wall: {fault}"]) from None
+        raise ActuatorError([f"alpha, beta, wall, radius: {fault}"]) from None

@@ -60,10 +60,9 @@ def warn_beyond_range(tube, result, stacklevel):
 def _reached(tube, result, measure):
     """The largest ``measure`` of the strain of any state of a Dataset, at half length or a station."""
     reached = 0.0
-    at_middle = [angle.item() for angle in tube.angles(0.5)]
-    along = tube.angles(result["x"].values / tube.length)
-    for name, angles in (("mid_radius", at_middle), ("deformed_radius", along)):
-        stretch = result[name].values / tube.fiber_surface
+    at_middle, share = [angle.item() for angle in tube.angles(0.5)], result["x"].values / tube.length
+    for name, angles, place in (("mid_radius", at_middle, 0.5), ("deformed_radius", tube.angles(share), share)):
+        stretch = result[name].values / tube.fiber_surface_at(place)
         found = measure(*angles, stretch, tube.fiber_extension, tube.energy)
         reached = max(reached, float(np.max(found, initial=0.0, where=np.isfinite(found))))
     return reached

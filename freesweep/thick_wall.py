@@ -36,7 +36,8 @@ def thin_wall_attributes(tube) -> dict:
     if tube.is_thick:
         return {}
     alpha, beta = tube.angles(SHARE)
-    return attributes_of(alpha, beta, tube.radius, tube.profile("wall").at(SHARE), tube.fiber_surface, tube.energy)
+    radius = tube.profile("radius").at(SHARE) if tube.is_body else tube.radius
+    return attributes_of(alpha, beta, radius, tube.profile("wall").at(SHARE), tube.fiber_surface_at(SHARE), tube.energy)
 
 
 def attributes_of(alpha, beta, radius, wall, fiber_radius, energy) -> dict:

@@ -45,26 +45,33 @@ def worst_places(tube, profiles, stations, slack_fiber) -> dict:
 def _kinematics(tube, deformed_radius, alpha_deformed, beta_deformed, share):
     """``(meridional stretch, twist rate [1/m])`` from profiles [m, degree]."""
     (ta, tb), (a, b) = np.tan(np.radians(tube.angles(share))), np.tan(np.radians([alpha_deformed, beta_deformed]))
-    y = deformed_radius / tube.fiber_surface
+    surface = tube.fiber_surface_at(share)
+    y = deformed_radius / surface
     meridional = y * (ta - tb) / (a - b)
-    return meridional, (meridional * a / y - ta) / tube.fiber_surface
+    return meridional, (meridional * a / y - ta) / surface
 
 
-def _layer(tube, deformed_radius, meridional, rho):
-    """Radius of a layer [m]."""
-    return np.sqrt(deformed_radius**2 + (rho**2 - tube.fiber_surface**2) / meridional)
+def _layer(surface, deformed_radius, meridional, rho):
+    """Radius of a layer [m]; ``surface`` is that of the fibers."""
+    return np.sqrt(deformed_radius**2 + (rho**2 - surface**2) / meridional)
+
+
+def _inner(tube, share):
+    """Undeformed inner radius [m]."""
+    return tube.profile("radius").at(share) if tube.is_body else tube.radius
 
 
 def _outer_radius(tube, y, alpha, beta, share):
     meridional, _ = _kinematics(tube, y, alpha, beta, share)
-    return _layer(tube, y, meridional, tube.radius + tube.profile("wall").at(share))
+    outer = _inner(tube, share) + tube.profile("wall").at(share)
+    return _layer(tube.fiber_surface_at(share), y, meridional, outer)
 
 
 def _largest_stretch(tube, y, alpha, beta, share):
     meridional, twist = _kinematics(tube, y, alpha, beta, share)
-    largest = np.zeros(np.shape(y))
-    for rho in (tube.radius, tube.radius + tube.profile("wall").at(share)):
-        r = _layer(tube, y, meridional, rho)
+    largest, inner, fibers = np.zeros(np.shape(y)), _inner(tube, share), tube.fiber_surface_at(share)
+    for rho in (inner, inner + tube.profile("wall").at(share)):
+        r = _layer(fibers, y, meridional, rho)
         hoop, shear = r / rho, r * twist
         # the larger singular value of [[hoop, shear], [0, meridional]]
         square, area = hoop**2 + shear**2 + meridional**2, hoop * meridional

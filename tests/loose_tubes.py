@@ -8,9 +8,11 @@ twist rate psi and both fibers' multipliers are unknowns of one system, the stat
 
 with "mu_i >= 0, g_i <= 0, one of them 0" as Fischer's and Burmeister's ``sqrt(mu^2 + g^2) = mu - g``, solved by Newton's
 method on sparse matrices while the load rises. A held length or rotation has one more unknown. Results of n, 2n and 4n cells
-are extrapolated. Derivatives come from SymPy. Lengths in radii of the fiber surface.
+are extrapolated. Derivatives come from SymPy. Lengths in radii of the fiber surface; of a body of revolution in that at its
+fixed end: there nodes carry radii r along the undeformed meridian S, ``y = r/R(S)``, ``v = dr/dS``, and psi turns by psi/R.
 """
 
+import itertools
 from functools import cache
 from types import SimpleNamespace
 
@@ -27,14 +29,15 @@ OUTPUTS = ("length", "volume", "twist", "energy", "middle")
 def _symbolic():
     """Functions of a cell's unknowns and parameters: gradient and Hessian of the density, of one layer, of constraints."""
     left, right, G, psi, a, b, h = unknowns = sp.symbols("left right G psi a b h")
-    p, f, m, ta, tb, g, square, c, c2, c3 = sp.symbols("p f m ta tb g square c c2 c3")
-    y, v = (left + right) / 2, (right - left) / h
+    p, f, m, ta, tb, g, square, c, c2, c3, R = sp.symbols("p f m ta tb g square c c2 c3 R")
+    r, v = (left + right) / 2, (right - left) / h
+    y = r / R
     q = y**2 + (square - 1) / sp.sqrt(G)
     i = G + q / square + q * psi**2 + square / (G * q) - 3
     second = G * q / square + (G + q / square + q * psi**2) * square / (G * q) - 3
     w = i + c2 * i**2 + c3 * i**3 + c * second
     gaps = [G + y**2 * (t + psi) ** 2 - g**2 * (1 + t**2) for t in (ta, tb)]
-    rest = (p * y**2 + f) * sp.sqrt(G - v**2) + m * psi - a * gaps[0] - b * gaps[1]
+    rest = (p * r**2 + f) * sp.sqrt(G - v**2) + m * psi / R - R**2 * (a * gaps[0] + b * gaps[1])
     parts = unknowns[:6]
     upper = [(j, k) for j in range(6) for k in range(j, 6)]
 
@@ -46,11 +49,11 @@ def _symbolic():
     length = sp.sqrt(G - v**2)
     return SimpleNamespace(
         upper=upper,
-        rest=function((p, f, m, ta, tb, g), rest),
-        layer=function((square, c, c2, c3), w),
+        rest=function((p, f, m, ta, tb, g, R), rest),
+        layer=function((square, c, c2, c3, R), w),
         length=function((), length),
-        gaps=[function((ta, tb, g), gap) for gap in gaps],
-        volume=sp.lambdify((unknowns, ()), y**2 * length, "numpy"),
+        gaps=[function((ta, tb, g, R), gap) for gap in gaps],
+        volume=sp.lambdify((unknowns, ()), r**2 * length, "numpy"),
     )
 
 
@@ -76,23 +79,37 @@ class Tube:
         z = np.linspace(-1, 1, n + 1)
         return 0.5 * self.length * (1 + np.tanh(3.2 * z) / np.tanh(3.2))
 
+    def middle(self, x):
+        """The node half way along the axis."""
+        return len(x) // 2
+
+    def along(self, x):
+        """Of each cell between the nodes ``x``: tangents of both angles, weights and places of the layers, and R."""
+        return self.ta, self.tb, self.layers, 1.0
+
+    def at_rest(self, x):
+        """Radii of the nodes before deformation."""
+        return np.ones(len(x))
+
     def _cells(self, x, y, G, psi, a, b, p, f, m, gamma):
         have, h = _symbolic(), np.diff(x)
         unknowns = (y[:-1], y[1:], G, psi, a, b, h)
         one = np.ones(len(h))
+        ta, tb, layers, R = self.along(x)
 
         def values(found):
             return np.array([one * part for part in found])
 
-        rest = values(have.rest(unknowns, (p, f, m, self.ta, self.tb, gamma)))
-        w = sum(weight * values(have.layer(unknowns, (square, *self.rubber))) for weight, square in self.layers)
-        gaps = [values(gap(unknowns, (self.ta, self.tb, gamma))) for gap in have.gaps]
-        return h, rest - w, w[0], gaps, values(have.length(unknowns, ())), have.volume(unknowns, ()) * one
+        rest = values(have.rest(unknowns, (p, f, m, ta, tb, gamma, R)))
+        w = sum(weight * values(have.layer(unknowns, (square, *self.rubber, R))) for weight, square in layers)
+        gaps = [values(gap(unknowns, (ta, tb, gamma, R))) for gap in have.gaps]
+        return h, rest - w, w[0], gaps, values(have.length(unknowns, ())), have.volume(unknowns, ()) * one, one / R
 
     def solve(self, n, p, f=0.0, m=0.0, held=None, target=0.0, steps=12):
         """Outputs on n cells; ``held`` is "length" or "rotation", whose load is unknown then (its outputs go by "load")."""
         have, x = _symbolic(), self.nodes(n)
-        y, G, psi = np.ones(n + 1), np.ones(n), np.zeros(n)
+        n = len(x) - 1
+        y, G, psi = self.at_rest(x), np.ones(n), np.zeros(n)
         a, b, load = np.zeros(n), np.zeros(n), 0.0
         inner, size = np.arange(1, n), 5 * n - 1
         where = [None, None] + [n - 1 + k * n + np.arange(n) for k in range(4)]  # columns of G, psi, a, b
@@ -104,7 +121,7 @@ class Tube:
             for _ in range(60):
                 force = load if held == "length" else share * f
                 torque = load if held == "rotation" else share * m
-                h, L, w, gaps, length, volume = self._cells(x, y, G, psi, a, b, now, force, torque, gamma)
+                h, L, w, gaps, length, volume, turn = self._cells(x, y, G, psi, a, b, now, force, torque, gamma)
                 index = [np.arange(n) - 1, np.arange(n)] + [c for c in where[2:]]
                 total = size + (held is not None)
                 R, entries = np.zeros(total), []
@@ -142,8 +159,8 @@ class Tube:
                             kept = index[j] >= 0
                             np.add.at(other, index[j][kept], (h * length[1 + j])[kept])
                     else:
-                        R[last] = np.sum(h * psi) - goal
-                        other[where[3]] = h
+                        R[last] = np.sum(h * psi * turn) - goal
+                        other[where[3]] = h * turn
                     add(np.full(total, last), np.arange(total), other)
                     add(np.arange(total), np.full(total, last), other)
                 numbers, rows, columns = map(np.concatenate, zip(*entries))
@@ -165,12 +182,75 @@ class Tube:
                     break
             else:
                 raise ArithmeticError("Newton's method did not settle")
-        h, _, w, _, length, volume = self._cells(x, y, G, psi, a, b, p, f, m, gamma)
-        middle = y[n // 2]
-        return np.array([h @ length[0], h @ volume, h @ psi, h @ w, middle, load]), SimpleNamespace(x=x, y=y, a=a, b=b)
+        h, _, w, _, length, volume, turn = self._cells(x, y, G, psi, a, b, p, f, m, gamma)
+        middle = y[self.middle(x)]
+        return np.array([h @ length[0], h @ volume, h @ (psi * turn), h @ w, middle, load]), SimpleNamespace(
+            x=x, y=y, a=a, b=b
+        )
 
     def extrapolated(self, p, *, cells=100, **loads):
         """Outputs, the held load last, extrapolated from three meshes."""
         one, two, three = (self.solve(cells * factor, p, **loads)[0] for factor in (1, 2, 4))
         first, second = (4 * two - one) / 3, (4 * three - two) / 3
         return (16 * second - first) / 15
+
+
+class Body(Tube):
+    """A body of revolution. ``radius``, ``inner`` and ``outer`` are those of fibers and wall, ``alpha`` and ``beta`` angles
+    [degree], functions of x in reference radii; ``section`` is outer^2 - inner^2 of a membrane. Cells end at ``breaks``.
+    """
+
+    def __init__(self, radius, alpha, beta, length, breaks=(), *, inner=None, outer=None, section=None, **more):
+        super().__init__(0.0, 1.0, length, area=0.0, **more)
+        self.radius, self.angles, self.breaks = radius, (alpha, beta), [0.0, *breaks, length]
+        self.section, self.wall = section, (inner, outer)
+        fine = np.concatenate([np.linspace(a, b, 4001)[:-1] for a, b in zip(self.breaks, self.breaks[1:])] + [[length]])
+        z, weight = np.polynomial.legendre.leggauss(8)
+        middle, half = 0.5 * (fine[1:] + fine[:-1]), 0.5 * np.diff(fine)
+        places = middle[:, None] + half[:, None] * z
+        self.x_fine = fine
+        self.S_fine = np.concatenate([[0.0], np.cumsum(half * (np.sqrt(1.0 + self.slope(places) ** 2) @ weight))])
+
+    def slope(self, x):
+        """dR/dx, by complex steps: the functions are analytic between breaks."""
+        return np.imag(self.radius(x + 1e-30j)) / 1e-30
+
+    def x_of(self, S):
+        """Axial position of places along the meridian."""
+        from scipy.interpolate import CubicSpline
+
+        found = np.empty(len(S))
+        ends = np.searchsorted(self.x_fine, self.breaks)
+        for a, b in itertools.pairwise(ends):
+            here = (self.S_fine[a] <= S) & (self.S_fine[b] >= S)
+            found[here] = CubicSpline(self.S_fine[a : b + 1], self.x_fine[a : b + 1])(S[here])
+        return found
+
+    def nodes(self, n):
+        """Nodes along S, graded toward all breaks, as many in each segment."""
+        parts, each = [], n // (len(self.breaks) - 1)
+        ends = self.S_fine[np.searchsorted(self.x_fine, self.breaks)]
+        for a, b in itertools.pairwise(ends):
+            z = np.linspace(-1, 1, each + 1)
+            parts.append(a + 0.5 * (b - a) * (1 + np.tanh(3.0 * z) / np.tanh(3.0))[:-1])
+        return np.concatenate([*parts, [ends[-1]]])
+
+    def middle(self, x):
+        """The node half way along the axis."""
+        return int(np.argmin(np.abs(self.x_of(x) - 0.5 * self.length)))
+
+    def along(self, x):
+        """Numbers of each cell, at its middle along S."""
+        at = self.x_of(0.5 * (x[1:] + x[:-1]))
+        R = self.radius(at)
+        ta, tb = (np.tan(np.radians(angle(at))) for angle in self.angles)
+        if self.section is not None:
+            return ta, tb, [(self.section(at), 1.0)], R
+        inner, outer = (wall(at) for wall in self.wall)
+        z, w = np.polynomial.legendre.leggauss(LAYERS)
+        half = 0.5 * (outer**2 - inner**2)
+        return ta, tb, [(half * wi, (inner**2 + half * (1 + zi)) / R**2) for zi, wi in zip(z, w)], R
+
+    def at_rest(self, x):
+        """Radii of the nodes before deformation."""
+        return self.radius(self.x_of(x))

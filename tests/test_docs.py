@@ -71,3 +71,14 @@ def test_the_site_is_built_offline_without_a_warning(tmp_path):
     assert 'id="freesweep.sweep.from_python.sweep"' in reference
     assert not [name for name in re.findall(r'(?:src|href)="(https?:[^"]+)"', reference) if "sphinx-doc" not in name
                 and "alabaster" not in name]  # fmt: skip
+
+
+def test_the_fold_that_is_drawn_is_the_limit_pressure(tmp_path):
+    """As the second method has it: p = 1.220586 for 60/55 degrees, 12 radii long."""
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", DOCS / "fold.py", tmp_path / "fold.png"], capture_output=True, text=True,
+        env=CHILD_ENVIRONMENT,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "fold.png").stat().st_size > 5000
+    assert float(done.stdout) == pytest.approx(1.220586 * 2e5, rel=1e-4)

@@ -16,8 +16,10 @@ import pytest
 from scipy.optimize import brentq
 
 from freesweep.solver import held, mesh, nested, newton
-from freesweep.solver.continuation import FOLLOWED, Path, advance, correct, is_stable, last_alike, make_unit
+from freesweep.solver.bordered import FOLLOWED, correct
+from freesweep.solver.continuation import advance, is_stable, last_alike, make_unit
 from freesweep.solver.free.space import make_track
+from freesweep.solver.path import Held, Path
 
 X = 0.5
 FILM, BRATU = 0.0, 1.0
@@ -199,19 +201,21 @@ def fold_of_bratu(cells, begin):
     x, y = start(cells)
     load = (0.0, 0.0, 0.0, begin, 0.0, 0.0, 0.0)
     assert on_one_mesh(x, y, BRATU, load)[0] == newton.CONVERGED
-    track = make_track(cells, True)
+    track = make_track(cells, True, False)
     track.x[:], track.y[:] = x, y
     path, own, work = Path(REST, ALONG_MU, 0.0, False), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
-    status, _, mu, slope = correct(density, track, track.y, begin, cells, own, path, 1.0, track.tangent, work)
+    status, _, mu, slope = correct(
+        density, conjugate, track, track.y, begin, cells, own, path, 1.0, track.tangent, work
+    )
     assert status == FOLLOWED
     slope, step = make_unit(track, cells, mu, slope, path), 0.01
     while True:
         status, negative, ahead, next_slope, made, step = advance(
-            density, track, cells, own, path, mu, slope, step, work
+            density, conjugate, track, cells, own, path, mu, slope, step, work
         )
         assert status == FOLLOWED
         if not is_stable(negative, next_slope, 1.0):
-            return last_alike(density, track, cells, own, path, mu, slope, made, 1.0, True, work)[0]
+            return last_alike(density, conjugate, track, cells, own, path, mu, slope, made, 1.0, True, work)[0]
         track.y[:], track.tangent[:] = track.next_y, track.next_tangent
         mu, slope = ahead, make_unit(track, cells, ahead, next_slope, path)
 
@@ -222,6 +226,33 @@ def test_the_fold_of_bratus_problem(begin):
     assert np.all(np.diff(abs(folds - BRATU_LIMIT)) < 0.0)
     extrapolated = (4.0 * folds[1:] - folds[:-1]) / 3.0
     assert extrapolated[-1] == pytest.approx(BRATU_LIMIT, abs=2e-8)
+
+
+def test_where_the_conjugate_integral_is_held_a_way_goes_on_through_the_fold():
+    """Its load rises to the fold's and falls again; all states are stable while it is held."""
+    cells, work, own = 96, np.zeros((13, 98)), np.array([[BRATU, 0.0, 0.0]])
+    track = make_track(cells, True, True)
+    track.x[:], track.y[:-1] = start(cells)
+    load = (0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
+    assert on_one_mesh(track.x, track.y[:-1], BRATU, load)[0] == newton.CONVERGED
+    first, _ = held.hold(conjugate, track.x, track.y, cells, own, load, ALONG_MU, work[8])
+    track.y[-1] = 2.0
+    path = Path(REST, REST, 1.0, False, Held(ALONG_MU, first, 9.0 * first, True, 0))
+    status, _, mu, slope = correct(density, conjugate, track, track.y, 0.0, cells, own, path, 1.0, track.tangent, work)
+    slope, step, loads, shares = make_unit(track, cells, mu, slope, path), 0.01, [], []
+    while mu < 1.0:
+        status, unstable, mu, slope, _, step = advance(
+            density, conjugate, track, cells, own, path, mu, slope, step, work
+        )
+        assert (status, unstable) == (FOLLOWED, 0)
+        track.y[:], track.tangent[:] = track.next_y, track.next_tangent
+        slope = make_unit(track, cells, mu, slope, path)
+        loads.append(track.y[-1])
+        shares.append(mu)
+    top = int(np.argmax(loads))
+    assert 0 < top < len(loads) - 1
+    a, b, c = np.polyfit(np.array(shares)[top - 1 : top + 2], loads[top - 1 : top + 2], 2)
+    assert c - b * b / (4.0 * a) == pytest.approx(fold_of_bratu(cells, 2.0), rel=5e-4)
 
 
 def test_no_state_is_found_beyond_the_turning_point():

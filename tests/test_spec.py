@@ -202,7 +202,7 @@ def test_faults_of_designs_are_named(text, says):
         ('"4.76 mm"', "1" + "0" * 400, "more than 38 digits"),
         ('"4.76 mm"', "true", "found true or false"),
         ('"4.76 mm"', "1979-05-27", "type date"),
-        ('"4.76 mm"', '["3 mm", "4 mm"]', "several values found, one is allowed here; move the parameter to [axes]"),
+        ('"4.76 mm"', '["3 mm", "4 mm"]', "several values belong in [axes]"),
         ("1.59e-3", "0.0", "actuator.wall: found 0.0"),
         ('"0.11 MPa"', '"0 MPa"', "actuator.c10: found '0 MPa'"),
         ("[axes]", "c01 = -1\n[axes]", "actuator.c01: found -1"),

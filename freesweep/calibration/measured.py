@@ -94,6 +94,8 @@ class Measurement:
 
     def __post_init__(self):
         faults = [] if isinstance(self.tube, Actuator) else [f"tube: found {described(self.tube)}; give an Actuator"]
+        if isinstance(self.tube, Actuator) and self.tube.is_body:
+            faults.append("tube: its radius varies; measurements are judged of tubes of one radius only")
         arrays = {"pressure": read_column("pressure", self.pressure, "Pa", faults, **DOMAINS["pressure"])}
         for name, units in COLUMNS.items():
             if getattr(self, name) is not None:

@@ -5,6 +5,7 @@ import sys
 from ..tube_model import DEFAULT, FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
 
 CONSTANTS = ("c10", "c01", "c20", "c30")
+ALONG = ("alpha", "beta", "radius", "wall")  # what may vary along the tube
 
 
 def add_single(commands):
@@ -37,9 +38,14 @@ def add_actuator(commands, name, text, run, rubber=True):
     """A command whose options describe one actuator; ``rubber``: its constants have to be given."""
     command = commands.add_parser(name, help=text)
     for angle in ("alpha", "beta"):
-        command.add_argument(f"--{angle}", required=True, metavar="A", help="fiber angle from the axis")
-    for size in ("length", "radius", "wall"):
-        command.add_argument(f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'")
+        command.add_argument(
+            f"--{angle}", required=True, metavar="A", help="fiber angle from the axis, or 'geodesic 30 deg' of a body"
+        )
+    profile = ", or along x/l as '0:8mm,1:5mm' ('smooth 0:...': a spline)"
+    for size, more in (("length", ""), ("radius", profile), ("wall", ", or 'constant volume 1.5 mm' of a body")):
+        command.add_argument(
+            f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'{more}"
+        )
     add_rubber(command, "" if rubber else "; the locked shape needs none")
     command.add_argument("--fiber-extension", default=1.0, metavar="G", help="stretch of the fibers, 1 or more")
     command.add_argument(
@@ -79,7 +85,9 @@ def tube_of(options):
     faults = []
     names = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")
     is_word = options.fiber_radius in FIBER_PLACES
-    values = read_options(options, names[:-1] if is_word else names, faults)
+    along = {name: found for name in ALONG if (found := _along(name, getattr(options, name), faults)) is not None}
+    plain = [name for name in (names[:-1] if is_word else names) if name not in along]
+    values = along | read_options(options, plain, faults)
     words = {name: getattr(options, name) for name in ("model", "wall_model", "fibers", "energy")}
     if is_word:
         words["fiber_radius"] = options.fiber_radius
@@ -88,6 +96,30 @@ def tube_of(options):
     if faults:
         raise ValueError("\n".join(["cannot read this actuator:", *(f"  - {fault}" for fault in faults)]))
     return Actuator(**values, **words, material=material)
+
+
+def _along(name, text, faults):
+    """What a text says that varies along the tube: pairs "0:8mm,1:5mm", smooth if that is said before, or a rule as it is
+    given; None of a number. Faults are noted.
+    """
+    from ..along import Profile, rule_of
+    from ..atlas.schema import PARAMETERS
+    from ..units import quantity
+
+    if rule_of(name, text):
+        return text
+    if ":" not in text:
+        return None
+    word, _, rest = text.strip().partition(" ")
+    smooth = word == "smooth"
+    pairs = []
+    for pair in (rest if smooth else text).split(","):
+        place, _, value = pair.partition(":")
+        try:
+            pairs.append((quantity(place.strip(), "1"), quantity(value.strip(), PARAMETERS[name].units)))
+        except ValueError as error:
+            faults.append(f"--{name}: {pair.strip()!r}: {error}")
+    return Profile(tuple(pairs), smooth=True) if smooth else tuple(pairs)
 
 
 def read_options(options, names, faults) -> dict:

@@ -52,6 +52,11 @@ def asked_of(tube, value, faults, loads=(), held=None):
     """:func:`read_derivatives` of what a tube, if it is one, has; nothing where ``value`` is None."""
     if value is None or not isinstance(tube, Actuator):
         return ()
+    if tube.is_body:
+        faults.append(
+            "derivatives: found a radius that varies; they are known of tubes of one radius only, leave them out"
+        )
+        return ()
     return read_derivatives(value, parameters(tube, loads, held), faults)
 
 

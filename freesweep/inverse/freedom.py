@@ -6,43 +6,25 @@ A design is a point u of the unit box, one number for each free parameter, and o
 import itertools
 import re
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ..actuator import VARYING, Actuator
+from ..actuator import Actuator
+from ..along import Profile
 from ..atlas.schema import PARAMETERS
 from ..faults import ActuatorError
 from ..given import described, numbers
 from ..material_library import material
-from ..quantities import Quantity
 from ..tube_model import MODELS, fiber_place
 from .wishes import DESIGN
 
 LOADS = ("pressure", "force", "torque")
 CONSTANTS = ("c10", "c01", "c20", "c30")
 TIE = re.compile(r"\s*(-?)\s*(?:([0-9.]+(?:e-?[0-9]+)?)\s*\*\s*)?([a-z_0-9]+)\s*", re.ASCII)
-MOST_KNOTS = 40
+KNOTTED = ("alpha", "beta", "wall")  # what may vary along the tube by free knots
 FOLLOWED = 1e-6  # accuracy to which splines follow most profiles
-
-
-@dataclass(frozen=True)
-class Profile:
-    """A free profile along the tube: values at so many evenly spaced ``knots``, linear in between.
-
-    Parameters
-    ----------
-    knots : 2 or more
-    between : the lowest and the highest value, in the unit of the parameter
-    """
-
-    knots: int
-    between: tuple[Quantity, Quantity]
-
-    def __post_init__(self):
-        if not isinstance(self.knots, int) or isinstance(self.knots, bool) or not 2 <= self.knots <= MOST_KNOTS:
-            raise ActuatorError([f"knots: found {described(self.knots)}; give a whole number, 2 to {MOST_KNOTS}"])
 
 
 class Space(NamedTuple):
@@ -142,6 +124,9 @@ def read(template, free, faults):
     if not isinstance(template, Actuator):
         faults.append(f"template: found {described(template)}; give an Actuator")
         return None
+    if template.is_body:
+        faults.append("template: its radius varies; designs are looked for among tubes of one radius")
+        return None
     if not isinstance(free, dict) or not free:
         faults.append(
             f"free: found {described(free)}; give a dict such as {{'alpha': (0, 85), 'radius': (3e-3, 12e-3)}}"
@@ -191,8 +176,12 @@ def _read_range(key, given, faults):
 
 def _read_profile(key, given, found, faults):
     names, low, high, knots = found
-    if key not in VARYING:
-        faults.append(f"free[{key!r}]: only {', '.join(VARYING)} may vary along the tube")
+    if key not in KNOTTED:
+        faults.append(f"free[{key!r}]: only {', '.join(KNOTTED)} may vary along the tube where they are free")
+    elif not given.is_free:
+        faults.append(
+            f"free[{key!r}]: its knots are given; give a number of knots, and between, or put it in the template"
+        )
     elif (pair := _read_range(key, given.between, faults)) is not None:
         knots[key] = given.knots
         names += [f"{key}[{k}]" for k in range(given.knots)]

@@ -45,14 +45,15 @@ def shape_of(tube: Actuator, state=None) -> Shape:
     Raises ValueError for a state with dimensions other than ``x``, without a result, or not of this tube.
     """
     share = np.linspace(0.0, 1.0, FINE)
-    turns = []
+    turns, surface = [], tube.fiber_surface_at(share)
+    along = np.hypot(tube.length, np.gradient(surface, share)) if tube.is_body else tube.length
     for angles in tube.angles(share):
-        slope = np.tan(np.radians(angles)) * tube.length / tube.fiber_surface
+        slope = np.tan(np.radians(angles)) * along / surface
         turns.append(np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * np.diff(share))]))
     counts = tuple(max(2, round(FIBERS * np.cos(np.radians(np.abs(angles)).mean()))) for angles in tube.angles(share))
     if state is None:
         return Shape(
-            np.full(FINE, tube.fiber_surface * MM), share * tube.length * MM, np.zeros(FINE), tuple(turns), counts
+            np.broadcast_to(surface * MM, FINE), share * tube.length * MM, np.zeros(FINE), tuple(turns), counts
         )
     free = [name for name in state["deformed_radius"].dims if name != "x"]
     if free:

@@ -4,10 +4,12 @@ import numpy as np
 
 from ..jit import entry_point
 from . import guide, lagrangian, nested
-from .find import HELD_LENGTH
-from .hold import find_on_some_mesh, workspace
+from .course import of_problems, seat, turns
+from .hold import cells_for, find_on_some_mesh
 from .problem import FORCE, GAMMA, LENGTH, TORQUE
+from .sought import HELD_LENGTH
 from .status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
+from .way import make_room
 
 
 @entry_point
@@ -24,24 +26,23 @@ def block_many(
     """
     base = edges[len(edges) - 1]
     varying = course.shape[0] > 0
-    space, cells = workspace(base, varying)
+    room, cells = make_room(base, not varying, varying), cells_for(base, varying, course)
     out = np.zeros((4, nested.OUTPUTS))
-    own_course = course if varying else np.zeros((1, 1, 3, 4))
+    own_course = course if varying else of_problems(course)
     own_places = places.copy() if varying else np.zeros(2)
     total = own_places[len(own_places) - 1]
     middle = edges[np.argmin(np.abs(own_places - 0.5 * total))] if varying else base
     for k in range(len(problems)):
         if not varying:
             own_places[1] = 0.5 * problems[k, LENGTH]
-            for i in range(3):
-                own_course[0, 0, i, 0] = problems[k, i]
-        tube = (own_course.copy(), edges, cells, not varying, middle, own_places)
+            seat(own_course, problems[k])
+        tube = (own_course, edges, cells, not varying, middle, own_places)
         rest = (problems[k, GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         clamped = 1.0
         for end in range(2):
             stretch = lagrangian.kinematics(1.0, guide.cell_along(tube, 1.0 * end), rest)[3]
             clamped = min(clamped, 1.0 + stretch)
-        turns = kind == HELD_LENGTH or np.any(own_course[:, :, 0, :] != 0.0)  # no rotation where alpha = -beta
+        rotates = kind == HELD_LENGTH or turns(own_course)
         other = problems[k, TORQUE] if kind == HELD_LENGTH else problems[k, FORCE]
         undeformed = targets[k] == (problems[k, LENGTH] if kind == HELD_LENGTH else 0.0)
         for row in range(first[k], first[k + 1]):
@@ -53,12 +54,10 @@ def block_many(
                 status[row] = INVALID
             elif p == 0.0 and other == 0.0 and undeformed:
                 status[row], values[row], bounds[row], stable[row] = OK, 0.0, 0.0, 1
-            elif turns:
-                found, unstable, _, _, _, _, _ = find_on_some_mesh(
-                    problems[k], walls, p, other, targets[k] if varying else 0.5 * targets[k], kind, own_course, tube,
-                    accuracy, space, out,
-                )  # fmt: skip
-                status[row] = found
-                if found == OK or found == INACCURATE:
+            elif rotates:
+                target = targets[k] if varying else 0.5 * targets[k]
+                found, _, _ = find_on_some_mesh(problems[k], walls, p, other, target, kind, tube, accuracy, room, out)
+                status[row] = found.status
+                if found.status == OK or found.status == INACCURATE:
                     values[row], bounds[row] = out[0, nested.MULTIPLIER], out[1, nested.MULTIPLIER]
-                    stable[row] = 1 if unstable == 0 else 0
+                    stable[row] = 1 if found.unstable == 0 else 0

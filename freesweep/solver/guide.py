@@ -12,18 +12,25 @@ from .course import at_point
 PLACES = 33  # along a tube that varies
 STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u
 FAR_FROM = 0.25  # share of 1 - u by which the middle of a tube drawn in may miss u, whose end is far
-FIRST_STRAIN = 0.02  # |u - 1| at which a climb starts
 
 
 @kernel
 def cell_along(tube, share):
-    """What varies along the tube at a ``share`` (0 to 1) of its length."""
+    """What varies along the tube at a ``share`` (0 to 1) of its length; of a body, as the cylinder of the radius there."""
     course, _, _, _, _, places = tube
     at = share * places[len(places) - 1]
     segment = 0
     while segment < len(places) - 2 and places[segment + 1] <= at:
         segment += 1
-    return at_point(course, segment, (at - places[segment]) / (places[segment + 1] - places[segment]))
+    return upright(at_point(course, segment, (at - places[segment]) / (places[segment + 1] - places[segment])))
+
+
+@kernel
+def upright(cell):
+    """A cell whose radius does not change along the axis."""
+    if len(cell) == 3:
+        return cell
+    return cell[0], cell[1], cell[2], cell[3], 0.0, cell[5]
 
 
 @kernel
@@ -86,23 +93,3 @@ def start(tube, u, load, x, y):
         if not free:
             layer *= 1.0 - exp(-far * (total - x[i]))
         y[i] = 1.0 + (stretch_at(u, x[i] / total) - 1.0) * layer
-
-
-@kernel
-def begin(tube, load, u, ahead, x, y):
-    """A small part of the way to ``load``, half at most, and its first shape; returns that part, 0 where there is none."""
-    rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-    part = 0.5
-    for _ in range(80):
-        now = uniform.between(rest, load, part)
-        for k in range(len(u)):
-            u[k] = 1.0
-        reached = follow(tube, u, rest, now, ahead)
-        largest = 0.0
-        for k in range(len(u)):
-            largest = max(largest, abs(ahead[k] - 1.0))
-        if reached == 1.0 and largest < FIRST_STRAIN:
-            start(tube, ahead, now, x, y)
-            return part
-        part *= 0.5
-    return 0.0

@@ -114,12 +114,3 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
             return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu + change, sigma
         fraction, halvings, made = 1.0, 0, made + 1
     return STALLED, 1, mu, 0.0
-
-
-@kernel
-def largest_change(y, response, n):
-    """Largest relative change of y that ``response`` makes."""
-    largest = 0.0
-    for i in range(n + 1):
-        largest = max(largest, abs(response[i]) / y[i])
-    return largest

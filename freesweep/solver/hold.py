@@ -1,21 +1,23 @@
 """Held states: one after another, each on a mesh that holds it."""
 
 from math import atan
+from typing import NamedTuple
 
 import numpy as np
 
 from ..jit import entry_point, kernel
 from . import guide, held, lagrangian, nested
 from .buckle import find_buckled
-from .course import copy
+from .course import make_cells, volume
 from .drawing import draw
-from .find import FROM_REST, HELD_LENGTH, find, valued
-from .march import cylinder_multiplier
-from .problem import GAMMA, LENGTH, D, H, rubber_of, wall_of
+from .find import find
+from .problem import LENGTH, D, H
 from .profile import FIELDS
 from .shapes import MESH_CHANGE
 from .slack import slack_fibers
+from .sought import FROM_REST, HELD_LENGTH, Found, failed, load_of, unit_of, valued
 from .status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK, PENDING
+from .way import cylinder_multiplier, make_room
 
 FINER, FINEST = 4, 6144  # times the cells of the base mesh, up to so many: some layers are thin
 ENDED = 1e-2  # relative difference of a limit's place: where two meshes agree so well, the branch ends there
@@ -23,23 +25,9 @@ THINNEST_LAYER = 100.0  # times it fits into a cell of an even base mesh; thinne
 
 
 @kernel
-def workspace(base, varying):
-    """Scratch for a base mesh of ``base`` cells: see :func:`nested.solve`; and the cells of a tube that varies."""
-    size = (base << nested.MAX_DOUBLINGS) + 2
-    space = (
-        np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
-        np.zeros((5, size)), np.zeros((2, base + 1)),
-    )  # fmt: skip
-    return space, np.zeros((size if varying else 1, 3))
-
-
-@kernel
 def layers(problem, walls, p, other, kind, tube):
     """How many times the thinnest end layer of a cylinder under the load fits into the length that is solved."""
-    course, places = tube[0], tube[5]
-    force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
-    unit = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-    load = (problem[GAMMA], rubber_of(problem), wall_of(problem, walls), p, force, torque, 1.0)
+    course, places, load, unit = tube[0], tube[5], load_of(problem, walls, p, other, kind), unit_of(kind, 1.0)
     largest = 0.0
     for k in range(1 if course.shape[0] == 1 and course.shape[1] == 1 else guide.PLACES):
         cell = guide.cell_along(tube, k / (guide.PLACES - 1))
@@ -52,54 +40,83 @@ def layers(problem, walls, p, other, kind, tube):
 
 
 @kernel
-def find_on_some_mesh(problem, walls, p, other, target, kind, course, tube, accuracy, space, out):
+def cells_for(base, varies, course):
+    """Room for what varies along a tube, on the finest mesh."""
+    return make_cells(course, (base << nested.MAX_DOUBLINGS) + 2 if varies else 1)
+
+
+@kernel
+def made_finer(tube, factor):
+    """The tube on a base mesh of so many times the cells."""
+    course, edges, cells, free, middle, places = tube
+    return (
+        course,
+        factor * edges,
+        cells_for(factor * edges[len(edges) - 1], len(cells) > 1, course),
+        free,
+        factor * middle,
+        places,
+    )
+
+
+@kernel
+def first_factor(problem, walls, p, other, kind, tube):
+    """Times the cells of the base mesh that its thinnest layer needs."""
+    base, factor = tube[1][len(tube[1]) - 1], 1
+    most = layers(problem, walls, p, other, kind, tube) / THINNEST_LAYER
+    while factor * base <= FINEST and most > factor * base:
+        factor *= FINER
+    return factor
+
+
+@kernel
+def find_on_some_mesh(problem, walls, p, other, target, kind, tube, accuracy, room, out):
     """As :func:`find`, on finer base meshes where one does not do: where the solver fails, misses the accuracy, or meets an
-    end of the way that is not certain. Returns also the tube and the scratch that were used.
+    end of the way that is not certain. Returns also the tube and the room that were used.
 
     Where the accuracy is missed on all of them, the first mesh's state stands. Among unstable states branches lie close to
     each other, and a mesh that sees too little of them leads astray: such a state is given where two meshes lead to it.
     """
-    _, edges, cells, free, middle, places = tube
-    base, factor = edges[len(edges) - 1], 1
-    while factor * base <= FINEST and layers(problem, walls, p, other, kind, tube) > THINNEST_LAYER * factor * base:
-        factor *= FINER
+    base, half, varies = tube[1][len(tube[1]) - 1], tube[3], len(tube[2]) > 1
+    factor = first_factor(problem, walls, p, other, kind, tube)
     if factor > 1:
-        space, cells = workspace(factor * base, len(cells) > 1)
-        tube = (tube[0], factor * edges, cells, free, factor * middle, places)
-    copy(course, tube[0])  # a march leaves it changed
-    status, unstable, doublings, now, reached, sure, path = find(
-        problem, walls, p, other, target, kind, course, tube, accuracy, space, out
-    )
-    doubtful, differed = valued(status) and unstable > 0 and out[0, nested.MIDDLE] != 1.0, False
-    while (doubtful or not (status == OK or status == COMPRESSED or sure)) and FINER * factor * base <= FINEST:
-        factor *= FINER
-        finer_space, cells = workspace(factor * base, len(cells) > 1)
-        finer_tube, finer_out = (tube[0].copy(), factor * edges, cells, free, factor * middle, places), out.copy()
-        copy(course, finer_tube[0])
-        again, others, levels, then, came, certain, way = find(
-            problem, walls, p, other, target, kind, course, finer_tube, accuracy, finer_space, finer_out
-        )
-        same = valued(status) and valued(again) and alike(out, finer_out)
-        if status == INACCURATE and again != OK and (same or not doubtful):
-            differed = False
-            break
-        if doubtful and same and status == OK:
+        tube, room = made_finer(tube, factor), make_room(factor * base, half, varies)
+    found = find(problem, walls, p, other, target, kind, tube, accuracy, room, out)
+    doubtful, differed = valued(found.status) and found.unstable > 0 and out[0, nested.MIDDLE] != 1.0, False
+    settled = found.status == OK or found.status == COMPRESSED or found.sure
+    first_tube = tube
+    finer = 1
+    while (doubtful or not settled) and FINER * finer * factor * base <= FINEST:
+        finer *= FINER
+        finer_tube, finer_room = made_finer(first_tube, finer), make_room(finer * factor * base, half, varies)
+        finer_out = out.copy()
+        again = find(problem, walls, p, other, target, kind, finer_tube, accuracy, finer_room, finer_out)
+        same = valued(found.status) and valued(again.status) and alike(out, finer_out)
+        keeps = found.status == INACCURATE and again.status != OK and (same or not doubtful)
+        if keeps or (doubtful and same and found.status == OK):
             differed = False
             break
         differed = doubtful and not same
-        ended = abs(came - reached) <= ENDED * reached and 0.0 < reached < 1.0
-        status, unstable, doublings, now, reached, sure, path = again, others, levels, then, came, certain, way
-        tube, space = finer_tube, finer_space
+        ended = abs(again.reached - found.reached) <= ENDED * found.reached and 0.0 < found.reached < 1.0
+        found, tube, room = again, finer_tube, finer_room
+        settled = found.status == OK or found.status == COMPRESSED or found.sure
         for row in range(out.shape[0]):
             for k in range(out.shape[1]):
                 out[row, k] = finer_out[row, k]
-        doubtful = valued(status) and unstable > 0 and not same
-        if status != OK and status != INACCURATE and ended:  # steps die out at one place on any mesh
-            status = BEYOND_LIMIT if status == NOT_CONVERGED else status
+        doubtful = valued(found.status) and found.unstable > 0 and not same
+        if not valued(found.status) and ended:  # steps die out at one place on any mesh
+            found = as_limit(found)
             break
     if doubtful and differed:
-        status = NOT_CONVERGED
-    return status, unstable, doublings, now, tube, space, path
+        found = failed(NOT_CONVERGED, found.load)
+    return found, tube, room
+
+
+@kernel
+def as_limit(found):
+    """The same, whose end is a limit."""
+    status = BEYOND_LIMIT if found.status == NOT_CONVERGED else found.status
+    return Found(status, found.unstable, found.doublings, found.load, found.reached, found.sure, found.path)
 
 
 @kernel
@@ -111,14 +128,66 @@ def alike(out, other):
     return same
 
 
+class States(NamedTuple):
+    """Arrays of states: see :func:`hold_many`."""
+
+    values: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    stable: np.ndarray
+    slack: np.ndarray
+    paths: np.ndarray
+    least: np.ndarray
+    stations: np.ndarray
+    profiles: np.ndarray
+
+
 @kernel
-def at_rest(stations, fields, problem):
-    """Fields of the undeformed tube; the fiber angles of one that varies are put in by who asks."""
-    for j in range(len(stations)):
+def blank(states, i):
+    """No value yet."""
+    for k in range(6):
+        states.values[i, k], states.bounds[i, k] = np.nan, np.nan
+    for j in range(len(states.stations)):
+        for k in range(FIELDS):
+            states.profiles[i, k, j] = np.nan
+    states.slack[i], states.stable[i], states.paths[i] = 0, 0, FROM_REST
+    states.least[i, 0], states.least[i, 1] = np.nan, np.nan
+
+
+@kernel
+def leave_at_rest(states, i, problem, tube):
+    """The undeformed tube; the fiber angles of one that varies are put in by who asks."""
+    rest, fields = 0.5 * problem[LENGTH], states.profiles[i]
+    states.status[i], states.stable[i] = OK, 1
+    for k in range(6):
+        states.values[i, k], states.bounds[i, k] = 0.0, 0.0
+    states.values[i, 0], states.values[i, 4] = rest, 1.0
+    states.values[i, 1] = (1.0 if tube[3] else 0.5) * volume(tube[0], tube[5])
+    for j in range(len(states.stations)):
         for k in range(FIELDS):
             fields[k, j] = 0.0
-        fields[0, j], fields[1, j] = 1.0, stations[j]
+        fields[0, j], fields[1, j] = 1.0, states.stations[j]
         fields[3, j], fields[4, j] = atan(problem[H] + problem[D]), atan(problem[H] - problem[D])
+
+
+@kernel
+def record(states, i, found, tube, space, accuracy, out):
+    """What was found."""
+    states.status[i], states.paths[i] = found.status, found.path
+    if not valued(found.status):
+        return
+    base = tube[1][len(tube[1]) - 1]
+    for k in range(6):
+        share = 0.5 if not tube[3] and k < 4 else 1.0
+        states.values[i, k], states.bounds[i, k] = share * out[0, k], share * out[1, k]
+    states.stable[i] = 1 if found.unstable == 0 else 0
+    states.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << found.doublings, base, tube, found.load)
+    if len(states.stations) > 0:
+        drawn = draw(
+            states.stations, base, found.doublings, tube, found.load, space.fine, space.curve, space.work, accuracy,
+            states.profiles[i],
+        )  # fmt: skip
+        states.status[i] = found.status if drawn else INACCURATE
 
 
 @entry_point
@@ -134,66 +203,26 @@ def hold_many(
     stretch in the middle, multiplier. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2) the least
     pressure of the ``buckled`` branch and its bound.
     """
-    base = edges[len(edges) - 1]
-    half = len(places) == 2
-    middle = base if half else edges[np.argmin(np.abs(places - 0.5 * places[len(places) - 1]))]
+    base, whole, half = edges[len(edges) - 1], places[len(places) - 1], len(places) == 2
+    middle = base if half else edges[np.argmin(np.abs(places - 0.5 * whole))]
     varying = not half or course.shape[1] > 1
-    first_space, cells = workspace(base, varying)
-    first_tube = (course.copy(), edges, cells, half, middle, places)
-    out = np.zeros((4, nested.OUTPUTS))
+    first_room, out = make_room(base, half, varying), np.zeros((4, nested.OUTPUTS))
+    first_tube = course, edges, cells_for(base, varying, course), half, middle, places
+    states = States(values, bounds, status, stable, slack, paths, least, stations, profiles)
     for i in range(len(pressures)):
-        for k in range(6):
-            values[i, k], bounds[i, k] = np.nan, np.nan
-        for j in range(len(stations)):
-            for k in range(FIELDS):
-                profiles[i, k, j] = np.nan
-        slack[i], stable[i], paths[i] = 0, 0, FROM_REST
-        least[i, 0], least[i, 1] = np.nan, np.nan
+        blank(states, i)
         if status[i] != PENDING:
             continue
-        target = 0.5 * targets[i] if half else targets[i]
-        whole = places[len(places) - 1]
-        if (
-            pressures[i] == 0.0
-            and others[i] == 0.0
-            and target == (whole if kind == HELD_LENGTH else 0.0)
-            and not buckled
-        ):
-            rest = 0.5 * problem[LENGTH]
-            status[i], stable[i] = OK, 1
-            values[i, 0], values[i, 1], values[i, 4] = rest, rest, 1.0
-            values[i, 2], values[i, 3], values[i, 5] = 0.0, 0.0, 0.0
-            for k in range(6):
-                bounds[i, k] = 0.0
-            at_rest(stations, profiles[i], problem)
+        p, other, target = pressures[i], others[i], 0.5 * targets[i] if half else targets[i]
+        natural = target == (whole if kind == HELD_LENGTH else 0.0)
+        if p == 0.0 and other == 0.0 and natural and not buckled:
+            leave_at_rest(states, i, problem, first_tube)
             continue
-        tube, space, unstable = first_tube, first_space, 0
+        tube, room = first_tube, first_room
         if buckled:
-            status[i], unstable, doublings, bare = find_buckled(
-                problem, pressures[i], others[i], target, tube, accuracy, space, out, least[i]
-            )
-            now = (
-                bare[0],
-                bare[1],
-                wall_of(problem, walls),
-                bare[3],
-                bare[4],
-                bare[5],
-                bare[6],
-            )  # a load's type is one
+            found = find_buckled(problem, walls, p, other, target, tube, accuracy, room, out, least[i])
         else:
-            status[i], unstable, doublings, now, tube, space, paths[i] = find_on_some_mesh(
-                problem, walls, pressures[i], others[i], target, kind, course, first_tube, accuracy, first_space, out
+            found, tube, room = find_on_some_mesh(
+                problem, walls, p, other, target, kind, first_tube, accuracy, first_room, out
             )
-        if status[i] == OK or status[i] == INACCURATE:
-            for k in range(6):
-                share = 0.5 if not half and k < 4 else 1.0
-                values[i, k], bounds[i, k] = share * out[0, k], share * out[1, k]
-            stable[i] = 1 if unstable == 0 else 0
-            cells_of_base = tube[1][len(tube[1]) - 1]
-            slack[i] = slack_fibers(space[0][0], space[0][1], cells_of_base << doublings, cells_of_base, tube, now)
-            if len(stations) > 0:
-                drawn = draw(
-                    stations, cells_of_base, doublings, tube, now, space[0], space[3], space[1], accuracy, profiles[i]
-                )
-                status[i] = status[i] if drawn else INACCURATE
+        record(states, i, found, tube, room.space, accuracy, out)

@@ -13,10 +13,10 @@ from numba import config
 
 from ..interpret import at_once
 from .block import block_many
-from .find import HELD_LENGTH
 from .halves import one_by_one
 from .lagrangian import ROUNDING
 from .problem import FORCE, MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, TORQUE, YEOH, wall_columns
+from .sought import HELD_LENGTH
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 5  # solutions of one state, at most; two do nearly always

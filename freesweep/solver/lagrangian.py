@@ -4,13 +4,14 @@
 
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
 wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
-``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point; with the length h of a cell of a mesh behind, the
-density is that of the cell (:mod:`over_cell`); with what the cell before handed on behind that, what the next one may have
-is answered, too. The length of a tuple is known when code is made: none is for the others.
+``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point of a tube, six numbers are one of a body of
+revolution (:mod:`body`); with the length h of a cell of a mesh behind, the density is that of the cell (:mod:`over_cell`);
+with what the cell before handed on behind that, what the next one may have is answered, too. The length of a tuple is known
+when code is made: none is for the others.
 """
 
 from ..jit import kernel
-from . import membrane, over_cell, physical
+from . import body, membrane, over_cell, physical
 from .membrane import (  # noqa: F401
     DRAWN_IN,
     ENERGY_ROUNDING,
@@ -26,7 +27,13 @@ from .membrane import (  # noqa: F401
     scales,
     strain_energy,
 )
-from .mesh import behind, nothing_yet
+from .mesh import nothing_yet
+
+
+@kernel
+def alone(y, cell):
+    """A cell with its length behind, to which nothing was handed on."""
+    return (*cell, nothing_yet(0.0 * y))
 
 
 @kernel
@@ -37,15 +44,28 @@ def density(y, v, cell, load):
 
 @kernel
 def _density(y, v, cell, load, wall):
-    if len(cell) > 4:
-        if len(wall) == 1:
-            return (*membrane.density(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
-        return over_cell.density(y, v, cell, load)
     if len(wall) == 1:
-        return membrane.density(y, v, (cell[0], cell[1], cell[2]), load)
-    if len(cell) > 3:
-        return over_cell.density(y, v, behind(cell, cell[3], nothing_yet(0.0 * y)), load)[:6]
-    return physical.density(y, v, cell, load)
+        return _thin_density(y, v, cell, load)
+    if len(cell) == 3:
+        return physical.density(y, v, cell, load)
+    if len(cell) == 6:
+        return body.density(y, v, cell, load)
+    if len(cell) == 4:
+        return over_cell.density(y, v, alone(y, cell), load)[:6]
+    if len(cell) == 7:
+        return over_cell.density(y, v, alone(y, cell), load)[:6]
+    return over_cell.density(y, v, cell, load)
+
+
+@kernel
+def _thin_density(y, v, cell, load):
+    if len(cell) == 8:
+        return (*body.density(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load), cell[7])
+    if len(cell) > 5:
+        return body.density(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load)
+    if len(cell) == 5:
+        return (*membrane.density(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
+    return membrane.density(y, v, (cell[0], cell[1], cell[2]), load)
 
 
 @kernel
@@ -56,6 +76,8 @@ def uniform_tube(y, cell, load):
 
 @kernel
 def _uniform_tube(y, cell, load, wall):
+    if len(cell) > 3:
+        return body.uniform_tube(y, cell, load)
     if len(wall) == 1:
         return membrane.uniform_tube(y, cell, load)
     return physical.uniform_tube(y, cell, load)
@@ -69,15 +91,28 @@ def integrands(y, v, cell, load):
 
 @kernel
 def _integrands(y, v, cell, load, wall):
-    if len(cell) > 4:
-        if len(wall) == 1:
-            return (*membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
-        return over_cell.integrands(y, v, cell, load)
     if len(wall) == 1:
-        return membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load)
-    if len(cell) > 3:
-        return over_cell.integrands(y, v, behind(cell, cell[3], nothing_yet(0.0 * y)), load)[:5]
-    return physical.integrands(y, v, cell, load)
+        return _thin_integrands(y, v, cell, load)
+    if len(cell) == 3:
+        return physical.integrands(y, v, cell, load)
+    if len(cell) == 6:
+        return body.integrands(y, v, cell, load)
+    if len(cell) == 4:
+        return over_cell.integrands(y, v, alone(y, cell), load)[:5]
+    if len(cell) == 7:
+        return over_cell.integrands(y, v, alone(y, cell), load)[:5]
+    return over_cell.integrands(y, v, cell, load)
+
+
+@kernel
+def _thin_integrands(y, v, cell, load):
+    if len(cell) == 8:
+        return (*body.integrands(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load), cell[7])
+    if len(cell) > 5:
+        return body.integrands(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load)
+    if len(cell) == 5:
+        return (*membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
+    return membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load)
 
 
 @kernel
@@ -89,10 +124,19 @@ def conjugate(y, v, cell, load, direction):
 @kernel
 def _conjugate(y, v, cell, load, direction, wall):
     if len(wall) == 1:
-        return membrane.conjugate(y, v, (cell[0], cell[1], cell[2]), load, direction)
-    if len(cell) > 3:
-        return over_cell.conjugate(y, v, behind(cell, cell[3], nothing_yet(0.0 * y)), load, direction)
-    return physical.conjugate(y, v, cell, load, direction)
+        return _thin_conjugate(y, v, cell, load, direction)
+    if len(cell) == 3:
+        return physical.conjugate(y, v, cell, load, direction)
+    if len(cell) == 6:
+        return body.conjugate(y, v, cell, load, direction)
+    return over_cell.conjugate(y, v, alone(y, cell), load, direction)
+
+
+@kernel
+def _thin_conjugate(y, v, cell, load, direction):
+    if len(cell) > 4:
+        return body.conjugate(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load, direction)
+    return membrane.conjugate(y, v, (cell[0], cell[1], cell[2]), load, direction)
 
 
 @kernel
@@ -103,6 +147,8 @@ def at_slope(y, v, cell, load):
 
 @kernel
 def _at_slope(y, v, cell, load, wall):
+    if len(cell) > 3:
+        return body.at_slope(y, v, cell, load)
     if len(wall) == 1:
         return membrane.at_slope(y, v, cell, load)
     return physical.at_slope(y, v, cell, load)
@@ -116,6 +162,8 @@ def at_flux(y, flux, cell, load):
 
 @kernel
 def _at_flux(y, flux, cell, load, wall):
+    if len(cell) > 3:
+        return body.at_flux(y, flux, cell, load)
     if len(wall) == 1:
         return membrane.at_flux(y, flux, cell, load)
     return physical.at_flux(y, flux, cell, load)

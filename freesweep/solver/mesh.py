@@ -21,21 +21,43 @@ EASINGS = 8  # of a slope, whose room depends on it
 
 @kernel
 def cell_at(cells, j):
-    """What varies along the tube, in cell j: a row of three numbers; a single row holds for all cells."""
+    """What varies along the tube, in cell j: a row of three numbers, of a body two such rows; a single one holds for all."""
     k = min(j, len(cells) - 1)
-    return cells[k, 0], cells[k, 1], cells[k, 2]
+    if cells.ndim == 2:
+        return cells[k, 0], cells[k, 1], cells[k, 2]
+    return cells[k, 0, 0], cells[k, 0, 1], cells[k, 0, 2], cells[k, 1, 0], cells[k, 1, 1], cells[k, 1, 2]
 
 
 @kernel
 def of_length(cell, h):
     """The cell, with its length behind."""
-    return cell[0], cell[1], cell[2], h
+    if len(cell) == 3:
+        return cell[0], cell[1], cell[2], h
+    return cell[0], cell[1], cell[2], cell[3], cell[4], cell[5], h
+
+
+@kernel
+def rise(y, v, cell):
+    """dr/dx of the deformed meridian."""
+    if len(cell) == 3:
+        return v
+    return cell[4] * y + cell[3] * v
+
+
+@kernel
+def level(y, cell):
+    """``(v, radius)``: the slope v at which the deformed meridian runs along the axis; dr/dx grows by the radius times v."""
+    if len(cell) == 3:
+        return 0.0, 1.0
+    return -cell[4] * y / cell[3], cell[3]
 
 
 @kernel
 def behind(cell, h, near):
     """The cell, with its length and what the cell before it handed on."""
-    return cell[0], cell[1], cell[2], h, near
+    if len(cell) == 3:
+        return cell[0], cell[1], cell[2], h, near
+    return cell[0], cell[1], cell[2], cell[3], cell[4], cell[5], h, near
 
 
 @kernel
@@ -47,9 +69,11 @@ def nothing_yet(zero):
 @kernel
 def largest(cells):
     """The largest sizes of what varies along the tube."""
-    a, b, c = abs(cells[0, 0]), abs(cells[0, 1]), abs(cells[0, 2])
+    one = cell_at(cells, 0)
+    a, b, c = abs(one[0]), abs(one[1]), abs(one[2])
     for j in range(1, len(cells)):
-        a, b, c = max(a, abs(cells[j, 0])), max(b, abs(cells[j, 1])), max(c, abs(cells[j, 2]))
+        one = cell_at(cells, j)
+        a, b, c = max(a, abs(one[0])), max(b, abs(one[1])), max(c, abs(one[2]))
     return a, b, c
 
 
@@ -69,9 +93,10 @@ def slants(integrands, x, y, n, cells, load, sine, cosine):
     """Sine and cosine of the meridian's angle in each cell; the first of ``integrands`` is the axial length per length."""
     for j in range(n):
         v = (y[j + 1] - y[j]) / (x[j + 1] - x[j])
-        s = integrands(0.5 * (y[j] + y[j + 1]), v, cell_at(cells, j), load)[0]
-        i = 1.0 / sqrt(s * s + v * v)
-        sine[j], cosine[j] = v * i, s * i
+        middle, cell = 0.5 * (y[j] + y[j + 1]), cell_at(cells, j)
+        s, up = integrands(middle, v, cell, load)[0], rise(middle, v, cell)
+        i = 1.0 / sqrt(s * s + up * up)
+        sine[j], cosine[j] = up * i, s * i
 
 
 @kernel
@@ -101,11 +126,13 @@ def ease(integrands, x, y, n, cosine, cells, load):
     at = y[0]
     for j in range(n):
         h = x[j + 1] - x[j]
-        rise, v = (y[j + 1] - at) / h, 0.0
+        wanted, v, cell = (y[j + 1] - at) / h, 0.0, cell_at(cells, j)
         steepest = sqrt(1.0 - 0.25 * cosine[j] * cosine[j])
         for _ in range(EASINGS):
-            most = steepest * integrands(at + 0.5 * h * v, 0.0, cell_at(cells, j), load)[0]
-            v = min(max(rise, -most), most)
+            here = at + 0.5 * h * v
+            flat, radius = level(here, cell)
+            most = steepest * integrands(here, flat, cell, load)[0] / radius
+            v = min(max(wanted, flat - most), flat + most)
         at += h * v
         y[j + 1] = at
 

@@ -3,10 +3,11 @@
 import numpy as np
 
 from ..jit import kernel
-from . import finest, held, lagrangian, neck_shape, nested, quadrature
+from . import finest, lagrangian, neck_shape, nested, quadrature
+from .dense import eliminate
+from .held import loaded
 from .neck_shape import FOLDS, MIDDLE, MU, NECK_FOLDS
 from .status import INACCURATE, NOT_CONVERGED, OK
-from .uniform import between
 
 NEAR = 0.05  # relative difference of the first middle from the mesh's
 NODES, MOST_NODES = 320, 6144  # along body and neck: on the way, and at its end
@@ -23,26 +24,6 @@ STRAY = 0.03  # of y_m from its linear prediction: more is another branch
 def copy(numbers, out):
     for k in range(len(numbers)):
         out[k] = numbers[k]
-
-
-@kernel
-def eliminate(matrix, right):
-    """Gauss's elimination with the largest pivot; the solution is left in ``right``."""
-    n = len(right)
-    for k in range(n):
-        best = k + np.argmax(np.abs(matrix[k:, k]))
-        for j in range(n):
-            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-        right[k], right[best] = right[best], right[k]
-        for i in range(k + 1, n):
-            share = matrix[i, k] / matrix[k, k]
-            for j in range(k, n):
-                matrix[i, j] -= share * matrix[k, j]
-            right[i] -= share * right[k]
-    for k in range(n - 1, -1, -1):
-        for j in range(k + 1, n):
-            right[k] -= matrix[k, j] * right[j]
-        right[k] /= matrix[k, k]
 
 
 @kernel
@@ -64,7 +45,7 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
             neck_shape.misses(cell, load, direction, target, half, there, free, nodes, curve, row, other, moved)
             for i in range(3):
                 matrix[i, j] = (moved[i] - miss[i]) / step
-        eliminate(matrix, miss)
+        eliminate(matrix, miss.reshape((3, 1)))
         largest = 1.0
         for j in range(3):
             k = free[j]
@@ -78,15 +59,17 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
 
 
 @kernel
-def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve, row, other, now):
-    """The numbers ``now`` at load ``end`` with ``target`` held; arguments as of :func:`solve`. Whether they were found."""
-    load = between(start, end, t)
-    if not neck_shape.guess_of(cell, held.loaded(load, direction, mu), x, y, now):
+def follow(cell, x, y, mu, path, t, half, curve, row, other, now):
+    """The numbers ``now`` at the end of the path; arguments as of :func:`solve`. Whether they were found."""
+    load, direction = loaded(path.origin, path.direction, t), path.held.unit
+    if not neck_shape.guess_of(cell, loaded(load, direction, mu), x, y, now):
         return False
     now[MU] = mu
     middle, last, guess, t_last, step = now[MIDDLE], np.empty(5), np.empty(5), t, FIRST_STEP * t
     free = neck_shape.unknowns(cell, load, direction, now)
-    if not fit(cell, load, direction, first + t * (target - first), half, now, free, NODES, CLOSE, curve, row, other):
+    if not fit(
+        cell, load, direction, path.held.first + t * path.held.change, half, now, free, NODES, CLOSE, curve, row, other
+    ):
         return False
     if not abs(now[MIDDLE] / middle - 1.0) < NEAR:
         return False
@@ -98,8 +81,8 @@ def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve,
         share = (ahead - t) / (t - t_last) if t > t_last else 0.0
         for k in range(5):
             guess[k] = now[k] + share * (now[k] - last[k])
-        expected, load = guess[MIDDLE], between(start, end, ahead)
-        free, held_there = neck_shape.unknowns(cell, load, direction, now), first + ahead * (target - first)
+        expected, load = guess[MIDDLE], loaded(path.origin, path.direction, ahead)
+        free, held_there = neck_shape.unknowns(cell, load, direction, now), path.held.first + ahead * path.held.change
         if (
             fit(cell, load, direction, held_there, half, guess, free, NODES, CLOSE, curve, row, other)
             and abs(guess[MIDDLE] / expected - 1.0) < STRAY
@@ -116,16 +99,20 @@ def follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve,
 
 
 @kernel
-def solve(
-    cell, tube, x, y, mu, start, end, t, first, target, direction, scale, accuracy, base, fine, curve, table, out
-):
-    """The state at load ``end`` with the integral held at ``target``. The way there begins at ``start`` with ``first`` held;
-    at its share ``t`` a mesh has the necked shape ``x``, ``y`` and the multiplier ``mu``.
+def solve(cell, tube, x, y, mu, path, t, scale, accuracy, base, fine, curve, table, out):
+    """The state at the end of a path; at its share ``t`` a mesh has the necked shape ``x``, ``y`` and the multiplier ``mu``.
 
-    Returns ``(status, doublings, load)``, and what :func:`nested.solve` leaves, with mu in units of ``direction/scale``.
+    Returns ``(status, doublings, load)``, and what :func:`nested.solve` leaves, with mu in units of the held ``unit/scale``.
     """
+    if len(cell) > 3:  # a body has no first integral
+        return NOT_CONVERGED, 0, loaded(path.origin, path.direction, 1.0)
     half, now, spare = tube[5][1], np.empty(5), table[quadrature.ROWS]
-    if not follow(cell, x, y, mu, start, end, t, first, target, direction, half, curve, table[0], spare, now):
+    end, direction, target = (
+        loaded(path.origin, path.direction, 1.0),
+        path.held.unit,
+        path.held.first + path.held.change,
+    )
+    if not follow(cell, x, y, mu, path, t, half, curve, table[0], spare, now):
         return NOT_CONVERGED, 0, end
     free = neck_shape.unknowns(cell, end, direction, now)
     doublings = nested.MAX_DOUBLINGS
@@ -138,8 +125,8 @@ def solve(
             return NOT_CONVERGED, 0, end
         if k >= quadrature.ROWS - finest.MESHES:
             lay(curve, count, half, *finest.mesh_of(quadrature.ROWS - 1 - k, nodes // 2, fine))
-    loaded, last = held.loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
-    out[2], out[3] = lagrangian.scales(last, cell, loaded, half, nested.SMALLEST_TOLERANCE)
+    there, last = loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
+    out[2], out[3] = lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE)
     unit = max(abs(direction[4]), abs(direction[5]))
     out[2, nested.MULTIPLIER] /= max(unit, 1.0)
     out[3, nested.MULTIPLIER] /= unit
@@ -149,7 +136,7 @@ def solve(
     )
     out[0, nested.MULTIPLIER] *= scale
     out[1, nested.MULTIPLIER] *= scale
-    return (OK if largest <= accuracy else INACCURATE), doublings, loaded
+    return (OK if largest <= accuracy else INACCURATE), doublings, there
 
 
 @kernel

@@ -55,6 +55,13 @@ def solve(tube, near, load, base, accuracy, space):
     """The state whose middle is about ``near``, as :func:`nested.solve` leaves it: ``(status, doublings)`` of ``base``
     cells. NOT_CONVERGED where there is none.
     """
+    return _solve(tube[0], tube, near, load, base, accuracy, space)
+
+
+@kernel
+def _solve(course, tube, near, load, base, accuracy, space):
+    if course.ndim > 4:  # a body has no first integral
+        return NOT_CONVERGED, 0
     cell, half, curve, table, out = cell_along(tube, 0.0), tube[5][1], space.curve, space.table, space.out
     u, top, rate = beside.stationary(cell, load, near), near, 0.0
     layered = u == u

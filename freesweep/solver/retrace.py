@@ -30,6 +30,13 @@ def retrace(space, tube, origin, before, load, accuracy):
     """The state at ``load``, from one at ``before`` whose stretch in the middle is ``origin``, left as :func:`nested.solve`
     leaves it: ``(status, doublings, share of the way at a fold, its bound)``.
     """
+    return _retrace(tube[0], space, tube, origin, before, load, accuracy)
+
+
+@kernel
+def _retrace(course, space, tube, origin, before, load, accuracy):
+    if course.ndim > 4:  # a body has no first integral
+        return NOT_CONVERGED, 0, np.nan, np.nan
     x, y, out = space.x, space.y, space.out
     cell, half = cell_along(tube, 0.0), tube[5][1]
     nodes, turned, doubt = meridian.NODES, np.nan, np.inf

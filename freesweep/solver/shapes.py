@@ -1,19 +1,10 @@
-"""Whether two shapes are one: on the same nodes, or on meshes of their own."""
+"""Whether two shapes, each on a mesh of its own, are one."""
 
 import numpy as np
 
 from ..jit import kernel
 
 MESH_CHANGE = 0.03  # relative difference of a shape from one mesh to the next
-
-
-@kernel
-def largest_drift(y, other):
-    """Largest relative difference of two shapes on the same nodes."""
-    largest = 0.0
-    for i in range(len(y)):
-        largest = max(largest, abs(y[i] - other[i]) / other[i])
-    return largest
 
 
 @kernel

@@ -5,16 +5,18 @@ was solved.
 from ..jit import kernel
 from . import held, lagrangian, newton
 from .course import fill
+from .mesh import cell_at, level
 
 ROUNDING = 4e-15  # of the sum over a fine mesh
 PUSHED = 0.02  # share of its largest part to which the resultant p y^2 + f has fallen where a branch ends in it
 
 
 @kernel
-def pushed(y, load):
-    """Whether the meridional resultant p y^2 + f has all but vanished somewhere."""
+def pushed(y, cells, load):
+    """Whether the meridional resultant p r^2 + f has all but vanished somewhere."""
     for i in range(len(y)):
-        part = load[3] * y[i] * y[i]
+        r = y[i] * level(y[i], cell_at(cells, i))[1]
+        part = load[3] * r * r
         if part + load[4] < PUSHED * max(abs(part), abs(load[4])):
             return True
     return False

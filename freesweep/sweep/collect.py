@@ -42,7 +42,9 @@ def groups(sweep) -> list:
         (FREE, _locked, ["locked_strain_energy"], ["locked_status"]),
     ]
     wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
-    if not {"alpha", "beta"} & set(sweep.profiles) and not sweep.model.is_loose:  # bars may push, threads do not
+    if (
+        not {"alpha", "beta", "radius"} & set(sweep.profiles) and not sweep.model.is_loose
+    ):  # bars may push, threads do not
         wanted += [(FREE, _ideal, [name], [f"{name}_status"]) for name in ideal.NAMES]
     return [_group(sweep, *each) for each in wanted]
 
@@ -76,14 +78,16 @@ def _outputs(table, records, at, rows):
     states = records.states(rows[found.status == status.OK])
     codes, solved, valued = _codes(found, states)
     design = {name: column[:, None] for name, column in table.grid.columns(at).items()}
-    scales = output_scales(design)
+    scales, inside = output_scales(design), wall_volume_inside(design)
+    if body := table.grid.surface_of_bodies(design):
+        scales["mid_radius"], inside = body
     arrays = {"status": codes}
     for k, name in enumerate(OUTPUTS):
         value = _spread(states["values"][..., k], solved, valued, np.nan) * scales[name]
         if name == "rotation":
             value = np.where(found.mirrored[:, None], -value, value) + 0.0  # + 0.0: no negative zeros
         if name == "volume":
-            value = value - wall_volume_inside(design)
+            value = value - inside
         bound = _spread(states["bounds"][..., k].astype(float), solved, valued, np.nan) * scales[name]
         arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
     slack = _spread(states["slack"], solved, valued, 0)

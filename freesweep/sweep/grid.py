@@ -7,7 +7,7 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..profiles import ProfileError, as_profile, follow
-from ..tube_model import fiber_place
+from ..tube_model import SHARES, fiber_place
 
 
 class Grid:
@@ -33,8 +33,24 @@ class Grid:
             wall = design["wall"]
             if "wall" in self.sweep.profiles:
                 wall = as_profile(self.sweep.profiles["wall"]).samples().min()
-            design["fiber_radius"] = fiber_place(self.sweep.model.fiber_radius, design["radius"], wall)
+            inner = self._radius.at(0.0)[0] if self._radius else design["radius"]
+            design["fiber_radius"] = fiber_place(self.sweep.model.fiber_radius, inner, wall)
         return design
+
+    @property
+    def _radius(self):
+        """The profile of the inner radius of bodies of revolution, None of tubes."""
+        return as_profile(self.sweep.profiles["radius"]) if "radius" in self.sweep.profiles else None
+
+    def surface_of_bodies(self, design):
+        """Of bodies of revolution, whose design has the radius of the fibers at x = 0: ``(that at half length [m], volume
+        between cavity and fibers [m3])``; None of tubes.
+        """
+        if self._radius is None:
+            return None
+        inside = design["fiber_radius"] - self._radius.at(0.0)[0]
+        mean = np.trapezoid(self._radius.values, self._radius.x)
+        return self._radius.at(0.5)[0] + inside, np.pi * design["length"] * inside * (2.0 * mean + inside)
 
     def within(self, other, at):
         """Where the designs ``at`` of this grid lie in ``other``, which has all its dimensions: first along the others."""
@@ -66,6 +82,8 @@ def tubes(grid, at):
     for design in designs.tolist():
         numbers = dict(zip(names, design)) | profiles
         numbers["fiber_surface"] = numbers.pop("fiber_radius")
+        model = grid.sweep.model
+        numbers |= {"fiber_share": SHARES[model.fiber_radius], "is_thick": model.is_thick}
         try:
             found.append(follow(SimpleNamespace(**numbers), grid.sweep.accuracy))
         except ProfileError:

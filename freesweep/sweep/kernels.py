@@ -151,5 +151,8 @@ def _typical(kind, constants, sweep):
     if sweep.profiles:
         halves = np.zeros((2, 1, 3, 4))
         halves[:, 0, :, 0] = row[0, :3]
+        if "radius" in sweep.profiles:
+            halves = np.stack([halves, np.zeros_like(halves)], axis=2)
+            halves[:, 0, 1, 0, 0] = 1.0
         courses = [((halves, np.arange(3) * BASE_CELLS, np.linspace(0.0, TYPICAL["length"], 3)), 0.0)]
     return Job(kind, row, target, np.array([0, 1]), np.array([PRESSURE]), courses, np.zeros(1, np.int64))

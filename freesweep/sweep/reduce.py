@@ -47,7 +47,7 @@ def reduced(design, sweep, kind) -> Reduced:
     rows[:, : problems.shape[1]] = problems
     rows[:, TARGET] = _target(design, kind)
     if sweep.profiles:
-        rows[:, SIZE] = design["fiber_radius"] if "wall" in sweep.profiles else 0.0
+        rows[:, SIZE] = design["fiber_radius"] if {"wall", "radius"} & set(sweep.profiles) else 0.0
         return Reduced(known_status(design, sweep.profiles), rows + 0.0, zeros > 0.0, zeros > 0.0)
     odd = [H, D, TARGET if kind == "blocked_torque" else TORQUE]
     return Reduced(known_status(design, {}), *canonical(rows, odd))
@@ -75,7 +75,8 @@ def known_status(design, profiles) -> np.ndarray:
         wall = as_profile(profiles["wall"]).samples().min()
     fibers, outer = design["fiber_radius"], design["radius"] + wall
     invalid = (apart < SMALLEST_DIFFERENCE) | (largest >= LARGEST_ANGLE)
-    invalid |= (fibers < design["radius"]) | (fibers > outer * (1.0 + 1e-12))
+    if "radius" not in profiles:  # of bodies it is given by a word
+        invalid |= (fibers < design["radius"]) | (fibers > outer * (1.0 + 1e-12))
     return np.where(apart == 0.0, DEGENERATE, np.where(invalid, INVALID, OK))
 
 

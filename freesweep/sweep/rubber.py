@@ -8,6 +8,7 @@ from ..atlas.schema import YEOH
 from ..elastomer import convex_to
 from ..faults import ActuatorError
 from ..material_library import material
+from ..profiles import as_profile
 from ..strain import first_invariant, largest_stretch
 from ..tube_model import fiber_surface, model_of
 
@@ -99,11 +100,23 @@ def _slices(dataset):
 
 def _strained(part, measure):
     """A ``measure`` of the strain at half length, NaN where there is no state."""
-    fibers = fiber_surface(part, model_of(part.attrs))
-    arrays = _broadcast(part["mid_radius"] / fibers, part["alpha"], part["beta"], part["fiber_extension"])
+    own = {name: _middle(part, name) for name in ("alpha", "beta", "radius", "wall", "fiber_extension")}
+    own |= {"fiber_radius": part["fiber_radius"]} if "fiber_radius" in part.coords else {}
+    fibers = fiber_surface(own, model_of(part.attrs))
+    arrays = _broadcast(part["mid_radius"] / fibers, own["alpha"], own["beta"], own["fiber_extension"])
     stretch, alpha, beta, extension = (array.values for array in arrays)
     with np.errstate(invalid="ignore"):
         return arrays[0].copy(data=measure(alpha, beta, stretch, extension, part.attrs["energy"]))
+
+
+def _middle(part, name):
+    """A parameter of the tubes; of a profile the value at half length, of a wall where it is thinnest, as fibers lie."""
+    import xarray as xr
+
+    if f"profile_{name}" not in part.attrs:
+        return part[name]
+    profile = as_profile(np.reshape(part.attrs[f"profile_{name}"], (-1, 2)).tolist())
+    return xr.DataArray(profile.samples().min() if name == "wall" else profile.at(0.5)[0])
 
 
 def _broadcast(*arrays):

@@ -2,8 +2,8 @@
 
     title = "What this sweep is for"
     [actuator]                  # fixed values of the design, with units; plain numbers are SI and degrees
-    wall = "1.59 mm"            # alpha, beta, wall may vary along the tube: [[0, "30 deg"], [0.5, "40 deg"], [1, "30 deg"]],
-                                # pairs of x/l and value; a repeated x/l is a jump
+    wall = "1.59 mm"            # alpha, beta, wall, radius may vary along the tube: [[0, "30 deg"], [0.5, "40 deg"],
+                                # [1, "30 deg"]], pairs of x/l and value; a repeated x/l is a jump, but of the radius
     c10 = "0.17 MPa"            # and c01, or c20 and c30 of a Yeoh rubber; or material = "dragon-skin-30"
     energy = "full"             # or "principal"
     model = "source"            # or "physical": thick wall, loose fibers outside; or part by part: wall_model, fibers and
@@ -46,7 +46,7 @@ from .solver_table import BUDGET, MAX_POINTS, read_accuracy, read_blocked, read_
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
-VARYING = ("alpha", "beta", "wall")  # may be profiles along the tube
+VARYING = ("alpha", "beta", "wall", "radius")  # may be profiles along the tube
 WORDS = ("energy", "model", "wall_model", "fibers")  # of [actuator]
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
 
@@ -236,6 +236,12 @@ def _check_profiles(faults, profiles, fixed, given):
     for name in profiles:
         if given[name] != f"actuator.{name}":
             faults.add(given[name], f"actuator.{name} is a profile already; give one of the two")
+    if "radius" in profiles:
+        x, values = np.array(profiles["radius"]).T
+        if np.any((np.diff(x) == 0.0) & (np.diff(values) != 0.0)):
+            faults.add("actuator.radius", "it jumps; a body's radius may bend at a place, but not jump")
+        if "fiber_radius" in given:
+            faults.add(given["fiber_radius"], f"the radius varies; choose one of {', '.join(FIBER_PLACES)}")
     angles = [profiles.get(name, fixed.get(name)) for name in ("alpha", "beta")]
     if None in angles or not any(name in profiles for name in ("alpha", "beta")):
         return

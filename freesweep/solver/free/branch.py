@@ -4,7 +4,8 @@ import numpy as np
 
 from ...jit import kernel
 from .. import guide, lagrangian, quadrature
-from ..continuation import CHANGE, FIRST_STEP, FOLLOWED, advance, between, is_flat, is_stable, last_alike
+from ..bordered import FOLLOWED
+from ..continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
 from ..course import fill
 from ..held import loaded
 from ..retrace import is_upright
@@ -105,21 +106,32 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
     for _ in range(MOST_STEPS):
         own = fill(course, edges, track.x, n, n, cells)
         status, negative, mu, tangent_mu, made, step = advance(
-            lagrangian.density, track, n, own, path, here[0], here[1], step, space.work
+            lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], step, space.work
         )
         ahead = (mu, tangent_mu, made)
         lost = status != FOLLOWED
         if lost and not is_flat(here[0], here[1], path):
-            gone = pushed(track.y, loaded(path.origin, path.direction, here[0]))
+            gone = pushed(track.y, own, loaded(path.origin, path.direction, here[0]))
             return (COMPRESSED if gone else NOT_CONVERGED), here, ahead
         if lost or not is_stable(negative, tangent_mu, sense):
             if lost:  # no step leads round so sharp a fold: it lies here
                 ahead = (here[0], here[1], 0.0)
-                for i in range(n + 1):
+                for i in range(len(track.y)):
                     track.next_y[i], track.next_tangent[i] = track.y[i], track.tangent[i]
             else:
                 ahead = last_alike(
-                    lagrangian.density, track, n, own, path, here[0], here[1], made, sense, True, space.work
+                    lagrangian.density,
+                    lagrangian.conjugate,
+                    track,
+                    n,
+                    own,
+                    path,
+                    here[0],
+                    here[1],
+                    made,
+                    sense,
+                    True,
+                    space.work,
                 )
             passed = (ahead[0] - far) * sense >= 0.0
             if sense < 0.0 or (passed and len(rows.pressures) == 0):  # a limit pressure is one of rising pressures

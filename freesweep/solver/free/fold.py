@@ -8,21 +8,10 @@ import numpy as np
 
 from ...jit import kernel
 from .. import lagrangian, nested
-from ..continuation import (
-    CHANGE,
-    FIRST_STEP,
-    FOLLOWED,
-    Track,
-    advance,
-    correct,
-    is_flat,
-    is_stable,
-    last_alike,
-    make_unit,
-    size_of,
-)
+from ..bordered import FOLLOWED, correct
+from ..continuation import CHANGE, FIRST_STEP, advance, is_flat, is_stable, last_alike, make_unit
 from ..course import fill
-from ..held import loaded
+from ..path import Track, load_at, size_of
 from ..wall import is_loose
 
 COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
@@ -36,9 +25,10 @@ ROUNDING = 4e-9  # of its load, relative: where a load is flat, many shapes are 
 def nodes_of(track, n, free):
     """The first n + 1 nodes of a track that has room for more."""
     m = n + 1
+    state = m + len(track.y) - len(track.x)
     return Track(
-        track.x[:m], track.y[:m], track.tangent[:m], track.next_y[:m], track.next_tangent[:m], track.normal[:m],
-        track.spare[:m], track.other[:m], n if free else n - 1,
+        track.x[:m], track.y[:state], track.tangent[:state], track.next_y[:state], track.next_tangent[:state],
+        track.normal[:m], track.spare[:m], track.other[:m], n if free else n - 1,
     )  # fmt: skip
 
 
@@ -61,7 +51,17 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
     for i in range(n + 1):
         track.normal[i] = track.tangent[i] / (n * track.y[i] * track.y[i])
     status, negative, mu, tangent_mu = correct(
-        lagrangian.density, track, track.y, mu, n, cells, path, tangent_mu / (unit * unit), track.tangent, work
+        lagrangian.density,
+        lagrangian.conjugate,
+        track,
+        track.y,
+        mu,
+        n,
+        cells,
+        path,
+        tangent_mu / (unit * unit),
+        track.tangent,
+        work,
     )
     if status != FOLLOWED:
         return np.nan, 0.0
@@ -69,20 +69,31 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
     stable = is_stable(negative, tangent_mu, sense)
     if not stable:  # turn round
         sense, tangent_mu = -sense, -tangent_mu
-        for i in range(n + 1):
+        for i in range(len(track.tangent)):
             track.tangent[i] = -track.tangent[i]
     for _ in range(STEPS):
         if status != FOLLOWED:
             return (mu if is_flat(mu, tangent_mu, path) else np.nan), CHANGE * abs(tangent_mu)
         status, negative, next_mu, next_tangent_mu, made, step = advance(
-            lagrangian.density, track, n, cells, path, mu, tangent_mu, step, work
+            lagrangian.density, lagrangian.conjugate, track, n, cells, path, mu, tangent_mu, step, work
         )
         if is_stable(negative, next_tangent_mu, sense) != stable:
             found, _, _ = last_alike(
-                lagrangian.density, track, n, cells, path, mu, tangent_mu, made, sense, stable, work
+                lagrangian.density,
+                lagrangian.conjugate,
+                track,
+                n,
+                cells,
+                path,
+                mu,
+                tangent_mu,
+                made,
+                sense,
+                stable,
+                work,
             )
             return found, 0.0
-        for i in range(n + 1):
+        for i in range(len(track.y)):
             track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
         mu, tangent_mu = next_mu, make_unit(track, n, next_mu, next_tangent_mu, path)
     return np.nan, 0.0
@@ -97,7 +108,7 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     course, edges, cells, free, _, _ = tube
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.next_y[i]
-    now = loaded(path.origin, path.direction, ahead[0])
+    now = load_at(path, track.next_y, n, ahead[0])
     if not nested.adapt(lagrangian.density, lagrangian.integrands, space.x, space.y, n, tube, now, space.work):
         for i in range(n + 1):
             space.x[i] = track.x[i]
@@ -112,6 +123,8 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
             nested.split(space.x, n, edges, COUNTS[k] // 2, own.x)
         carry(track.x, track.y, own.x, own.y)
         carry(track.x, track.tangent, own.x, own.tangent)
+        for i in range(len(track.y) - n - 1):
+            own.y[count + 1 + i], own.tangent[count + 1 + i] = track.y[n + 1 + i], track.tangent[n + 1 + i]
         filled = fill(course, edges, own.x, count, n, cells)
         loads[k], missed = edge(own, count, filled, path, here[0], here[1], sense, space.work)
         doubt = max(doubt, missed)

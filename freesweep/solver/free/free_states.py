@@ -10,8 +10,10 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from .. import guide, lagrangian, nested, quadrature
-from ..continuation import FOLLOWED, Path
+from ..bordered import FOLLOWED
+from ..course import make_cells, of_problems, seat, volume
 from ..held import loaded
+from ..path import NOTHING, Path
 from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
 from ..retrace import retrace
 from ..shapes import differ, extremes
@@ -45,7 +47,8 @@ def settle(problem, tube, rows):
             rows.status[i] = OK
             for k in range(5):
                 rows.values[i, k], rows.bounds[i, k] = 0.0, 0.0
-            rows.values[i, 0], rows.values[i, 1], rows.values[i, 4] = half, half, 1.0
+            rows.values[i, 0], rows.values[i, 4] = half, 1.0
+            rows.values[i, 1] = (1.0 if tube[3] else 0.5) * volume(tube[0], tube[5])
         elif not p + f > 0.0:
             rows.status[i] = COMPRESSED
 
@@ -111,7 +114,7 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
             status, doublings = cold(space, tube, load, accuracy)
             if status == NOT_CONVERGED:
                 rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0, is_loose(load[2]))
+                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0, is_loose(load[2]), NOTHING)
                 found, _, middle = settle_loads(way, track, roomy, space, tube, rows, limit, accuracy)
                 if found == OK:
                     for k in range(len(space.x)):
@@ -175,7 +178,7 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
     rubber, wall = rubber_of(problem), wall_of(problem, walls)
     rest, pressure = (1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     if f == 0.0 and m == 0.0 and gamma == 1.0:
-        path = Path(rest, pressure, 0.0, is_loose(wall))
+        path = Path(rest, pressure, 0.0, is_loose(wall), NOTHING)
         status, mu, tangent_mu = begin(track, space, tube, path)
         if status == FOLLOWED:
             first_states(path, mu, tube, space, rows, accuracy)
@@ -187,8 +190,11 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
             )
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
-    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0, is_loose(wall))
-    path, n = Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0), is_loose(wall)), len(track.x) - 1
+    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0, is_loose(wall), NOTHING)
+    path, n = (
+        Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0), is_loose(wall), NOTHING),
+        len(track.x) - 1,
+    )
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
     if status == NOT_CONVERGED and tube[3]:
@@ -238,7 +244,7 @@ def follow_many(
     for k in range(len(places)):
         if abs(places[k] - half) < 1e-9 * half:
             middle = edges[k]
-    own_course, own_places = (np.zeros((1, 1, 3, 4)), np.zeros(2)) if same else (course, places)
+    own_course, own_places = (of_problems(course), np.zeros(2)) if same else (course, places)
     for k in range(len(problems)):
         own = slice(first[k], first[k + 1])
         limits[k, 0], limits[k, 1] = np.nan, np.nan
@@ -246,13 +252,12 @@ def follow_many(
             continue
         if same:
             own_places[1] = 0.5 * problems[k, LENGTH]
-            for i in range(3):
-                own_course[0, 0, i, 0] = problems[k, i]
+            seat(own_course, problems[k])
         for factor in FINER:
             base = factor * edges[len(edges) - 1]
             space = make_space(base, 1 if same else guide.PLACES)
-            track, roomy = make_track(base, same), make_track(FINEST * base, same)
-            cells = np.zeros((1 if same else len(space.fine[0]), 3))
+            track, roomy = make_track(base, same, False), make_track(FINEST * base, same, False)
+            cells = make_cells(course, 1 if same else len(space.fine[0]))
             tube = (own_course, factor * edges, cells, same, factor * middle, own_places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
             walk(problems[k], walls, settled[k], tube, track, roomy, space, rows, limits[k], accuracy)

@@ -2,9 +2,10 @@
 
 from ...jit import kernel
 from .. import lagrangian, nested
-from ..continuation import FOLLOWED, correct, make_unit, size_of
+from ..bordered import FOLLOWED, correct
+from ..continuation import make_unit
 from ..course import fill
-from ..held import loaded
+from ..path import load_at, size_of
 
 GRADINGS = 3  # of the first mesh
 
@@ -17,7 +18,7 @@ def regrade(track, tube, path, mu, work):
     n = len(track.x) - 1
     for i in range(n + 1):
         track.spare[i], track.other[i] = track.x[i], track.y[i]
-    now = loaded(path.origin, path.direction, mu)
+    now = load_at(path, track.y, n, mu)
     if nested.adapt(lagrangian.density, lagrangian.integrands, track.x, track.y, n, tube, now, work):
         return True
     for i in range(n + 1):
@@ -38,7 +39,7 @@ def stand(track, tube, path, mu, sense, gradings, work):
     while True:
         own = fill(course, edges, track.x, n, n, cells)
         status, negative, _, tangent_mu = correct(
-            lagrangian.density, track, track.y, mu, n, own, path, sense, track.tangent, work
+            lagrangian.density, lagrangian.conjugate, track, track.y, mu, n, own, path, sense, track.tangent, work
         )
         if status != FOLLOWED or made == gradings or not regrade(track, tube, path, mu, work):
             return status, negative, make_unit(track, n, mu, tangent_mu, path)
@@ -52,7 +53,7 @@ def take(track, tube, path, mu, tangent_mu, work):
     """
     n = len(track.x) - 1
     course, edges, cells, _, _, _ = tube
-    for i in range(n + 1):
+    for i in range(len(track.y)):
         track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
     tangent_mu = make_unit(track, n, mu, tangent_mu, path)
     if not regrade(track, tube, path, mu, work):
@@ -64,15 +65,27 @@ def take(track, tube, path, mu, tangent_mu, work):
         share = (track.x[i] - track.spare[j]) / (track.spare[j + 1] - track.spare[j])
         slope = track.tangent[j] + share * (track.tangent[j + 1] - track.tangent[j])
         track.next_y[i], track.normal[i] = track.y[i], slope / (n * track.y[i] * track.y[i])
+    for i in range(n + 1, len(track.y)):
+        track.next_y[i] = track.y[i]
     unit = size_of(mu, path)
     own = fill(course, edges, track.x, n, n, cells)
     status, _, new_mu, new_tangent_mu = correct(
-        lagrangian.density, track, track.next_y, mu, n, own, path, tangent_mu / (unit * unit), track.next_tangent, work
+        lagrangian.density,
+        lagrangian.conjugate,
+        track,
+        track.next_y,
+        mu,
+        n,
+        own,
+        path,
+        tangent_mu / (unit * unit),
+        track.next_tangent,
+        work,
     )
     if status != FOLLOWED:
         for i in range(n + 1):
             track.x[i], track.y[i] = track.spare[i], track.other[i]
         return mu, tangent_mu
-    for i in range(n + 1):
+    for i in range(len(track.y)):
         track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
     return new_mu, make_unit(track, n, new_mu, new_tangent_mu, path)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...jit import kernel
 from .. import nested
-from ..continuation import Track
+from ..path import Track
 
 
 class Space(NamedTuple):
@@ -47,9 +47,9 @@ def make_space(base, places):
 
 
 @kernel
-def make_track(base, free):
-    """Scratch of a branch on ``base`` cells, whose last node is a plane of symmetry or held."""
-    nodes = np.zeros((8, base + 1))
+def make_track(base, free, held):
+    """Scratch of a branch on ``base`` cells, whose last node is a plane of symmetry or stays, with something held or not."""
+    nodes, state = np.zeros((4, base + 1)), np.zeros((4, base + (2 if held else 1)))
     return Track(
-        nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], nodes[5], nodes[6], nodes[7], base if free else base - 1
+        nodes[0], state[0], state[1], state[2], state[3], nodes[1], nodes[2], nodes[3], base if free else base - 1
     )

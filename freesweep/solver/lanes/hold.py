@@ -16,9 +16,9 @@ from math import pi, sqrt
 
 from ...jit import entry_point, kernel
 from .. import lagrangian
-from ..find import RAISES
 from ..lagrangian import ROUNDING
 from ..problem import FORCE, SOURCE, TORQUE
+from ..sought import RAISES
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, OK
 from . import guide, layer
 from .seat import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads

@@ -1,0 +1,130 @@
+"""Bodies of revolution: what follows from an inner radius that varies along the axis.
+
+The fibers lie a part of the wall outside the inner radius, on a surface R(x); a wall that varies counts where it is
+thinnest, unless it follows the radius ("constant volume": the section stays that at x = 0). Along that surface::
+
+    geodesic winding (Clairaut)   sin(angle) = R(0) sin(angle_0)/R
+    constant volume               (radius + wall)^2 - radius^2 = that at x = 0
+
+Where sin(angle) would pass 1 a geodesic turns back: there is no such body.
+"""
+
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+
+from .along import rule_of
+from .given import numbers
+from .profiles import Along, ProfileError, as_profile, is_profile
+
+GAUSS = np.polynomial.legendre.leggauss(20)
+PANELS = 64  # of each segment, for volumes: of smooth profiles exact to rounding
+
+
+class Derived(Along):
+    """A quantity that follows from others: ``rule(low, high, share)`` gives its values, ``slope`` its derivative by x/l."""
+
+    def __init__(self, rule, parents, slope=None):
+        self.within, self.slope = rule, slope
+        self.breaks = np.unique(np.concatenate([parent.breaks for parent in parents]))
+        self.function = next((parent.function for parent in parents if parent.function), None)
+
+
+class Resolved(NamedTuple):
+    """All that varies along a tube, [degree] and [m]; ``fibers`` is the radius at which they lie, None of a tube."""
+
+    alpha: Along
+    beta: Along
+    wall: Along
+    radius: Along
+    fibers: Along | None
+    scale: tuple  # length and reference radius [m], whether the wall is thick
+
+    @property
+    def profiles(self):
+        """Those whose bends and jumps count."""
+        return (self.alpha, self.beta, self.wall) + ((self.radius,) if self.fibers else ())
+
+    def numbers(self, low, high, share):
+        """H, D, the section over the squared fiber radius, (3, n); of a body R, dR/dx and the inner radius squared, too."""
+        ta, tb = (np.tan(np.radians(angle.within(low, high, share))) for angle in (self.alpha, self.beta))
+        length, reference, thick = self.scale
+        inner, wall = self.radius.within(low, high, share), self.wall.within(low, high, share)
+        surface = reference if self.fibers is None else self.fibers.within(low, high, share)
+        found = [0.5 * (ta + tb), 0.5 * (ta - tb), ((inner + wall) ** 2 - inner**2) / surface**2]
+        if self.fibers is not None:
+            rise = self.fibers.slope(low, high, share) / length
+            found += [surface / reference, rise, (inner / surface) ** 2 * float(thick)]
+        return np.stack(found)
+
+
+def resolved(tube) -> Resolved:
+    """What varies along a ``tube``, with its rules resolved. Raises :class:`ProfileError`."""
+    radius = as_profile(tube.radius, "m")
+    body, wall = is_profile(tube.radius), _wall(tube.wall, radius)
+    fibers = None
+    if body:
+        part = tube.fiber_share
+        if rule_of("wall", tube.wall):
+            fibers = Derived(
+                lambda low, high, share: radius.within(low, high, share) + part * wall.within(low, high, share), [radius],
+                lambda low, high, share: radius.slope(low, high, share) + part * wall.slope(low, high, share),
+            )  # fmt: skip
+        else:
+            inside = part * float(np.min(wall.samples())) if part else 0.0
+            fibers = Derived(lambda low, high, share: radius.within(low, high, share) + inside, [radius], radius.slope)
+    alpha, beta = (_angle(name, getattr(tube, name), fibers) for name in ("alpha", "beta"))
+    reference = float(fibers.at(0.0)[0]) if body else tube.fiber_surface
+    return Resolved(alpha, beta, wall, radius, fibers, (tube.length, reference, body and tube.is_thick))
+
+
+def _wall(value, radius):
+    text = rule_of("wall", value)
+    if text is None:
+        return as_profile(value, "m")
+    first = float(radius.at(0.0)[0])
+    section = (first + numbers(text, "m").item()) ** 2 - first**2
+
+    def thickness(low, high, share):
+        inner = radius.within(low, high, share)
+        return section / (np.sqrt(inner**2 + section) + inner)
+
+    def slope(low, high, share):
+        inner = radius.within(low, high, share)
+        return (inner / np.sqrt(inner**2 + section) - 1.0) * radius.slope(low, high, share)
+
+    return Derived(thickness, [radius], slope)
+
+
+def _angle(name, value, fibers):
+    text = rule_of(name, value)
+    if text is None:
+        return as_profile(value, "degree")
+    first, start = float(fibers.at(0.0)[0]), np.sin(np.radians(numbers(text, "degree").item()))
+
+    def angle(low, high, share):
+        sine = start * first / fibers.within(low, high, share)
+        if np.any(np.abs(sine) >= 1.0):
+            k = int(np.argmax(np.abs(sine) >= 1.0))  # the first
+            at = low + (high - low) * np.ravel(share)[k]
+            raise ProfileError(
+                f"{name}: the geodesic that starts at {text} turns back before x/l = {at:.3g}, where the radius of the"
+                f" fibers is {1e3 * np.ravel(fibers.within(low, high, share))[k]:.4g} mm; it needs more than"
+                f" {1e3 * abs(start) * first:.4g} mm; start it steeper along the axis, or widen the body there"
+            )
+        return np.degrees(np.arcsin(sine))
+
+    return Derived(angle, [fibers])
+
+
+def wall_volume_inside(tube) -> float:
+    """Undeformed volume between cavity and fiber surface [m3]: an incompressible wall keeps it."""
+    parts, total = resolved(tube), 0.0
+    breaks = np.unique(np.concatenate([profile.breaks for profile in parts.profiles]))
+    share = (np.arange(PANELS)[:, None] + 0.5 + 0.5 * GAUSS[0]).ravel() / PANELS
+    weight = np.tile(0.5 * GAUSS[1], PANELS) / PANELS
+    for low, high in itertools.pairwise(breaks):
+        surface, inner = parts.fibers.within(low, high, share), parts.radius.within(low, high, share)
+        total += float(weight @ (surface**2 - inner**2)) * (high - low)
+    return np.pi * tube.length * total
