@@ -31,7 +31,7 @@ def random_point(draw, energy=None):
         if G < 0.05:
             continue
         v = draw.uniform(-0.95, 0.95) * np.sqrt(G)
-        cell, load = np.array([H, D, a]), (gamma, (c, c2, c3), (k,), p, f, m, e)
+        cell, load = (H, D, a), (gamma, (c, c2, c3), (k,), p, f, m, e)
         return y, v, cell, load, (H, D, a, gamma, c, k, p, f, m, e, c2, c3)
 
 
@@ -148,7 +148,7 @@ def test_energy_curvature_of_the_undeformed_wall():
 def test_both_energies_agree_for_mckibben_muscles(seed):
     draw = rng(50 + seed)
     alpha, y = draw.uniform(20, 80), draw.uniform(0.9, 1.02)
-    cell = np.array([0.0, tan(radians(alpha)), 0.7])
+    cell = (0.0, tan(radians(alpha)), 0.7)
     principal, full = ((1.01, (0.4, 0.3, 0.1), (shear,), 1.5, 0.2, 0.0, 1.0) for shear in (0.0, 1.0))
     assert lagrangian.strain_energy(y, cell, principal) == lagrangian.strain_energy(y, cell, full)
     assert lagrangian.density(y, 0.1, cell, principal) == lagrangian.density(y, 0.1, cell, full)
