@@ -49,11 +49,6 @@ kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes", "seek_lanes
 PHYSICAL = """
 fs.inflate(fs.Actuator(alpha=30, beta=-30, model="physical", **sections), 1e4)
 """
-BODIES = """
-body = fs.Actuator(alpha=30, beta=-30, model="physical", **sections | {"radius": [(0, 5e-3), (1, 4e-3)]})
-fs.inflate(body, 1e4)
-fs.blocked_force(body, 1e4)
-"""
 
 
 def pytest_configure():
@@ -92,6 +87,6 @@ def pytest_sessionstart(session):
     options = session.config.option
     whole = [*session.config.args] in ([], ["tests"], ["tests/"])
     if whole and not hasattr(session.config, "workerinput") and not options.collectonly and not options.keyword:
-        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (HELD, FREE, PHYSICAL, BODIES)]
+        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (HELD, FREE, PHYSICAL)]
         for part in parts:
             part.wait()

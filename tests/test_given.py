@@ -279,6 +279,7 @@ ARGUMENTS = {
     closed_form.locked_stretch: {"alpha": 30, "beta": -30, "fiber_extension": 1.0},
     closed_form.uniform_state: {"alpha": 30, "beta": -30, "stretch": 1.1},
     closed_form.locked_manifold: {"alpha": 30},
+    closed_form.held_shares: {"alpha": 30, "beta": -40, "held": "length"},
     closed_form.blocked_force: {"alpha": 30, "beta": -30, "radius": 5e-3, "pressure": 1e5},
     closed_form.blocked_torque: {"alpha": 30, "beta": -40, "radius": 5e-3, "pressure": 1e5},
     closed_form.critical_pressure: {
