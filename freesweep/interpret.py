@@ -16,7 +16,7 @@ import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from .jit import cache_folder
-from .kernel_cache import compiled, stem
+from .kernel_cache import KernelCache, compiled, stem
 
 FEW, SECONDS = (
     32,
@@ -60,20 +60,36 @@ def at_once(states, awaited, entry, *arguments) -> bool:
     are asked for or those asked for take long, fewer and less long if that code need only be loaded, and where plain Python
     raises an error at a number that kernels take for infinite.
     """
-    if not isinstance(awaited, Dispatcher) or awaited.signatures:
+    if not isinstance(awaited, Dispatcher):
         return False
     folder = _folder(awaited)
+    if awaited.signatures:
+        if awaited is entry and not _is_made(entry, arguments):
+            _tell(folder)
+        return False
     on_disk = stem(awaited.py_func) in compiled(folder)
     most, seconds = (FEWER, LESS) if on_disk else (FEW, SECONDS)
     spent = _spent.setdefault(awaited, [0, 0.0])
     spent[0] += states
     if spent[0] <= most and spent[1] < seconds and _is_done(entry, arguments, spent, seconds):
         return True
-    if not on_disk and spent[0] < NEVER:
-        where = "once for each version" if folder else "in each process, for there is no folder to keep them in"
-        print(f"freesweep: compiling the kernels, {where}: half a minute to three", file=sys.stderr)
+    if spent[0] < NEVER and not (_is_made(entry, arguments) if awaited is entry else on_disk):
+        _tell(folder)
     spent[0] = NEVER
     return False
+
+
+def _tell(folder):
+    where = "once for each version" if folder else "in each process, for there is no folder to keep them in"
+    print(f"freesweep: compiling the kernels, {where}: half a minute to three", file=sys.stderr)
+
+
+def _is_made(entry, arguments):
+    """Whether there is machine code for arguments of these kinds: those of a body, or a thick wall, are not a tube's."""
+    kinds, cache = tuple(map(entry.typeof_pyval, arguments)), entry._cache
+    return kinds in entry.overloads or (
+        isinstance(cache, KernelCache) and cache.holds(kinds, entry.targetctx.codegen())
+    )
 
 
 def is_at_hand(entry) -> bool:

@@ -53,6 +53,10 @@ class KernelCache(_Cache):
         except Exception:  # of a library that changed under the same version, or of LLVM: a miss
             return None
 
+    def holds(self, sig, codegen):
+        """Whether there is machine code for arguments of such types."""
+        return _whole(self._path(sig, codegen)) is not None
+
     def save_overload(self, sig, data):
         """Keep what was compiled, unless it holds addresses of this process."""
         if self.enabled and not (data.lifted or data.library.has_dynamic_globals):
