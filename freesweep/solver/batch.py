@@ -15,7 +15,6 @@ from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
 NOTHING = np.empty(0)
-FEW_DOUBLINGS, MANY_DOUBLINGS = 3, 6  # of the base mesh, in vectors
 FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
@@ -131,9 +130,11 @@ def rounds(base, physical):
     """Cells of the base mesh, and for physical tubes the most doublings, of one try after the other: of tubes whose fibers
     go slack some need many, and a vector is at work as long as any of its states.
     """
+    from .lanes.nested import FEW_DOUBLINGS, LANE_DOUBLINGS
+
     if not physical:
         return (base,), (FINER * base,)
-    return (base, FEW_DOUBLINGS), (base, MANY_DOUBLINGS), (FINER * base, MANY_DOUBLINGS)
+    return (base, FEW_DOUBLINGS), (base, LANE_DOUBLINGS), (FINER * base, LANE_DOUBLINGS)
 
 
 def _kinds(problems):

@@ -17,6 +17,7 @@ from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
 MIDDLE = 4
 LANE_DOUBLINGS = 6  # of the base mesh
+FEW_DOUBLINGS = 3  # suffice for all but a few of a hundred physical tubes
 LARGEST_TOLERANCE = 1e-7  # of Newton's last step; what it leaves is in the bounds
 EARLY = 2.2  # of bounds that no third extrapolation confirms
 STILL = 1e-3  # radii: if the last node moves more, the layer is not resolved there, and all outputs err the more
