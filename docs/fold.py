@@ -14,14 +14,14 @@ import numpy as np
 import freesweep as fs
 from freesweep.plot import style
 from freesweep.scaling import problem_rows
-from freesweep.solver import lagrangian
-from freesweep.solver.bordered import FOLLOWED
-from freesweep.solver.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike
 from freesweep.solver.free.branch import begin
 from freesweep.solver.free.meshes import take
 from freesweep.solver.free.space import make_space, make_track
-from freesweep.solver.path import NOTHING
-from freesweep.solver.path import Path as Loads
+from freesweep.solver.numerics.bordered import FOLLOWED
+from freesweep.solver.numerics.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike
+from freesweep.solver.numerics.path import NOTHING
+from freesweep.solver.numerics.path import Path as Loads
+from freesweep.solver.physics import lagrangian
 from freesweep.solver.problem import SOURCE, rubber_of, wall_of
 
 CELLS, BEHIND = 48, 17  # of half the tube; steps that are drawn behind the fold

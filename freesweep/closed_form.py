@@ -1,6 +1,6 @@
 """Closed forms of the uniform tube: locked state, blocked force and torque, regions of the design space.
 
-Angles in degrees, arrays broadcast, units are read as everywhere (:mod:`freesweep.given`). With
+Angles in degrees, arrays broadcast, units are read as everywhere (:mod:`freesweep.description.given`). With
 H = (tan(alpha) + tan(beta))/2 and D = (tan(alpha) - tan(beta))/2::
 
     y_L^2 = (A + sqrt(A^2 - 3 gamma^4 D^2 H^2))/(3 D^2),   A = gamma^2 (1 + H^2 + D^2)       (Eq. 2.12)
@@ -23,11 +23,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from .faults import ActuatorError
-from .given import numbers
-from .options import read_choice
-from .quantities import Quantities
-from .tube_model import FIBERS
+from .description.faults import ActuatorError
+from .description.given import numbers
+from .description.options import read_choice
+from .description.quantities import Quantities
+from .description.tube_model import FIBERS
 
 Formula = TypeVar("Formula", bound=Callable[..., Any])
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .actuator import Actuator
 from .derivative.request import asked_of
-from .faults import ActuatorError
-from .given import numbers
-from .loads import read_load, read_stations, warn_of_loads
-from .options import read_switch
-from .profiles import SENSITIVITY, widened
-from .quantities import Names, Quantities
+from .description.actuator import Actuator
+from .description.faults import ActuatorError
+from .description.given import numbers
+from .description.loads import read_load, read_stations, warn_of_loads
+from .description.options import read_switch
+from .description.profiles import SENSITIVITY, widened
+from .description.quantities import Names, Quantities
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .statics import inflate, is_solved_whole, read_course, undeformed
@@ -127,11 +127,11 @@ def _hold(
     tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False, derivatives=None, tied=False
 ):  # fmt: skip
     from .interpret import at_once
-    from .solver.find import HELD_LENGTH, HELD_ROTATION
-    from .solver.hold import hold_many
+    from .solver.along.profile import FIELDS
+    from .solver.held.held_state import HELD_LENGTH, HELD_ROTATION
+    from .solver.held.held_states import hold_many
     from .solver.hold_batch import refuse
     from .solver.problem import wall_columns
-    from .solver.profile import FIELDS
     from .solver.status import OK, PENDING
 
     faults = []

@@ -6,9 +6,9 @@ import numpy as np
 
 from . import status
 from .atlas.schema import PROFILES, attributes
-from .revolution import wall_volume_inside as wall_volume_of_body
+from .description.revolution import wall_volume_inside as wall_volume_of_body
+from .description.strain import warn_beyond_range
 from .scaling import OUTPUTS, output_scales, wall_volume_inside
-from .strain import warn_beyond_range
 from .worst_places import with_own, worst_places
 
 

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .actuator import Actuator
-from .faults import ActuatorError
-from .given import described, numbers, read_number
-from .quantities import Quantities, Quantity
+from .description.actuator import Actuator
+from .description.faults import ActuatorError
+from .description.given import described, numbers, read_number
+from .description.quantities import Quantities, Quantity
 
 if TYPE_CHECKING:
     import xarray as xr

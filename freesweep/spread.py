@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .actuator import Actuator
 from .derivative.request import SHAPE, parameters, unit_of
-from .faults import ActuatorError
-from .given import described, read_number
-from .quantities import Quantity
+from .description.actuator import Actuator
+from .description.faults import ActuatorError
+from .description.given import described, read_number
+from .description.quantities import Quantity
 from .statics import LOADS, inflate
 
 if TYPE_CHECKING:

@@ -4,14 +4,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import profiles, status
-from .actuator import Actuator
+from . import status
 from .atlas.schema import attributes
 from .derivative.request import asked_of
-from .faults import ActuatorError
-from .loads import read_load, read_stations, warn_of_loads
-from .profiles import SENSITIVITY, widened
-from .quantities import Names, Quantities
+from .description import profiles
+from .description.actuator import Actuator
+from .description.faults import ActuatorError
+from .description.loads import read_load, read_stations, warn_of_loads
+from .description.profiles import SENSITIVITY, widened
+from .description.quantities import Names, Quantities
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .thick_wall import thin_wall_attributes

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .faults import ActuatorError
-from .units import NEAR, quantity, shown
+from .description.faults import ActuatorError
+from .description.units import NEAR, quantity, shown
 
 LARGEST_FILE = 64_000_000  # bytes
 MOST_FAULTS = 30

@@ -12,8 +12,8 @@ changes, less is wrong.
 
 import numpy as np
 
-from .profiles import as_profile
-from .tube_model import fiber_surface, model_of
+from .description.profiles import as_profile
+from .description.tube_model import fiber_surface, model_of
 
 NOTES = ("thin_wall_ratio", "thin_wall_note")
 DESIGN = ("alpha", "beta", "radius", "wall", "fiber_radius")

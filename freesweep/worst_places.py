@@ -12,7 +12,7 @@ undeformed length, and how hard they would push.
 
 import numpy as np
 
-from .loads import STATIONS
+from .description.loads import STATIONS
 
 FAMILIES = ("alpha", "beta")
 CURVED = 1.0 / 8.0  # of a second difference: by how much a smooth curve passes the largest of its samples

@@ -11,8 +11,8 @@ from commands import run
 from freesweep.bench import peak, scipy_bvp, solver
 from freesweep.bench.flops import density_flops
 from freesweep.bench.sample import Reference, reference, sample, typical
-from freesweep.solver import membrane
 from freesweep.solver.lanes.vector import WIDTH
+from freesweep.solver.physics import membrane
 
 
 def test_every_method_solves_the_same_problems():

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from freesweep import ActuatorError, Measurement, MooneyRivlin, read_measurements
-from freesweep.actuator import Actuator
 from freesweep.calibration.branches import curves_of, mean_of_loops
+from freesweep.description.actuator import Actuator
 
 MUSCLE = {"alpha": 30, "beta": -30, "length": 0.2, "radius": 5e-3, "wall": 1e-3}
 TUBE = Actuator(**MUSCLE, material=MooneyRivlin(0.2e6, 0.1e6))

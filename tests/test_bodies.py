@@ -24,13 +24,14 @@ from freesweep import (
 )
 from freesweep.cli import parser
 from freesweep.cli.single import tube_of
+from freesweep.description.profiles import as_profile
 from freesweep.plot.shape import shape_of
-from freesweep.profiles import as_profile
 from freesweep.solver import batch, hold_batch
-from freesweep.solver import course as kernels_of_course
-from freesweep.solver import lagrangian as kernels_of_physics
-from freesweep.solver import mesh as kernels_of_mesh
-from freesweep.solver import newton as kernels_of_newton
+from freesweep.solver.cells import cell_at
+from freesweep.solver.numerics import mesh as kernels_of_mesh
+from freesweep.solver.numerics import newton as kernels_of_newton
+from freesweep.solver.numerics import properties_along as kernels_of_course
+from freesweep.solver.physics import lagrangian as kernels_of_physics
 from freesweep.statics import read_course
 from freesweep.status import OK
 
@@ -125,7 +126,7 @@ def test_rest_is_rest(plain, radius, model):
     g, d, e, room, least = np.zeros((5, n + 1))
     newton.assemble(lagrangian.density, x, np.ones(n + 1), n, cells, load, False, least, room, g, d, e)
     assert np.max(np.abs(g[1:n])) < 1e-14 * np.max(np.abs(d))
-    length = sum((b - a) * lagrangian.integrands(1.0, 0.0, mesh.cell_at(cells, j), load)[0]
+    length = sum((b - a) * lagrangian.integrands(1.0, 0.0, cell_at(cells, j), load)[0]
                  for j, (a, b) in enumerate(itertools.pairwise(x)))  # fmt: skip
     assert length == pytest.approx(places[-1], rel=1e-14)
     rest = inflate(actuator, 0.0)
@@ -199,7 +200,7 @@ def test_meshes_of_a_body_are_of_second_order_and_extrapolate_to_fourth():
             status, *_ = newton.solve(lagrangian.density, x, y, n, False, cells, load, 1e300, 1e-13, work)
         assert status == kernels_of_newton.CONVERGED
         middle, slope = 0.5 * (y[1:] + y[:-1]), np.diff(y) / np.diff(x)
-        s = [lagrangian.integrands(*one, mesh.cell_at(cells, j), load)[0] for j, one in enumerate(zip(middle, slope))]
+        s = [lagrangian.integrands(*one, cell_at(cells, j), load)[0] for j, one in enumerate(zip(middle, slope))]
         found.append(np.diff(x) @ s)
     found = np.array(found)
     exact = brute(actuator, [0.5], pressure)[0]

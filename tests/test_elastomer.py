@@ -19,9 +19,9 @@ from freesweep import (
     materials,
 )  # fmt: skip
 from freesweep.cli import DONE
-from freesweep.resolve import draw, resolve
-from freesweep.strain import largest_stretch
+from freesweep.description.strain import largest_stretch
 from freesweep.sweep.spec import SpecificationError, parse
+from freesweep.verification.cross_check import draw, resolve
 
 DRAWN = {  # nominal stress [MPa] at stretch, from the tensile tests of the database that the library cites
     "ecoflex-00-30": {1.5: 0.01689, 2: 0.02972, 3: 0.05239, 4: 0.08015},

@@ -13,8 +13,8 @@ from freesweep.first_integral.divided_differences import Divided
 from freesweep.first_integral.roots import find_roots
 from freesweep.first_integral.tube import NO_GUIDE, SOLVED, solve
 from freesweep.first_integral.uniform import Tubes, density, follow, stretch
-from freesweep.resolve import draw, resolve
 from freesweep.sweep.spec import parse
+from freesweep.verification.cross_check import draw, resolve
 
 WALL = 1.59 / 4.76
 

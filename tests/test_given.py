@@ -12,8 +12,8 @@ import xarray as xr
 
 import freesweep as fs
 from freesweep import closed_form
-from freesweep.given import numbers, read_column, read_number
-from freesweep.loads import read_stations
+from freesweep.description.given import numbers, read_column, read_number
+from freesweep.description.loads import read_stations
 
 RUBBER = fs.MooneyRivlin(0.11e6, 0.06e6)
 TUBE = fs.Actuator(alpha=30, beta=-30, length=0.192, radius=4.76e-3, wall=1.59e-3, material=RUBBER)

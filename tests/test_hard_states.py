@@ -8,7 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 from freesweep.census.designs import Drawn, with_pressures
 from freesweep.first_integral.folded import solve_near
 from freesweep.first_integral.uniform import Tubes
-from freesweep.solver import lagrangian, uniform
+from freesweep.solver.physics import lagrangian, uniform_tube
 from freesweep.status import BEYOND_LIMIT, COMPRESSED, OK
 from freesweep.sweep import solve
 
@@ -63,7 +63,7 @@ def test_long_tube_whose_ends_have_a_stretch_that_pays_more_turns_back_before_th
     load = (gamma, (ratio,), (shear,), pressure, 0.0, 0.0, 1.0)
     cell = (H, D, area)
     drawn = lagrangian.drawn_in(cell, load)
-    u, carried = uniform.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * problem[8], drawn)
+    u, carried = uniform_tube.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * problem[8], drawn)
     if carried == 1.0:
         middle, between = (lagrangian.uniform_tube(y, (H, D, area), load)[2] for y in (u, rival))
         assert between > middle

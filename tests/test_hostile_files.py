@@ -21,7 +21,7 @@ SECONDS, MEMORY = 5.0, 600e6  # of one file; of all of them [bytes]
 CHILD = """
 import json, os, resource, sys, time
 from freesweep.atlas.store import AtlasError, open_atlas
-from freesweep.verify import faults
+from freesweep.verification.verify import faults
 resource.setrlimit(resource.RLIMIT_CPU, (120, 120))
 def refusal(path):
     try:

@@ -16,7 +16,7 @@ import pytest
 import freesweep as fs
 from freesweep import interpret, jit
 from freesweep.solver import batch
-from freesweep.solver.lanes import walk as lanes
+from freesweep.solver.lanes import free as lanes
 
 ROOT = Path(__file__).parent.parent
 

@@ -9,7 +9,7 @@ import sympy as sp
 from oracle import PARAMETERS, V, Y, expressions, half_sum_and_difference
 
 from freesweep import closed_form
-from freesweep.solver import lagrangian
+from freesweep.solver.physics import lagrangian
 
 rng = np.random.default_rng
 

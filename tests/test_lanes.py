@@ -10,9 +10,10 @@ import pytest
 
 from freesweep.census.designs import quadrature
 from freesweep.scaling import problem_rows
-from freesweep.solver import batch, lagrangian
+from freesweep.solver import batch
 from freesweep.solver.lanes import vector
 from freesweep.solver.lanes.vector import WIDTH, bits, get, mask_of, put, select, some, spread
+from freesweep.solver.physics import lagrangian
 from freesweep.solver.status import INACCURATE, OK, PENDING
 
 STEPS = 10

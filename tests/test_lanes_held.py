@@ -8,7 +8,7 @@ from freesweep import holding
 from freesweep.first_integral import held as quadrature
 from freesweep.first_integral.uniform import Tubes
 from freesweep.solver import batch, hold_batch
-from freesweep.solver.find import HELD_LENGTH, HELD_ROTATION
+from freesweep.solver.held.held_state import HELD_LENGTH, HELD_ROTATION
 from freesweep.solver.hold_batch import hold_all
 from freesweep.solver.problem import FORCE, LENGTH, TORQUE
 from freesweep.solver.status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING

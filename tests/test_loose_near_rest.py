@@ -6,8 +6,9 @@ from test_relaxed_density import random_point
 
 import freesweep as fs
 from freesweep.scaling import problem_rows
-from freesweep.solver import batch, lagrangian, physical, uniform
-from freesweep.solver.mesh import nothing_yet, of_length
+from freesweep.solver import batch
+from freesweep.solver.cells import nothing_yet, of_length
+from freesweep.solver.physics import lagrangian, physical, uniform_tube
 from freesweep.solver.problem import PHYSICAL, rubber_of, wall_of
 from freesweep.solver.status import OK
 
@@ -47,7 +48,7 @@ def test_loose_tubes_near_rest_are_solved_in_vectors(design, monkeypatch):
 def test_uniform_stretch_is_carried_from_rest_to_where_l_y_vanishes(design):
     row = problem(*design)[0]
     (cell, rest), (_, load) = point(row, 0.0), point(row, 1e-2)
-    u, part = uniform.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * row[8], 0.0)
+    u, part = uniform_tube.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * row[8], 0.0)
     assert part == 1.0
     below, above = (lagrangian.density(u + e, 0.0, cell, load)[1] for e in (-1e-9, 1e-9))
     assert below > 0.0 > above
@@ -58,9 +59,9 @@ def test_load_of_a_stretch_is_found_although_l_y_rises_before_it_falls():
     (cell, rest), (_, end) = point(row, 0.0), point(row, 1.5e-3)
     u = 1.0 - 5e-6
     loads = np.linspace(0.0, 1.0, 2001)
-    rises = np.diff([lagrangian.density(u, 0.0, cell, uniform.between(rest, end, t))[1] for t in loads])
+    rises = np.diff([lagrangian.density(u, 0.0, cell, uniform_tube.between(rest, end, t))[1] for t in loads])
     assert rises[0] > 0.0 > rises[-1]
-    L_yy, _ = uniform.curvature_at(lagrangian.density, u, cell, rest, end, 0.0, 1.0)
+    L_yy, _ = uniform_tube.curvature_at(lagrangian.density, u, cell, rest, end, 0.0, 1.0)
     assert L_yy < -1000.0  # both families are taut there
 
 

@@ -8,7 +8,8 @@ import pytest
 from loose_tubes import Tube
 
 from freesweep import Actuator, MooneyRivlin, blocked_torque, inflate
-from freesweep.solver import lagrangian, nested
+from freesweep.solver.numerics import nested
+from freesweep.solver.physics import lagrangian
 
 RADIUS, WALL, LENGTH, C10, C01 = 4.76e-3, 1.59e-3, 0.131, 0.17e6, 0.08e6  # prototype B
 # pressure [Pa]: free rotation [degree], length [mm]; held: torque over Eq. 2.20, length [mm] (theory, section 10)

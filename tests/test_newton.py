@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from freesweep.solver import held, mesh, nested, newton
-from freesweep.solver.bordered import FOLLOWED, correct
-from freesweep.solver.continuation import advance, is_stable, last_alike, make_unit
 from freesweep.solver.free.space import make_track
-from freesweep.solver.path import Held, Path
+from freesweep.solver.numerics import held, mesh, nested, newton
+from freesweep.solver.numerics.bordered import FOLLOWED, correct
+from freesweep.solver.numerics.continuation import advance, is_stable, last_alike, make_unit
+from freesweep.solver.numerics.path import Held, Path
 
 X = 0.5
 FILM, BRATU = 0.0, 1.0

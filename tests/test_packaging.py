@@ -12,8 +12,9 @@ from pathlib import Path
 from commands import refused, run
 
 import freesweep as fs
-from freesweep import example, resolve, verify
+from freesweep import example
 from freesweep.sweep.spec import read_file
+from freesweep.verification import cross_check, verify
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -40,7 +41,7 @@ def test_the_example_atlas_is_that_of_its_specification_and_holds_its_bounds():
     with fs.example_atlas() as atlas:
         asked = read_file(example.specification("quick"))
         assert atlas.data.attrs["specification"] == asked.text
-        comparisons, _ = resolve.resolve(resolve.draw(atlas.data, 20))  # by the second method
+        comparisons, _ = cross_check.resolve(cross_check.draw(atlas.data, 20))  # by the second method
         assert len(comparisons) > 5
         assert not any(compared.broken.any() for compared in comparisons)
     assert path.stat().st_size < 1.5e6

@@ -9,7 +9,7 @@ from held_tubes import by_collocation
 
 from freesweep import Actuator, ActuatorError, MooneyRivlin, blocked_force, blocked_torque, closed_form, inflate, lock
 from freesweep.atlas.schema import PROFILES
-from freesweep.profiles import SENSITIVITY, as_profile, widened
+from freesweep.description.profiles import SENSITIVITY, as_profile, widened
 from freesweep.statics import read_course
 from freesweep.status import OK
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from freesweep import Actuator, MooneyRivlin, closed_form, inflate
-from freesweep.query import reference, tensor
+from freesweep.query import reference, spline
 from freesweep.query.axis import make_axis
-from freesweep.query.holes import fill
+from freesweep.query.missing_nodes import fill
 from freesweep.query.slack import UNKNOWN, slack_families
 from freesweep.query.uniform_tube import balance, energy, kinematics, squared_stretch
 
@@ -29,12 +29,12 @@ def cubic_table(axes, function):
 
 
 def knots(axes):
-    table = np.zeros((len(axes), max(len(axis.nodes) for axis in axes), tensor.KNOT))
+    table = np.zeros((len(axes), max(len(axis.nodes) for axis in axes), spline.KNOT))
     for own, axis in zip(table, axes):
         count = len(axis.nodes)
-        own[:count, tensor.PLACE], own[: count - 1, tensor.WIDTH] = axis.nodes, np.diff(axis.nodes)
-        own[:count, tensor.FIRST] = axis.first
-        own[:count, tensor.LEFT : tensor.LEFT + 6], own[:count, tensor.RIGHT : tensor.RIGHT + 6] = axis.left, axis.right
+        own[:count, spline.PLACE], own[: count - 1, spline.WIDTH] = axis.nodes, np.diff(axis.nodes)
+        own[:count, spline.FIRST] = axis.first
+        own[:count, spline.LEFT : spline.LEFT + 6], own[:count, spline.RIGHT : spline.RIGHT + 6] = axis.left, axis.right
     return table, np.array([axis.window for axis in axes]), np.zeros(len(axes), bool)
 
 
@@ -55,12 +55,12 @@ def test_tensor_cubics_reproduce_cubics_on_any_grid():
     shares = (at - left) / (right - left)
     table, found = cubic_table(axes, function), np.empty(200)
     args = (table, *knots(axes), strides, pieces, shares, np.arange(200))
-    tensor.interpolate(*args, np.zeros(4, np.int64), found)
+    spline.interpolate(*args, np.zeros(4, np.int64), found)
     np.testing.assert_allclose(found, function(*at.T), rtol=1e-5, atol=1e-5)
-    tensor.interpolate(*args, np.array([1, 0, 0, 0]), found)
+    spline.interpolate(*args, np.array([1, 0, 0, 0]), found)
     a, b, f, m = at.T
     np.testing.assert_allclose(found, 3 * a**2 - 2 * b**3 - b * f * m**3, rtol=1e-4, atol=1e-4)
-    tensor.interpolate(*args, np.array([0, 0, 0, 1]), found)
+    spline.interpolate(*args, np.array([0, 0, 0, 1]), found)
     np.testing.assert_allclose(found, f**3 - 3 * a * b * f * m**2 + 2 * m, rtol=1e-4, atol=1e-4)
 
 

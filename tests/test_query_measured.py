@@ -18,10 +18,10 @@ from freesweep.query.cells import ROUGH
 from freesweep.query.faults import QueryError
 from freesweep.query.reference import VOLUME
 from freesweep.query.refine import as_points, exact_answers
-from freesweep.query.tensor import KNOT, RANK
-from freesweep.sweep.grade import graded
+from freesweep.query.spline import KNOT, RANK
+from freesweep.sweep.refine_axes import graded
 from freesweep.sweep.spec import SpecificationError, parse
-from freesweep.verify import faults as verify
+from freesweep.verification.verify import faults as verify
 
 AXES = {
     "alpha": np.linspace(10.0, 60.0, 9).tolist(),

@@ -5,6 +5,7 @@ import pytest
 from grids import make, spec
 
 from freesweep import Atlas, status
+from freesweep.description.tube_model import MODELS, TubeModel
 from freesweep.query import reference
 from freesweep.query.cells import BESIDE
 from freesweep.query.exact import solve
@@ -12,7 +13,6 @@ from freesweep.query.predictor import Predictor
 from freesweep.query.refine import as_points, exact_answers
 from freesweep.query.slack import UNKNOWN
 from freesweep.sweep.spec import parse
-from freesweep.tube_model import MODELS, TubeModel
 
 PHYSICAL = MODELS["physical"]
 BONDED = PHYSICAL._replace(fibers="bonded")

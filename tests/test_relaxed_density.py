@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from freesweep.solver import membrane, physical, relaxed, wall
-from freesweep.solver.mesh import nothing_yet
+from freesweep.solver.cells import nothing_yet
+from freesweep.solver.physics import membrane, physical, relaxed, wall
 
 QUICK, MANY = 2000, 100_000
 

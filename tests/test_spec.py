@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from freesweep.atlas.schema import HELD, PARAMETERS, YEOH
+from freesweep.description.tube_model import MODELS
+from freesweep.description.units import quantity
 from freesweep.sweep import toml_guard
 from freesweep.sweep.spec import MAX_POINTS, SpecificationError, parse, read_file
-from freesweep.tube_model import MODELS
-from freesweep.units import quantity
 
 SWEEPS = Path(__file__).parent.parent / "sweeps"
 

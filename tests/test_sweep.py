@@ -8,9 +8,9 @@ from grids import GRID, make, spec, swept
 
 from freesweep import Actuator, MooneyRivlin, closed_form, inflate, lock, status
 from freesweep.atlas.schema import FLAG_OF, PARAMETERS, STATUS_OF, VARIABLES, attributes
+from freesweep.sweep.canonical_problem import significant
 from freesweep.sweep.plan import NONE, plan
 from freesweep.sweep.records import upward
-from freesweep.sweep.reduce import significant
 from freesweep.sweep.spec import parse
 
 OUTPUTS = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")

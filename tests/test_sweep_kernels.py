@@ -11,7 +11,7 @@ import pytest
 from grids import CHILD_ENVIRONMENT, make, spec
 
 from freesweep.solver import batch, hold_batch
-from freesweep.solver.lanes import hold, walk
+from freesweep.solver.lanes import free, held
 from freesweep.sweep import kernels, run
 from freesweep.sweep.spec import parse, read_file
 
@@ -52,7 +52,7 @@ def test_kernels_are_loaded_before_the_threads_begin(text, needed, tmp_path, mon
 
         return noted
 
-    entries = [(walk, "carry_lanes"), (walk, "solve_lanes"), (hold, "seek_lanes")]
+    entries = [(free, "carry_lanes"), (free, "solve_lanes"), (held, "seek_lanes")]
     for module, name in [*entries, (batch, "follow_many"), (hold_batch, "block_many")]:
         monkeypatch.setattr(module, name, noting(getattr(module, name)))
     early, late, idle = set(), set(), set()

@@ -10,12 +10,12 @@ from shards import same_bits
 
 from freesweep import Actuator, MooneyRivlin, inflate
 from freesweep.atlas.content import dimensions, faults
+from freesweep.description.tube_model import MODELS, attributes_of, model_of
 from freesweep.query.exact import solve
 from freesweep.query.reference import COLUMNS, LOADED
 from freesweep.sweep import run
 from freesweep.sweep.plan import plan
 from freesweep.sweep.spec import SpecificationError, parse
-from freesweep.tube_model import MODELS, attributes_of, model_of
 
 PHYSICAL = attributes_of(MODELS["physical"])
 GRID = {"alpha": [20.0, 30.0], "beta": [-50.0, 40.0], "wall": [1e-3, 1.59e-3], "pressure": [0.0, 2e4, 6e4]}

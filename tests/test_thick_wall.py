@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from freesweep.solver import membrane, physical, wall
+from freesweep.solver.physics import membrane, physical, wall
 
 PARTS = ("w", "y", "G", "psi", "yy", "yG", "ypsi", "GG", "Gpsi", "psipsi")
 

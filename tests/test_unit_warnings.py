@@ -10,10 +10,10 @@ from grids import swept
 
 from freesweep import Actuator, MooneyRivlin, inflate
 from freesweep.closed_form import region
+from freesweep.description.unit_warnings import doubts
 from freesweep.statics import thin_wall_attributes
 from freesweep.thick_wall import grid_attributes, softer
-from freesweep.unit_warnings import doubts
-from freesweep.verify import faults
+from freesweep.verification.verify import faults
 
 USUAL = {"alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1.59e-3, "c10": 0.11e6}
 

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from freesweep.units import quantity, shown
+from freesweep.description.units import quantity, shown
 
 
 @pytest.mark.parametrize(

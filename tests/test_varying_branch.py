@@ -7,7 +7,7 @@ import pytest
 from varying_branch import branch
 
 from freesweep import Actuator, MooneyRivlin, inflate
-from freesweep.profiles import as_profile
+from freesweep.description.profiles import as_profile
 from freesweep.status import BEYOND_LIMIT, OK
 
 C10, R0 = 1e5, 5e-3

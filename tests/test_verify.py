@@ -11,11 +11,11 @@ from grids import CHILD_ENVIRONMENT, GRID, SMALL, make, spec, store
 
 from freesweep import open_atlas
 from freesweep.atlas.seal import SIZE, seal_fault, sealed
-from freesweep.resolve import draw, resolve
-from freesweep.restate import faults as restated
 from freesweep.sweep import run as sweep_run
 from freesweep.sweep.spec import parse
-from freesweep.verify import faults
+from freesweep.verification.cross_check import draw, resolve
+from freesweep.verification.restate import faults as restated
+from freesweep.verification.verify import faults
 
 SMALLER = GRID | {"force": [-0.4, 0.0], "torque": [0.0], "c10": [0.1e6]}
 
@@ -65,7 +65,7 @@ READER = """
 import faulthandler, random, sys
 from pathlib import Path
 from freesweep.atlas.store import AtlasError, open_atlas
-from freesweep.verify import faults
+from freesweep.verification.verify import faults
 content, path, draw, tally = Path(sys.argv[1]).read_bytes(), Path(sys.argv[2]), random.Random(8), [0, 0, 0]
 for _ in range(int(sys.argv[3])):
     changed, place = bytearray(content), draw.randrange(len(content))

@@ -23,11 +23,11 @@ from freesweep import (
     materials,
 )  # fmt: skip
 from freesweep.cli import DONE
-from freesweep.elastomer import convex_to
-from freesweep.resolve import draw, resolve
+from freesweep.description.elastomer import convex_to
+from freesweep.description.strain import first_invariant
 from freesweep.status import BEYOND_LIMIT
-from freesweep.strain import first_invariant
 from freesweep.sweep.spec import SpecificationError, parse
+from freesweep.verification.cross_check import draw, resolve
 
 SIZES = {"length": 0.08, "radius": 5e-3, "wall": 1.5e-3}
 AREA, HALF_LENGTHS = (6.5**2 - 25) / 25, 16.0

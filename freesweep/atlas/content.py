@@ -5,7 +5,7 @@ What an atlas says of its own numbers (values against statuses, the grid against
 
 import numpy as np
 
-from ..tube_model import ATTRIBUTES, FIBER_PLACES, FIBERS, WALL_MODELS, model_of
+from ..description.tube_model import ATTRIBUTES, FIBER_PLACES, FIBERS, WALL_MODELS, model_of
 from .schema import FLAG_OF, PARAMETERS, STATUS_OF, VARIABLES, absent, attributes, status_of
 
 MOST_VALUES = 1_000_000  # of one axis: a specification gives 10 000, and axes may grow

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..given import described
-from ..options import read_choice, read_path
-from ..quantities import Names, Quantities
+from ..description.given import described
+from ..description.options import read_choice, read_path
+from ..description.quantities import Names, Quantities
 from ..status import STATUSES
 from . import netcdf
 from .content import faults
@@ -138,7 +138,8 @@ class Atlas:
         return curve(self._reader, along, values, query)
 
     def interpolator(self, names: str | Sequence[str]) -> "Interpolator":
-        """A callable for loops and optimizers: ``f(*values, gradient=False)``, see :class:`freesweep.query.Interpolator`.
+        """A callable for loops and optimizers: ``f(*values, gradient=False)``, see
+        :class:`freesweep.query.interpolator.Interpolator`.
 
         ``names`` is a variable or a list of them; the values are given in the order of ``f.axes``. Raises QueryError.
         """
@@ -187,9 +188,10 @@ def open_atlas(path: str | PathLike[str]) -> Atlas:
     """Open an atlas; its numbers are read when they are used.
 
     The file may be anybody's: nothing but this file is read, and it is refused with the reason unless it is an atlas in
-    structure and content (:func:`freesweep.verify.faults` says whether every bit is the one that was written). A file
-    without a seal, as of tools that add an attribute or join atlases, gives an :class:`UnsealedWarning`.
-    Raises FileNotFoundError, EnvironmentFault, or :class:`AtlasError` for what is no path, or no atlas of this program.
+    structure and content (:func:`freesweep.verification.verify.faults` says whether every bit is the one that was
+    written). A file without a seal, as of tools that add an attribute or join atlases, gives an
+    :class:`UnsealedWarning`. Raises FileNotFoundError, EnvironmentFault, or :class:`AtlasError` for what is no path, or
+    no atlas of this program.
     """
     unread = []
     if (path := read_path("path", path, "an atlas", unread)) is None:

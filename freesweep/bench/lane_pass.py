@@ -3,10 +3,10 @@
 import numpy as np
 
 from ..jit import kernel
-from ..solver import lagrangian
 from ..solver.lanes.newton import eliminate, substitute
-from ..solver.lanes.seat import aligned
+from ..solver.lanes.pack import aligned
 from ..solver.lanes.vector import WIDTH, get, mask_of, spread
+from ..solver.physics import lagrangian
 from .peak import CELLS, LOAD, PASSES, RUBBER, TUBE, median_time
 
 EXTRA = 47  # flops of a cell beside its density: lanes.newton.eliminate, substitute

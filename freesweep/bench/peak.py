@@ -12,7 +12,8 @@ from numba import types
 from numba.extending import intrinsic
 
 from ..jit import kernel
-from ..solver import lagrangian, newton
+from ..solver.numerics import newton
+from ..solver.physics import lagrangian
 
 CHAINS = (
     12  # independent multiply-adds under way: more than latency times units of any machine yet, fewer than registers

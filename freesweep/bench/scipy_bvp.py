@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_bvp
 
 from ..jit import kernel
-from ..solver import lagrangian
+from ..solver.physics import lagrangian
 
 NODES, COLD_NODES = 17, 65  # of a warm start, and of the first pressure
 MOST_NODES = 1000  # where it has not converged by then, it does not converge with 20 000 either

@@ -146,8 +146,8 @@ def _grid(designs, pressures, repeats):
 
 def _newton_passes(repeats):
     """Cost of a cell in a Newton pass, one design at a time and vectors of them, beside the machine's peak."""
-    from ..solver import membrane
     from ..solver.lanes.vector import WIDTH
+    from ..solver.physics import membrane
     from .flops import density_flops
     from .lane_pass import EXTRA as OF_VECTORS
     from .lane_pass import lane_cell_time

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..faults import ActuatorError
-from ..given import read_column
-from ..options import read_choice
+from ..description.faults import ActuatorError
+from ..description.given import read_column
+from ..description.options import read_choice
 from .measured import COLUMNS, Measurement
 from .predicted import Predictor
 

@@ -22,10 +22,10 @@ c01 = "0.5*c10"
 
 from pathlib import Path
 
-from ..elastomer import rubber_of
-from ..faults import ActuatorError
-from ..given import numbers
-from ..material_library import material
+from ..description.elastomer import rubber_of
+from ..description.faults import ActuatorError
+from ..description.given import numbers
+from ..description.material_library import material
 from ..sweep import toml_guard
 from .csv_file import FIRST_GUESS, TUBE, WORDS, read_measurements
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from ..actuator import Actuator, ActuatorError, MooneyRivlin
 from ..atlas.schema import PARAMETERS
-from ..elastomer import Yeoh
-from ..options import read_path
-from ..quantities import Path
+from ..description.actuator import Actuator, ActuatorError, MooneyRivlin
+from ..description.elastomer import Yeoh
+from ..description.options import read_path
+from ..description.quantities import Path
 from ..table_file import RATIO, TEXT, Known, read_columns
 from .branches import BRANCHES, branch_faults
 from .measured import COLUMNS, SHORTENINGS, Measurement, as_length, default_measured, measured_faults, read_names

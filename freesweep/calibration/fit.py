@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..actuator import ActuatorError
-from ..given import described
-from ..options import read_switch
-from ..quantities import Names, Quantities
+from ..description.actuator import ActuatorError
+from ..description.given import described
+from ..description.options import read_switch
+from ..description.quantities import Names, Quantities
 from .branches import hysteresis_of, mean_of_loops
 from .identify import covariance_of, notes_of, relative
 from .judge import judge

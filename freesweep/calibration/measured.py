@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..actuator import Actuator
-from ..faults import ActuatorError
-from ..given import described, read_column
-from ..options import read_choice
-from ..quantities import Quantities
+from ..description.actuator import Actuator
+from ..description.faults import ActuatorError
+from ..description.given import described, read_column
+from ..description.options import read_choice
+from ..description.quantities import Quantities
 
 COLUMNS = {"deformed_length": "m", "rotation": "degree", "mid_radius": "m", "force": "N", "torque": "N m"}
 SHORTENINGS = {"contraction": "1", "stroke": "m"}  # in place of a deformed length: share of the length, shortening

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..actuator import Actuator
 from ..atlas.schema import PARAMETERS
-from ..faults import ActuatorError
-from ..given import described, numbers
+from ..description.actuator import Actuator
+from ..description.faults import ActuatorError
+from ..description.given import described, numbers
 from ..inverse.freedom import TIE
 
 EXTENSION = "fiber_extension"

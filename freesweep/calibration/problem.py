@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..actuator import ActuatorError
+from ..description.actuator import ActuatorError
 from .parameters import EXTENSION, Parameters
 from .predicted import Predictor, continued
 

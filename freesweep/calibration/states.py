@@ -6,12 +6,12 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numba import config
 
+from ..description.tube_model import TubeModel
 from ..query import reference
 from ..query.exact import CELLS, solve
 from ..query.reference import COLUMNS, FIBERS, FORCE, HELD, LENGTH, LENGTH_HELD, LOADED, PRESSURE, ROTATION_HELD
 from ..scaling import problem_rows
 from ..status import VALUED
-from ..tube_model import TubeModel
 
 ACCURACY = {False: 1e-8, True: 1e-7}  # of the solver, scaled; of physical tubes
 SPLIT = 48  # states that are worth a thread

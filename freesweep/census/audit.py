@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from ..description.tube_model import MODELS
 from ..scaling import OUTPUTS
 from ..status import VALUED
-from ..tube_model import MODELS
 from .designs import COLUMNS, quadrature, quadrature_held, words
 
 FINER = 4  # times as many cells has the finer mesh

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ..description.tube_model import MODELS
 from ..status import NOT_CONVERGED, OK, STATUSES
-from ..tube_model import MODELS
 from .audit import HELD, Audit
 from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures, words
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..tube_model import MODELS, SHARES
+from ..description.tube_model import MODELS, SHARES
 
 BLOCK = 256  # designs that are drawn, solved and counted together
 PRESSURES = 4  # of each design, beside its locked shape

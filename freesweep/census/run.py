@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ..tube_model import DEFAULT, MODELS, word_faults
+from ..description.tube_model import DEFAULT, MODELS, word_faults
 from .audit import FINER, HELD
 from .count import Census
 from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures

@@ -163,9 +163,9 @@ def _run_sweep(options):
     if options.map:
         check_map(sweep, options.map)
     if options.dry_run:
-        from ..sweep.doubts import doubts_of
+        from ..description.unit_warnings import warn_of
         from ..sweep.estimate import dry_run
-        from ..unit_warnings import warn_of
+        from ..sweep.unit_doubts import doubts_of
 
         warn_of(doubts_of(sweep), stacklevel=1)
         print(dry_run(sweep, out, options.threads))

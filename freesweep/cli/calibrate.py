@@ -1,6 +1,6 @@
 """The command `freesweep calibrate`: parses and calls."""
 
-from ..tube_model import FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
+from ..description.tube_model import FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
 from .single import CONSTANTS, add_rubber, read_options, read_rubber
 
 NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
@@ -94,9 +94,9 @@ def _run(options):
 
 def _measurements(options, asked, faults):
     """The measurements of CSV files and options; puts priors, bounds and ties into what is ``asked``."""
-    from ..actuator import ActuatorError
     from ..calibration.csv_file import FIRST_GUESS, read_measurements
-    from ..elastomer import Yeoh
+    from ..description.actuator import ActuatorError
+    from ..description.elastomer import Yeoh
 
     is_word = options.fiber_radius in FIBER_PLACES
     values = read_options(options, NUMBERS[:-1] if is_word else NUMBERS, faults)

@@ -47,7 +47,7 @@ def _chosen(items):
     import numpy as np
 
     from ..atlas.schema import PARAMETERS
-    from ..units import quantity
+    from ..description.units import quantity
 
     faults, chosen = [], {}
     for item in items:

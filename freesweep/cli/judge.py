@@ -1,6 +1,6 @@
 """The commands that judge: verify, bench, census. They parse and call."""
 
-from ..tube_model import DEFAULT, MODELS
+from ..description.tube_model import DEFAULT, MODELS
 
 
 def add_judging(commands):
@@ -41,7 +41,7 @@ def add_judging(commands):
 
 def _run_verify(options):
     from ..atlas.store import AtlasError, open_atlas
-    from ..verify import faults
+    from ..verification.verify import faults
 
     if options.resolve is not None and options.resolve < 1:
         raise ValueError(f"--resolve: found {options.resolve}; give 1 or more")
@@ -67,15 +67,15 @@ def _run_verify(options):
 
 def _compared(atlas, options):
     """Points of an atlas solved anew: points, comparisons, notes."""
-    from ..resolve import draw, resolve
-    from ..restate import finer
+    from ..verification.cross_check import draw, resolve
+    from ..verification.restate import finer
 
     points = draw(atlas.data, options.resolve, options.seed)
     return points, *(finer if points.model.is_physical else resolve)(points)
 
 
 def _resolve(atlas, options):
-    from ..resolve import table
+    from ..verification.cross_check import table
 
     points, comparisons, notes = _compared(atlas, options)
     if not points.model.is_physical:
@@ -90,7 +90,7 @@ def _resolve(atlas, options):
 def _refuse(points, comparisons):
     """Raises if stored numbers are not those of the second method, or what is stated of them not what the solver states."""
     from ..atlas.store import AtlasError
-    from ..restate import faults
+    from ..verification.restate import faults
 
     if broken := sum(int(compared.broken.sum()) for compared in comparisons):
         raise AtlasError(f"{broken:,} stored numbers lie farther from the second method's than both errors allow")

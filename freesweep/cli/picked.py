@@ -18,8 +18,8 @@ def read(path):
 def selection(items):
     """Values of ``--at`` by name: quantities in stored units, the name of a design as it is."""
     from ..atlas.schema import PARAMETERS, attributes
+    from ..description.units import quantity
     from ..plot.choice import DESIGN, HELD
-    from ..units import quantity
 
     select = {}
     for item in items:

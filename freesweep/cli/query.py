@@ -60,7 +60,7 @@ def _axes(options):
     ValueError with every fault.
     """
     from ..atlas.schema import PARAMETERS
-    from ..units import quantity, unit_of
+    from ..description.units import quantity, unit_of
 
     faults, axes, units = [], {}, {}
     for name in PARAMETERS:
@@ -89,7 +89,7 @@ def _read_points(path, faults, asked):
     from pathlib import Path
 
     from ..atlas.schema import PARAMETERS
-    from ..faults import ActuatorError
+    from ..description.faults import ActuatorError
     from ..table_file import TEXT, Known, read_columns
 
     known = Known({name: parameter.units for name, parameter in PARAMETERS.items()} | {"design": TEXT}, {})
@@ -113,7 +113,7 @@ def _read_points(path, faults, asked):
 def in_units(found, units):
     """An answer in the units of its question: each axis in its own, an output in the first that was used of its kind."""
     from ..atlas.schema import PARAMETERS
-    from ..units import factor
+    from ..description.units import factor
 
     first = {}
     for name, unit in units.items():

@@ -2,7 +2,7 @@
 
 import sys
 
-from ..tube_model import DEFAULT, FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
+from ..description.tube_model import DEFAULT, FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
 
 CONSTANTS = ("c10", "c01", "c20", "c30")
 ALONG = ("alpha", "beta", "radius", "wall")  # what may vary along the tube
@@ -80,7 +80,7 @@ def _keep(command):
 
 def tube_of(options):
     """The actuator that the options describe; every quantity that cannot be read is named in one ValueError."""
-    from ..actuator import Actuator
+    from ..description.actuator import Actuator
 
     faults = []
     names = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")
@@ -102,9 +102,9 @@ def _along(name, text, faults):
     """What a text says that varies along the tube: pairs "0:8mm,1:5mm", smooth if that is said before, or a rule as it is
     given; None of a number. Faults are noted.
     """
-    from ..along import Profile, rule_of
     from ..atlas.schema import PARAMETERS
-    from ..units import quantity
+    from ..description.along import Profile, rule_of
+    from ..description.units import quantity
 
     if rule_of(name, text):
         return text
@@ -125,7 +125,7 @@ def _along(name, text, faults):
 def read_options(options, names, faults) -> dict:
     """Numbers of the options that are given, by name, in SI units and degrees; faults are noted."""
     from ..atlas.schema import PARAMETERS
-    from ..units import quantity
+    from ..description.units import quantity
 
     values = {}
     for name in (name for name in names if getattr(options, name) is not None):
@@ -138,10 +138,10 @@ def read_options(options, names, faults) -> dict:
 
 def read_rubber(options, faults, *default):
     """The rubber of the options of ``add_rubber``, or of a ``default`` c10; None after noting faults."""
-    from ..elastomer import rubber_of
-    from ..faults import ActuatorError
-    from ..material_library import material
-    from ..units import quantity
+    from ..description.elastomer import rubber_of
+    from ..description.faults import ActuatorError
+    from ..description.material_library import material
+    from ..description.units import quantity
 
     before = len(faults)
     given = [name for name in CONSTANTS if getattr(options, name) is not None]
@@ -175,7 +175,7 @@ def _run_lock(options):
 
 def quantities(faults, **texts):
     """Texts as numbers by option name: ``name=(texts, unit)``; what cannot be read goes to ``faults``."""
-    from ..units import quantity
+    from ..description.units import quantity
 
     numbers = {}
     for name, (given, unit) in texts.items():

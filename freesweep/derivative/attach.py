@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from .. import status
-from ..profiles import SENSITIVITY
+from ..description.profiles import SENSITIVITY
 from .equilibrium import NotFound
 from .request import attributes
 from .rest import is_at_rest

@@ -1,8 +1,8 @@
 """States on several meshes at once: Newton's method, and how outputs change with each parameter.
 
-``J = sum h L(y_mid, slope)``, as in :mod:`freesweep.solver.newton`, is stationary in the nodes' stretches y. Where a
-parameter changes, ``J_yy dy = -J_ytheta``, one tridiagonal solution, and an output changes by ``Q_theta + Q_y dy``. Meshes
-that know nothing of each other are one banded system all the same: NumPy's time is that of its calls.
+``J = sum h L(y_mid, slope)``, as in :mod:`freesweep.solver.numerics.newton`, is stationary in the nodes' stretches y.
+Where a parameter changes, ``J_yy dy = -J_ytheta``, one tridiagonal solution, and an output changes by ``Q_theta + Q_y
+dy``. Meshes that know nothing of each other are one banded system all the same: NumPy's time is that of its calls.
 """
 
 from typing import NamedTuple

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..solver import mesh
+from ..solver.numerics import mesh
 from .twins import twin
 
 FIRST, GROWTH, EVEN = 2e-5, 1.1, 200  # nodes from each end: the first, in radii, each so much farther; and even ones

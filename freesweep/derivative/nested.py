@@ -1,4 +1,4 @@
-"""Derivatives on nested meshes, extrapolated and bounded like the outputs (:mod:`freesweep.solver.nested`)."""
+"""Derivatives on nested meshes, extrapolated and bounded like the outputs (:mod:`freesweep.solver.numerics.nested`)."""
 
 from typing import NamedTuple
 

@@ -1,7 +1,7 @@
 """The physical tube's density over all cells of a mesh, as dual numbers: a thick wall, threads that cannot push, or both.
 
-Where meridional stretch G and twist rate psi settle (:mod:`freesweep.solver.relaxed`), with multipliers a and b of both
-families::
+Where meridional stretch G and twist rate psi settle (:mod:`freesweep.solver.physics.relaxed`), with multipliers a and b
+of both families::
 
     T/(2 s) - W_G = a + b,    m - W_psi = 2 y^2 (a (t_a + psi) + b (t_b + psi)),
     g = 0 or multiplier = 0   of each family,    g = G + y^2 (t + psi)^2 - gamma^2 (1 + t^2)
@@ -31,7 +31,7 @@ NO_ROOM = 1e-30
 @cache
 def walls():
     """Strain energy of a wall, and where loose fibers settle."""
-    from ..solver import physical, wall
+    from ..solver.physics import physical, wall
 
     counted = twin(wall.points)
 

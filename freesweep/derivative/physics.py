@@ -6,9 +6,9 @@ from functools import cache
 
 import numpy as np
 
-from ..elastomer import Yeoh
+from ..description.elastomer import Yeoh
+from ..description.tube_model import FIBER_PLACES, fiber_place
 from ..scaling import OUTPUTS, output_scales, problem_columns, wall_volume_inside
-from ..tube_model import FIBER_PLACES, fiber_place
 from .dual import Dual
 from .request import constants, place_of_fibers
 from .twins import twin
@@ -21,7 +21,7 @@ ALONG = ("alpha", "beta", "wall")
 @cache
 def membranes():
     """Density and integrands of the source's tube."""
-    from ..solver import membrane
+    from ..solver.physics import membrane
 
     return twin(membrane.density), twin(membrane.integrands)
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ..actuator import Actuator
 from ..atlas.schema import PARAMETERS, VARIABLES
-from ..elastomer import Yeoh
-from ..given import described
-from ..tube_model import MODELS
+from ..description.actuator import Actuator
+from ..description.elastomer import Yeoh
+from ..description.given import described
+from ..description.tube_model import MODELS
 
 SHAPE = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension")

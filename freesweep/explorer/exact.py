@@ -4,12 +4,12 @@ import warnings
 
 import numpy as np
 
-from ..actuator import Actuator
-from ..elastomer import rubber_of
-from ..faults import ActuatorError
+from ..description.actuator import Actuator
+from ..description.elastomer import rubber_of
+from ..description.faults import ActuatorError
+from ..description.tube_model import MODELS
 from ..plot.shape import shape_of
 from ..status import STATUSES, VALUED
-from ..tube_model import MODELS
 
 STATIONS = 161  # of a shape
 DRAWN = 121  # of them that travel to the page

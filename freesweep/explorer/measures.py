@@ -5,12 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import PARAMETERS, attributes
+from ..description.tube_model import fiber_surface
+from ..description.units import factor
 from ..inverse.outputs import output
 from ..plot.between import EXACT
 from ..query.family import FAMILIES, FAMILY_OF, LOOSE
 from ..status import NOT_INTERPOLABLE, VALUED
-from ..tube_model import fiber_surface
-from ..units import factor
 
 ANY = 1e9  # a tolerance: each measure is held to its own, so none hides another
 SYSTEMS = ("SI", "mm kPa", "in psi")

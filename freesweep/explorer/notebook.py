@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..atlas.store import Atlas
-from ..faults import ActuatorError
-from ..given import described
+from ..description.faults import ActuatorError
+from ..description.given import described
 
 if TYPE_CHECKING:
     from .server import Explorer

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS, attributes
 from ..atlas.store import Atlas
-from ..given import described, numbers
-from ..options import read_switch
+from ..description.given import described, numbers
+from ..description.options import read_switch
 from ..query.faults import QueryError, unknown
 from ..query.query import check_names
 

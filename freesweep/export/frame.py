@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from ..faults import ActuatorError
-from ..given import described
+from ..description.faults import ActuatorError
+from ..description.given import described
 
 if TYPE_CHECKING:
     import pandas as pd

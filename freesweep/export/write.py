@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from ..atlas.files import write_whole
-from ..options import read_choice, read_path
+from ..description.options import read_choice, read_path
 from .arrays import as_mat, as_npz
 from .c_header import as_c
 from .chosen import chosen

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 from ..calibration.csv_file import KNOWN, SIGMA
-from ..faults import ActuatorError
+from ..description.faults import ActuatorError
 from ..table_file import TEXT, read_columns
 
 

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..actuator import Actuator
 from ..atlas.store import Atlas
-from ..faults import ActuatorError
-from ..given import described
-from ..options import read_count
-from ..quantities import Names
+from ..description.actuator import Actuator
+from ..description.faults import ActuatorError
+from ..description.given import described
+from ..description.options import read_count
+from ..description.quantities import Names
 from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import read_tolerances

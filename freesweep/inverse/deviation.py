@@ -8,8 +8,8 @@ from ..derivative.dual import Dual
 from ..derivative.physics import OWN
 from ..derivative.request import SHAPE, constants, parameters, place_of_fibers, unit_of
 from ..derivative.table import rows_of
-from ..given import described, read_number
-from ..tube_model import FIBER_PLACES, fiber_place
+from ..description.given import described, read_number
+from ..description.tube_model import FIBER_PLACES, fiber_place
 from .freedom import LOADS
 from .outputs import FOLLOWING, derived
 from .predict import state_of

@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..actuator import Actuator
-from ..along import Profile
 from ..atlas.schema import PARAMETERS
-from ..faults import ActuatorError
-from ..given import described, numbers
-from ..material_library import material
-from ..tube_model import MODELS, fiber_place
+from ..description.actuator import Actuator
+from ..description.along import Profile
+from ..description.faults import ActuatorError
+from ..description.given import described, numbers
+from ..description.material_library import material
+from ..description.tube_model import MODELS, fiber_place
 from .wishes import DESIGN
 
 LOADS = ("pressure", "force", "torque")

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ..faults import ActuatorError
+from ..description.faults import ActuatorError
 from ..holding import blocked_force, blocked_torque
 from ..statics import inflate, lock
 from ..status import INVALID, OK

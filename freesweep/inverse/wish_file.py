@@ -30,11 +30,11 @@ seed = 0
 from dataclasses import fields
 from pathlib import Path
 
-from ..actuator import Actuator
-from ..elastomer import rubber_of
-from ..faults import ActuatorError
-from ..given import numbers
-from ..material_library import material
+from ..description.actuator import Actuator
+from ..description.elastomer import rubber_of
+from ..description.faults import ActuatorError
+from ..description.given import numbers
+from ..description.material_library import material
 from ..sweep import toml_guard
 from .curve_file import is_path
 from .freedom import CONSTANTS, Profile

@@ -13,9 +13,9 @@ import numpy as np
 
 from ..atlas import schema
 from ..atlas.schema import PARAMETERS
-from ..faults import ActuatorError
-from ..given import described, numbers, read_number
-from ..quantities import Quantities, Quantity
+from ..description.faults import ActuatorError
+from ..description.given import described, numbers, read_number
+from ..description.quantities import Quantities, Quantity
 from .curve_file import columns_of, is_path
 
 FREE = {name: each.units for name, each in schema.VARIABLES.items() if each.without == schema.HELD}  # of a free state

@@ -7,8 +7,8 @@ from numbers import Real
 import numpy as np
 
 from ..atlas import schema
-from ..given import numbers
-from ..tube_model import MODELS, model_of
+from ..description.given import numbers
+from ..description.tube_model import MODELS, model_of
 from .display import USUAL, describe
 
 DESIGN = "design"  # a dimension of names, not of numbers

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..atlas import schema
-from ..quantities import Quantity
+from ..description.quantities import Quantity
 from ..status import VALUED
 from . import style
 from .between import between

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from ..atlas import schema
-from ..tube_model import fiber_surface
+from ..description.tube_model import fiber_surface
 
 
 class Display(NamedTuple):

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
-from ..quantities import Quantity
+from ..description.quantities import Quantity
 from . import glyph, regions, style
 from .choice import read_selection
 from .display import display, title

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from ..actuator import Actuator
 from ..atlas.files import write_whole
+from ..description.actuator import Actuator
 from ..status import VALUED
 from . import style
 from .shape import draw_outline, draw_shape, project, shape_of

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .. import closed_form
-from ..quantities import Quantity
+from ..description.quantities import Quantity
 from . import style
 from .choice import check_name, dimensions
 from .display import axis_label, describe, display, shown_units, title

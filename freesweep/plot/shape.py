@@ -14,7 +14,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from ..actuator import Actuator
+from ..description.actuator import Actuator
 from . import style
 
 SLANT = 0.34  # half width of an ellipse over its half height

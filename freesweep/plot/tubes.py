@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 
-from ..actuator import Actuator
+from ..description.actuator import Actuator
 from . import style
 from .shape import draw_shape, project, shape_of
 

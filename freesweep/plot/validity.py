@@ -9,7 +9,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ..quantities import Quantity
+from ..description.quantities import Quantity
 from ..status import VALUED
 from . import style
 from .between import between

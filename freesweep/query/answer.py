@@ -3,11 +3,11 @@
 import numpy as np
 
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
-from . import errors, reference, tensor
+from . import errors, reference, spline
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED
-from .holes import MIXED
-from .place import place
+from .locate import place
+from .missing_nodes import MIXED
 from .slack import UNKNOWN
 
 CUBIC, LINEAR = "cubic", "linear"
@@ -36,10 +36,10 @@ class Inquiry:
         self.exact = self.node >= 0
         if table.is_untold:
             self.status[self.valued & ~self.exact] = NOT_INTERPOLABLE
-        self.ranks = table.knots[np.arange(d), self.pieces, tensor.RANK].astype(np.int64)
+        self.ranks = table.knots[np.arange(d), self.pieces, spline.RANK].astype(np.int64)
         self.order = np.arange(self.size)
         if self.size > SORTED:
-            tensor.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-1])), self.order)
+            spline.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-1])), self.order)
 
     @property
     def valued(self):
@@ -58,7 +58,7 @@ class Inquiry:
         table, found = self.table, np.empty(self.size)
         order = self.order if order is None else order
         args = (table.knots, table.windows, table.labels, table.strides, self.pieces, self.shares, order, orders, found)
-        tensor.interpolate(table.variable(name).values, *args)
+        spline.interpolate(table.variable(name).values, *args)
         return found
 
     def estimate(self, name, scales):

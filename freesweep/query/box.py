@@ -6,7 +6,7 @@ import numpy as np
 
 from .axis import LABEL
 from .ideal import IMAGES
-from .place import NEAR
+from .locate import NEAR
 from .table import TURNED
 
 MARGIN = 8  # nodes around a piece: its window, the pieces beside it, and what fills their holes

@@ -6,7 +6,7 @@ from . import calibration, errors
 from .calibration import CLASSES, RANKS
 from .cells import ROUGH
 from .reference import MID_RADIUS
-from .tensor import RANK
+from .spline import RANK
 
 BEYOND = 4e-4  # share of the designs of a class that may need more than its factor
 FEW = 200.0  # factors go beyond what was seen, the more the fewer designs were seen

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..tube_model import model_of
+from ..description.tube_model import model_of
 
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"

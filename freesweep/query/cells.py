@@ -7,7 +7,7 @@ slab by slab along the first axis, as much as a cache holds; an extent is (count
 import numpy as np
 
 from .axis import LABEL, WINDOW, extrapolation
-from .holes import weigh
+from .missing_nodes import weigh
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
 KINK = (0.25, 0.04, 0.01)  # of a change of slope times the width: what cubics miss in its piece, and one and two beside

@@ -6,11 +6,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numba import config
 
-from ..actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
+from ..description.actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
+from ..description.tube_model import MODELS
 from ..scaling import OUTPUTS, output_scales, problem_rows, wall_volume_inside
 from ..solver.status import PENDING
 from ..status import DEGENERATE, INVALID, NOT_CONVERGED, VALUED
-from ..tube_model import MODELS
 from . import reference
 from .reference import COLUMNS
 
@@ -107,7 +107,7 @@ def _held(kind, rows, own, accuracy, cells, thorough):
     """Held states of problems (k, ...), each at its own pressure."""
     from ..solver import hold_batch
     from ..solver.batch import uniform
-    from ..solver.find import HELD_LENGTH, HELD_ROTATION
+    from ..solver.held.held_state import HELD_LENGTH, HELD_ROTATION
     from ..solver.problem import LENGTH, PROBLEM_SIZE
 
     count = len(rows)

@@ -2,7 +2,7 @@
 
 import difflib
 
-from ..given import described
+from ..description.given import described
 
 
 class QueryError(ValueError):

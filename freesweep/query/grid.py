@@ -9,7 +9,7 @@ from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, WALL
 class GridPoints:
     """Points of a grid over ``axes``; ``columns`` (d,) says where in a point an axis goes, -1: nowhere.
 
-    ``fixed`` (designs, 15): what the grid fixes; ``fiber_share``: see :func:`place.place`; ``by_length``:
+    ``fixed`` (designs, 15): what the grid fixes; ``fiber_share``: see :func:`.locate.place`; ``by_length``:
     whether what is held is given as a length.
     """
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ..actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
+from ..description.actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
+from ..description.tube_model import fiber_surface
 from ..ideal import ideal_blocked
 from ..status import INVALID, OK, OUTSIDE
-from ..tube_model import fiber_surface
-from .place import NEAR
+from .locate import NEAR
 
 USED = ("alpha", "beta", "radius", "wall", "fiber_radius", "pressure")
 IMAGES = ((1.0, False), (1.0, True), (-1.0, False), (-1.0, True))  # (sign of both angles, whether exchanged)

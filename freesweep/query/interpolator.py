@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..given import numbers
-from ..options import read_switch
-from ..quantities import Quantities
+from ..description.given import numbers
+from ..description.options import read_switch
+from ..description.quantities import Quantities
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import reference
 from .answer import Inquiry

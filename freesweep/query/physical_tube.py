@@ -1,16 +1,17 @@
 """The uniform physical tube: a thick wall, threads that cannot push. What :mod:`uniform_tube` is to the source's tube.
 
-At slope 0 the density of :mod:`freesweep.solver.physical` knows meridional stretch and twist already; what is left is the
-circumferential stretch at which it is stationary. It is continuous in the loads, with a kink where a family goes slack.
+At slope 0 the density of :mod:`freesweep.solver.physics.physical` knows meridional stretch and twist already; what is
+left is the circumferential stretch at which it is stationary. It is continuous in the loads, with a kink where a family
+goes slack.
 """
 
 import functools
 import math
 
 from ..jit import entry_point, kernel
-from ..solver.physical import density, kind_of, place, uniform_tube
-from ..solver.relaxed import both_reach, multipliers, reach, taut_twist
-from ..solver.wall import slopes, stored
+from ..solver.physics.physical import density, kind_of, place, uniform_tube
+from ..solver.physics.relaxed import both_reach, multipliers, reach, taut_twist
+from ..solver.physics.wall import slopes, stored
 from .reference import (
     ALPHA,
     BETA,

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..tube_model import TubeModel
+from ..description.tube_model import TubeModel
 from . import reference, slack
 
 

@@ -8,19 +8,19 @@ from itertools import pairwise
 import numpy as np
 
 from ..atlas.schema import PARAMETERS, attributes
-from ..given import described
-from ..options import read_choice, read_switch
+from ..description.given import described
+from ..description.options import read_choice, read_switch
+from ..description.tube_model import fiber_surface
 from ..status import NOT_INTERPOLABLE, OUTSIDE, status_attributes
 from ..thick_wall import DESIGN, NOTES, attributes_of
-from ..tube_model import fiber_surface
 from . import calibration
 from .answer import CUBIC, LINEAR, Inquiry
-from .ask import read_question
 from .box import Parts
 from .family import FAMILIES, FAMILY_OF, IDEAL
 from .faults import QueryError, unknown
-from .frame import Frame
+from .grid_axes import Frame
 from .ideal import ideal_answer
+from .question import read_question
 from .table import Table
 
 CHUNK = 1 << 18  # points answered together: their arrays fit in memory, and many share a cell

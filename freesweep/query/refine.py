@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..given import numbers
+from ..description.given import numbers
 from ..status import NOT_INTERPOLABLE, VALUED
 from . import reference
 from .answer import Inquiry
@@ -82,9 +82,9 @@ def profiles(reader, question, x):
     """
     import xarray as xr
 
-    from ..actuator import Actuator
     from ..atlas.schema import PROFILES, attributes
-    from ..elastomer import rubber_of
+    from ..description.actuator import Actuator
+    from ..description.elastomer import rubber_of
 
     if "state" not in {FAMILY_OF.get(name) for name in reader.names} or not reader.frame.uniform_along_x:
         raise QueryError(["x: this atlas holds no states under pressure whose profiles could be solved"])
@@ -110,7 +110,7 @@ def profiles(reader, question, x):
 
 
 def _inflated(design, stations, frame, actuator, material):
-    from ..actuator import ActuatorError
+    from ..description.actuator import ActuatorError
     from ..statics import inflate
 
     loads = {name: design.pop(name) for name in ("pressure", "force", "torque")}

@@ -10,12 +10,12 @@ from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
 from .cells import describe
 from .family import FAMILIES
-from .frame import DEFAULTS
 from .grid import GridPoints, GridStates
-from .holes import cell_codes, fill, slopes
+from .grid_axes import DEFAULTS
+from .missing_nodes import cell_codes, fill, slopes
 from .predictor import Predictor
 from .reference import COLUMNS, end_effects
-from .tensor import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
+from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
@@ -95,7 +95,7 @@ class Table:
         self.options = (frame.fiber_share, by_length, self.family.status is not None, *angles)
 
     def _packed(self):
-        """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`tensor` knows of the axes."""
+        """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`.spline` knows of the axes."""
         knots = np.zeros((len(self.axes), max(len(axis.nodes) for axis in self.axes), KNOT))
         for own, axis, rank in zip(knots, self.axes, self.ranks):
             count = len(axis.nodes)

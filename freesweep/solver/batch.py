@@ -6,11 +6,11 @@ import numpy as np
 from numba import config
 
 from ..interpret import at_once
+from .along.profile import FIELDS
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
 from .problem import LOOSE, MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, YEOH, wall_columns
-from .profile import FIELDS
 from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
@@ -19,7 +19,7 @@ FINER = 2  # times the cells of the base mesh, for states that vectors left: the
 
 
 class Walks(NamedTuple):
-    """Equilibria of many designs: rows of states, but ``limits`` (problems, 2); see :func:`branch.walk`."""
+    """Equilibria of many designs: rows of states, but ``limits`` (problems, 2); see :func:`.free.free_states.walk`."""
 
     values: np.ndarray
     bounds: np.ndarray
@@ -52,7 +52,7 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     pressures, limp = next_to_nothing(problems, first, pressures)
     drawn = len(stations) > 0 and wall_columns(problems) == PHYSICAL  # vectors draw no profiles of such tubes
     if lanes and len(tube[0]) == 0 and not drawn and not config.DISABLE_JIT:
-        from .lanes.walk import solve_lanes
+        from .lanes.free import solve_lanes
 
         calls = _scalar_calls(problems, first, pressures, tube, accuracy, stations, found)
         if not (soon and all(at_once(len(call[4]), solve_lanes, follow_many, *call) for call in calls)):
@@ -139,8 +139,8 @@ def rounds(base, physical):
 
 def _kinds(problems):
     """``(carry, solve, kind, which problems)``: the kernels of vectors, and what is the same for all that share one."""
-    from .lanes import walk
-    from .lanes.seat import count_layers
+    from .lanes import free
+    from .lanes.pack import count_layers
 
     yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
     kinds = yeoh[:, None].astype(np.int64)
@@ -151,9 +151,9 @@ def _kinds(problems):
     for kind in np.unique(kinds, axis=0):
         some, constants = np.all(kinds == kind, axis=1), (YEOH if kind[0] else MOONEY_RIVLIN)
         if len(kind) == 1:
-            yield walk.carry_lanes, walk.solve_lanes, (constants,), some
+            yield free.carry_lanes, free.solve_lanes, (constants,), some
         else:
-            yield walk.carry_physical, walk.solve_physical, (constants, int(kind[1])), some
+            yield free.carry_physical, free.solve_physical, (constants, int(kind[1])), some
 
 
 def _steepness(cosines):

@@ -6,8 +6,9 @@ One number for a tube that is the same all along, else one for each of some plac
 from math import exp, sqrt
 
 from ..jit import kernel
-from . import lagrangian, mesh, uniform
-from .course import at_point
+from .numerics import mesh
+from .numerics.properties_along import at_point
+from .physics import lagrangian, uniform_tube
 
 PLACES = 33  # along a tube that varies
 STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u
@@ -41,7 +42,7 @@ def follow(tube, u, before, load, ahead):
     for k in range(len(u)):
         cell = cell_along(tube, k / max(len(u) - 1, 1))
         drawn = lagrangian.drawn_in(cell, load)
-        ahead[k], part = uniform.follow(lagrangian.density, u[k], cell, before, load, half, drawn)
+        ahead[k], part = uniform_tube.follow(lagrangian.density, u[k], cell, before, load, half, drawn)
         reached = min(reached, part)
     return reached
 

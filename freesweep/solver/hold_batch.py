@@ -12,11 +12,11 @@ import numpy as np
 from numba import config
 
 from ..interpret import at_once
-from .block import block_many
 from .halves import one_by_one
-from .lagrangian import ROUNDING
+from .held.block import block_many
+from .held.sought import HELD_LENGTH
+from .physics.lagrangian import ROUNDING
 from .problem import FORCE, MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, TORQUE, YEOH, wall_columns
-from .sought import HELD_LENGTH
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 5  # solutions of one state, at most; two do nearly always
@@ -42,7 +42,8 @@ def _pending(count):
 
 
 def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=True, soon=False) -> Holds:
-    """Hold each problem at its target under each of its pressures; arguments as of :func:`block.block_many`, ``tube`` its
+    """Hold each problem at its target under each of its pressures; arguments as of :func:`.held.block.block_many`,
+    ``tube`` its
     (course, edges, places).
 
     Vectors of designs serve where tubes do not vary. Their numbers do not depend on which designs share a vector; those
@@ -55,7 +56,7 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
     count, found = len(pressures), _pending(len(pressures))
     walls, todo = wall_columns(problems), True
     if lanes and len(tube[0]) == 0 and problems.shape[1] == PROBLEM_SIZE and not config.DISABLE_JIT:
-        from .lanes.hold import seek_lanes
+        from .lanes.held import seek_lanes
 
         scalar = problems, walls, targets, kind, first, pressures, *tube, accuracy, *found
         todo = not (soon and at_once(count, seek_lanes, block_many, *scalar))
@@ -87,11 +88,12 @@ def _hold_lanes(problems, targets, kind, first, pressures, base, accuracy, found
 
 def refuse(problem, pressures, others, targets, kind, status):
     """Mark in ``status`` what nothing can hold, of a design that is the same all along; arguments as of
-    :func:`hold.hold_many`. To the scalar kernels such a state is the dearest, as they look for it on several meshes.
+    :func:`.held.held_states.hold_many`. To the scalar kernels such a state is the dearest, as they look for it on
+    several meshes.
     """
     if config.DISABLE_JIT:
         return
-    from .lanes.hold import seek_lanes
+    from .lanes.held import seek_lanes
 
     count = len(pressures)
     some = np.flatnonzero(pressures > 0.0)
@@ -108,8 +110,8 @@ def refuse(problem, pressures, others, targets, kind, status):
 
 def _hold(problems, targets, length_held, owners, pressures, rows, constants, base, accuracy, found):
     """The states of ``rows`` that vectors find; ``targets`` (k,) are of half the tube."""
-    from .lanes.hold import seek_lanes
-    from .lanes.walk import solve_lanes
+    from .lanes.free import solve_lanes
+    from .lanes.held import seek_lanes
 
     guesses = np.full((4, len(pressures)), np.nan)
     seek_lanes(problems, targets, owners, pressures, rows, length_held, constants, *found, *guesses)

@@ -11,7 +11,7 @@ MOONEY_RIVLIN, YEOH = (RATIO,), (RATIO, SECOND, THIRD)  # columns of a rubber's 
 
 @kernel
 def rubber_of(problem):
-    """What :mod:`lagrangian` takes as a rubber: C01/C10, C2/C1, C3/C1."""
+    """What :mod:`.physics.lagrangian` takes as a rubber: C01/C10, C2/C1, C3/C1."""
     return problem[RATIO], problem[SECOND], problem[THIRD]
 
 
@@ -22,7 +22,7 @@ def wall_columns(problems):
 
 @kernel
 def wall_of(problem, columns):
-    """What :mod:`lagrangian` takes as a wall: (k,), or (k, inner, loose)."""
+    """What :mod:`.physics.lagrangian` takes as a wall: (k,), or (k, inner, loose)."""
     if len(columns) == 1:
         return (problem[columns[0]],)
     return problem[columns[0]], problem[columns[1]], problem[columns[2]]

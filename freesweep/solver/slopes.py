@@ -21,7 +21,7 @@ def differentiate(problems, pressures, changes, accuracy):
     values, bounds = (np.full((count, directions + 1, OUTPUTS), np.nan) for _ in range(2))
     if count == 0 or config.DISABLE_JIT:
         return values, bounds
-    from .lanes.seat import COLUMNS, PRESSURE
+    from .lanes.pack import COLUMNS, PRESSURE
     from .lanes.slopes import differentiate_lanes
 
     seats = np.zeros((count, directions, COLUMNS))
@@ -41,7 +41,7 @@ def uniform_stretches(problems, pressures, constants, some):
     """The stretch of the uniform tube of each problem, and its end's cosine, (n,): NaN but in rows ``some``, and where no
     quick way leads to it.
     """
-    from .lanes.walk import carry_lanes
+    from .lanes.free import carry_lanes
 
     count = len(problems)
     stretches, cosines = np.full(count, np.nan), np.full(count, np.nan)

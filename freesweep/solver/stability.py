@@ -3,9 +3,10 @@ was solved.
 """
 
 from ..jit import kernel
-from . import held, lagrangian, newton
-from .course import fill
-from .mesh import cell_at, level
+from .cells import cell_at, level
+from .numerics import held, newton
+from .numerics.properties_along import fill
+from .physics import lagrangian
 
 ROUNDING = 4e-15  # of the sum over a fine mesh
 PUSHED = 0.02  # share of its largest part to which the resultant p y^2 + f has fallen where a branch ends in it

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..profiles import Profile, ProfileError
-from ..units import quantity, shown
+from ..description.profiles import Profile, ProfileError
+from ..description.units import quantity, shown
 from .faults import Faults
 
 MAX_AXIS = 10_000  # values of one axis: beyond it a typing slip is likelier than a purpose

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..atlas.schema import HELD, LOADS, PARAMETERS, YEOH
-from ..units import shown
+from ..description.units import shown
 from . import axis
 from .faults import Faults
 from .rubber import SYNONYMS

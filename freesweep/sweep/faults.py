@@ -3,7 +3,7 @@
 import difflib
 import re
 
-from ..units import shown
+from ..description.units import shown
 
 MAX_FAULTS = 50  # listed in one error; a file with more is not a specification with slips
 MAX_LINE = 200  # characters of a title or of a design's name

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..quantities import Along, Path, Quantities
+from ..description.quantities import Along, Path, Quantities
 
 if TYPE_CHECKING:
     from ..atlas.store import Atlas
-    from ..elastomer import MooneyRivlin, Yeoh
+    from ..description.elastomer import MooneyRivlin, Yeoh
 
 Axis: TypeAlias = "Quantities | Mapping[str, Any]"  # a number, values, a range
 

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..profiles import ProfileError, as_profile, follow
-from ..tube_model import SHARES, fiber_place
+from ..description.profiles import ProfileError, as_profile, follow
+from ..description.tube_model import SHARES, fiber_place
 
 
 class Grid:

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 SOURCES = (
-    *("solver/*.py", "solver/*/*.py", "sweep/*.py", "scaling.py", "closed_form.py", "ideal.py", "profiles.py"),
-    *("actuator.py", "status.py", "atlas/schema.py"),
+    *("solver/*.py", "solver/*/*.py", "sweep/*.py", "scaling.py", "closed_form.py", "ideal.py"),
+    *("description/*.py", "status.py", "atlas/schema.py"),
 )
 
 

@@ -105,8 +105,8 @@ def _compile_aside(missing, rubbers):
 
 def compile_idle(words):
     """Compile the entry points named among the ``words``, for the families of rubbers among them; no state is solved."""
-    from ..solver.lanes.hold import seek_lanes
-    from ..solver.lanes.walk import carry_lanes, solve_lanes
+    from ..solver.lanes.free import carry_lanes, solve_lanes
+    from ..solver.lanes.held import seek_lanes
     from ..solver.problem import MOONEY_RIVLIN, PROBLEM_SIZE
     from ..solver.problem import YEOH as YEOH_COLUMNS
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..atlas.schema import HELD, VARIABLES
 from ..status import OK
+from .canonical_problem import BLOCK, COLUMNS, PHYSICAL, TARGET, Reduced, reduced, significant
 from .grid import Grid, tubes
-from .reduce import BLOCK, COLUMNS, PHYSICAL, TARGET, Reduced, reduced, significant
 
 FREE = "free"
 CHUNK = 1 << 15  # designs read at once

@@ -4,8 +4,8 @@ import platform
 
 import numpy as np
 
+from ..description.tube_model import ATTRIBUTES, attributes_of
 from ..thick_wall import grid_attributes
-from ..tube_model import ATTRIBUTES, attributes_of
 from .grid import coordinates
 from .rubber import rubber_attributes
 

@@ -5,12 +5,12 @@ import warnings
 import numpy as np
 
 from ..atlas.schema import YEOH
-from ..elastomer import convex_to
-from ..faults import ActuatorError
-from ..material_library import material
-from ..profiles import as_profile
-from ..strain import first_invariant, largest_stretch
-from ..tube_model import fiber_surface, model_of
+from ..description.elastomer import convex_to
+from ..description.faults import ActuatorError
+from ..description.material_library import material
+from ..description.profiles import as_profile
+from ..description.strain import first_invariant, largest_stretch
+from ..description.tube_model import fiber_surface, model_of
 
 CONSTANTS = ("c10", "c01", "c20", "c30")
 SYNONYMS = {f"c{k}": f"Yeoh's C{k} is c{k}0 here, as in other reduced polynomials" for k in (1, 2, 3)}

@@ -10,28 +10,28 @@ import numpy as np
 
 from ..atlas.store import Atlas, AtlasError, open_atlas
 from ..atlas.write import AtlasWriter, packed, parts
-from ..given import described
-from ..options import read_count, read_path, read_switch
-from ..quantities import Path
+from ..description.given import described
+from ..description.options import read_count, read_path, read_switch
+from ..description.quantities import Path
+from ..description.unit_warnings import warn_of
 from ..status import STATUSES
-from ..unit_warnings import warn_of
 from . import estimate, kernels
 from .changes import changes
 from .collect import groups
-from .doubts import doubts_of
-from .grade import graded
 from .grid import coordinates
 from .identity import fingerprint, identify
 from .jobs import bar, in_order
 from .plan import plan as make_plan
 from .provenance import provenance
 from .records import Records
+from .refine_axes import graded
 from .remote import solve_remotely
 from .rubber import warn_beyond_range
 from .shard_file import Contents
 from .shards import Shards, SweepError
 from .solve import solve_shard
 from .spec import Sweep, read_file
+from .unit_doubts import doubts_of
 
 SHARD_EQUILIBRIA = 8192  # a second of work or less: what an interruption can cost, for each thread
 HELD_COST, VARYING_COST, PHYSICAL_COST = (

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..profiles import SENSITIVITY, widened
+from ..description.profiles import SENSITIVITY, widened
 from ..status import INVALID
 from .records import FREE_STATE, HELD_STATE, LIMIT, state, unsolved, upward
 
@@ -48,7 +48,7 @@ def _solve_free(_, problems, __, first, pressures, followed, accuracy, lanes=Tru
 
 
 def _solve_held(kind, problems, targets, first, pressures, followed, accuracy, lanes=True):
-    from ..solver.find import HELD_LENGTH, HELD_ROTATION
+    from ..solver.held.held_state import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold_batch import hold_all
 
     tube, error = followed

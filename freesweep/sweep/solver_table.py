@@ -1,8 +1,8 @@
 """Reads the table [solver] of a specification: what is solved, how exactly, and how far its axes may grow."""
 
 from ..atlas.schema import HELD, HELD_LENGTHS
+from ..description.units import quantity, shown
 from ..scaling import ACCURACIES
-from ..units import quantity, shown
 from .designs import AT_REST
 
 MAX_POINTS = 2_000_000_000  # 16 GB for each variable of the atlas

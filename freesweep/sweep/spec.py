@@ -33,11 +33,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..actuator import ENERGIES, SMALLEST_DIFFERENCE
 from ..atlas.schema import HELD, PARAMETERS, YEOH
-from ..profiles import as_profile, together
-from ..tube_model import DEFAULT, FIBER_PLACES, MODELS, TubeModel, word_faults
-from ..units import shown
+from ..description.actuator import ENERGIES, SMALLEST_DIFFERENCE
+from ..description.profiles import as_profile, together
+from ..description.tube_model import DEFAULT, FIBER_PLACES, MODELS, TubeModel, word_faults
+from ..description.units import shown
 from . import axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError

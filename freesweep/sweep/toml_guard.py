@@ -7,7 +7,7 @@ import re
 import tomllib
 from pathlib import Path
 
-from ..units import shown
+from ..description.units import shown
 from .faults import SpecificationError
 
 MAX_BYTES = 256_000  # a long list of designs fits a hundred times

@@ -8,9 +8,9 @@ from numbers import Integral
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..elastomer import ELASTOMERS
-from ..given import described, numbers
-from ..material_library import materials
+from ..description.elastomer import ELASTOMERS
+from ..description.given import described, numbers
+from ..description.material_library import materials
 from .designs import HOME
 from .faults import Faults, SpecificationError
 from .rubber import CONSTANTS

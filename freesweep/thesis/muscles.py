@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..elastomer import NeoHookean
+from ..description.elastomer import NeoHookean
 from ..holding import blocked_force
 from ..plot import style
 from ..plot.curve import label_ends

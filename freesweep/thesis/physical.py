@@ -9,12 +9,12 @@ import functools
 import numpy as np
 
 from .. import closed_form
+from ..description.tube_model import MODELS
 from ..holding import blocked_torque
 from ..plot import style
 from ..query import reference
 from ..query.exact import solve
 from ..statics import inflate
-from ..tube_model import MODELS
 from .claims.claim import Found, holds
 from .drawing import Drawing, Numbers, key, panels
 from .locked import profile_rows, shapes

@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 
-from ..actuator import Actuator, MooneyRivlin
+from ..description.actuator import Actuator, MooneyRivlin
 
 RADIUS, WALL = 4.76e-3, 1.59e-3  # inner radius and wall of every prototype [m]
 # fiber angle [degree]: length [m], C10, C01 [Pa] (Table 1), fiber extension (section 2.3.4)

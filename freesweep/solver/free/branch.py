@@ -3,12 +3,14 @@
 import numpy as np
 
 from ...jit import kernel
-from .. import guide, lagrangian, quadrature
-from ..bordered import FOLLOWED
-from ..continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
-from ..course import fill
-from ..held import loaded
-from ..retrace import is_upright
+from .. import guide
+from ..constant import quadrature
+from ..constant.branch import is_upright
+from ..numerics.bordered import FOLLOWED
+from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
+from ..numerics.held import loaded
+from ..numerics.properties_along import fill
+from ..physics import lagrangian
 from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from .fold import locate

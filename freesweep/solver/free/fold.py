@@ -7,12 +7,13 @@ has that edge at a place of its own, before or behind the state that the base me
 import numpy as np
 
 from ...jit import kernel
-from .. import lagrangian, nested
-from ..bordered import FOLLOWED, correct
-from ..continuation import CHANGE, FIRST_STEP, advance, is_flat, is_stable, last_alike, make_unit
-from ..course import fill
-from ..path import Track, load_at, size_of
-from ..wall import is_loose
+from ..numerics import nested
+from ..numerics.bordered import FOLLOWED, correct
+from ..numerics.continuation import CHANGE, FIRST_STEP, advance, is_flat, is_stable, last_alike, make_unit
+from ..numerics.path import Track, load_at, size_of
+from ..numerics.properties_along import fill
+from ..physics import lagrangian
+from ..physics.wall import is_loose
 
 COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
 FALLING, SMALL = 0.5, 1e-7  # of the change from mesh to mesh, and of the load: else no order is seen
@@ -135,7 +136,7 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     least = SMALL * abs(third)  # where rounding counts, nothing need fall
     estimate = max(abs(third - second), abs(second - first))
     if changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least:
-        order, before = (1.0, 4.0) if is_loose(path.origin[2]) else (15.0, 225.0)  # as in :func:`nested.extrapolate`
+        order, before = (1.0, 4.0) if is_loose(path.origin[2]) else (15.0, 225.0)  # as in nested.extrapolate
         estimate = max(abs(third - second) / order, abs(second - first) / before)
     if not estimate < AGREED * abs(third):
         return np.nan, 0.0

@@ -3,22 +3,25 @@
 First leg: pressure, force, torque and fiber extension - 1 rise in proportion, the pressure to the settling one. Second leg:
 from there the pressure alone, upward and downward. Which pressures are asked for changes no step: each state is solved on
 nested meshes from the two states of the branch that enclose it. Where a mesh loses the branch of a tube that is the same all
-along, its first integral goes on (:mod:`retrace`).
+along, its first integral goes on (:mod:`..constant.branch`).
 """
 
 import numpy as np
 
 from ...jit import entry_point, kernel
-from .. import guide, lagrangian, nested, quadrature
-from ..bordered import FOLLOWED
-from ..course import make_cells, of_problems, seat, volume
-from ..held import loaded
-from ..path import NOTHING, Path
+from .. import guide
+from ..constant import quadrature
+from ..constant.branch import retrace
+from ..numerics import nested
+from ..numerics.bordered import FOLLOWED
+from ..numerics.held import loaded
+from ..numerics.path import NOTHING, Path
+from ..numerics.properties_along import make_cells, of_problems, seat, volume
+from ..numerics.shapes import differ, extremes
+from ..physics import lagrangian
+from ..physics.wall import is_loose
 from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
-from ..retrace import retrace
-from ..shapes import differ, extremes
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
-from ..wall import is_loose
 from .branch import begin, follow, guess
 from .fold import FINEST
 from .meshes import stand
@@ -237,7 +240,7 @@ def follow_many(
     status, slack : (n,) codes; rows that are not PENDING are passed over; values are NaN unless the status is OK or
         INACCURATE
     limits : (k, 2) limit pressure and its bound, NaN if none was met
-    stations, profiles : (m,), (n, FIELDS, m): see :func:`profile.at_stations`; m = 0 for none
+    stations, profiles : (m,), (n, FIELDS, m): see :func:`..along.profile.at_stations`; m = 0 for none
     """
     same = len(course) == 0
     middle, half = edges[len(edges) - 1], 0.5 * places[len(places) - 1]

@@ -1,11 +1,12 @@
 """The mesh of a branch, graded by the state that stands on it."""
 
 from ...jit import kernel
-from .. import lagrangian, nested
-from ..bordered import FOLLOWED, correct
-from ..continuation import make_unit
-from ..course import fill
-from ..path import load_at, size_of
+from ..numerics import nested
+from ..numerics.bordered import FOLLOWED, correct
+from ..numerics.continuation import make_unit
+from ..numerics.path import load_at, size_of
+from ..numerics.properties_along import fill
+from ..physics import lagrangian
 
 GRADINGS = 3  # of the first mesh
 

@@ -8,12 +8,14 @@ through the fold, and made such that the extrapolated pressure is the one asked 
 import numpy as np
 
 from ...jit import kernel
-from .. import held, lagrangian, nested, newton, quadrature
-from ..course import fill
-from ..drawing import draw
-from ..profile import FIELDS
-from ..shapes import differ, extremes
-from ..slack import slack_fibers
+from ..along.drawing import draw
+from ..along.profile import FIELDS
+from ..along.slack import slack_fibers
+from ..constant import quadrature
+from ..numerics import held, nested, newton
+from ..numerics.properties_along import fill
+from ..numerics.shapes import differ, extremes
+from ..physics import lagrangian
 from ..status import INACCURATE, NOT_CONVERGED, OK
 
 ROOT_STEPS, ROOT = 40, 1e-9  # of the pressure, relative
@@ -24,7 +26,7 @@ PLAIN, HELD = nested.PLAIN, nested.HELD
 
 @kernel
 def solve(space, tube, load, goal, direction, target, regrades, accuracy):
-    """:func:`nested.solve` from the guess in ``space``: ``(status, doublings)``, and that the state is stable."""
+    """:func:`..numerics.nested.solve` from the guess in ``space``: ``(status, doublings)``, and that the state is stable."""
     status, unstable, doublings, _ = nested.solve(
         lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, space.x, space.y, tube, load,
         goal, direction, target, 1.0, regrades, accuracy, space.fine, space.work, space.table, space.out,

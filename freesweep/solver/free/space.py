@@ -5,12 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from .. import nested
-from ..path import Track
+from ..numerics import nested
+from ..numerics.path import Track
 
 
 class Space(NamedTuple):
-    """Scratch: of :func:`nested.solve`, a mesh and shape of its own (n + 1,), and uniform stretches along the tube."""
+    """Scratch: of :func:`..numerics.nested.solve`, a mesh and shape of its own (n + 1,), and uniform stretches along
+    the tube.
+    """
 
     fine: np.ndarray
     work: np.ndarray
@@ -24,7 +26,7 @@ class Space(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """States of one design: see :func:`branch.walk`."""
+    """States of one design: see :func:`.free_states.walk`."""
 
     pressures: np.ndarray
     values: np.ndarray

@@ -1,7 +1,8 @@
 """First mesh and shape of a tube, for a vector of designs: what its first integral says of them.
 
 The first integral of a tube that is the same all along is known from the stretch y_m in its middle, and with it the
-meridian's angle at every other stretch (theory: section 4), with T = p y^2 + f and L of :mod:`freesweep.solver.lagrangian`::
+meridian's angle at every other stretch (theory: section 4), with T = p y^2 + f and L of
+:mod:`freesweep.solver.physics.lagrangian`::
 
     T G/s - a w + m psi = L(y_m, 0)
     cos(angle) = s/sqrt(G) = T sqrt(G)/(T sqrt(G) + d),    d = L(y_m, 0) - L(y, 0)
@@ -11,14 +12,14 @@ The layer at an end falls as exp(-k x) toward the uniform stretch u, to meet tha
     y = u - (u - 1) (z + q^2/z)/(1 + q^2),    z = exp(-depth),    q = exp(-depth of the middle)
 
 By the depth, the way x along the tube is the integral of a smooth function. The depth of the middle is found so that
-it ends there. Nodes are spread by the densities of :mod:`freesweep.solver.mesh`.
+it ends there. Nodes are spread by the densities of :mod:`freesweep.solver.numerics.mesh`.
 """
 
 from math import exp, sqrt
 
 from ...jit import kernel
-from .. import lagrangian
-from ..mesh import EVEN_SHARE, TAIL_SHARE
+from ..numerics.mesh import EVEN_SHARE, TAIL_SHARE
+from ..physics import lagrangian
 from .mesh import even_out
 from .vector import WIDTH, get, put, select, some, spread
 

@@ -1,4 +1,4 @@
-"""Graded nodes of :mod:`freesweep.solver.mesh` for a vector of designs; see there for why.
+"""Graded nodes of :mod:`freesweep.solver.numerics.mesh` for a vector of designs; see there for why.
 
 The inverse of a monotone piecewise linear function is written as a sum of ramps, one for each cell: no search, no branch.
 """

@@ -1,10 +1,10 @@
-"""The stretch in the middle of long tubes, as :mod:`freesweep.solver.middle` tells it, for a vector of designs."""
+"""The stretch in the middle of long tubes, as :mod:`freesweep.solver.numerics.middle` tells it, for a vector of designs."""
 
 from math import exp, sqrt
 
 from ...jit import kernel
-from .. import lagrangian
-from ..middle import ALLOWED, BENT, LONG, MISSED, NEAR
+from ..numerics.middle import ALLOWED, BENT, LONG, MISSED, NEAR
+from ..physics import lagrangian
 from .vector import WIDTH, get, put, select, spread
 
 RESOLVED = 1.5  # layers: the longest last cell of the base mesh that does not reflect what is left of them

@@ -1,4 +1,4 @@
-"""Nested meshes of :mod:`freesweep.solver.nested` for a vector of designs: the same values, the same bounds.
+"""Nested meshes of :mod:`freesweep.solver.numerics.nested` for a vector of designs: the same values, the same bounds.
 
 Three meshes suffice where bounds that are more generous by EARLY meet the accuracy. A lane whose bounds meet the accuracy
 keeps its numbers; the others go on to finer meshes. A lane that needs more than the ``most`` doublings, or fails, is left
@@ -6,10 +6,11 @@ to another try or the scalar kernels.
 """
 
 from ...jit import kernel
-from .. import finest, lagrangian
-from ..mesh import behind, nothing_yet
-from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
-from ..newton import SMALL_STEP
+from ..cells import behind, nothing_yet
+from ..numerics import finest
+from ..numerics.nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
+from ..numerics.newton import SMALL_STEP
+from ..physics import lagrangian
 from . import mesh, middle, newton
 from .slack import pushing
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
@@ -126,7 +127,9 @@ def restart(lost, safe, n, y):
 
 @kernel
 def keep(ready, count, error, coarsest_x, coarsest_y, coarse_x, coarse_y, x, y, kept):
-    """The finest mesh of ``count`` cells, and the two before, of the lanes that are ready, as in :mod:`solver.finest`."""
+    """The finest mesh of ``count`` cells, and the two before, of the lanes that are ready, as in
+    :mod:`..numerics.finest`.
+    """
     for lane in range(WIDTH):
         if (ready >> lane) & 1:
             fine = kept[lane]
@@ -149,7 +152,7 @@ def solve(
 
     ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
     values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH, 5, ...), unless None, takes
-    their finest meshes as :func:`profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
+    their finest meshes as :func:`..along.profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
     fibers would have to push, beta fibers would)``.
     """
     # the energy at a low pressure is little beside the work whose error it takes: more than the accuracy of the rest

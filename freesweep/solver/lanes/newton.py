@@ -1,4 +1,4 @@
-"""Damped Newton of :mod:`freesweep.solver.newton` on a vector of designs, each with its own mesh.
+"""Damped Newton of :mod:`freesweep.solver.numerics.newton` on a vector of designs, each with its own mesh.
 
 One pass assembles the gradient and the Hessian of -J cell by cell, factors it and eliminates forward; a second one
 substitutes back. Every decision is a mask: a lane that has converged, or failed, is not touched again, whatever the
@@ -6,8 +6,8 @@ others need.
 """
 
 from ...jit import kernel
-from ..mesh import behind, nothing_yet
-from ..newton import SMALL_STEP
+from ..cells import behind, nothing_yet
+from ..numerics.newton import SMALL_STEP
 from .vector import HUGE, get, mask_of, put, select, some, spread
 
 MAX_ITERATIONS = 30

@@ -8,7 +8,7 @@ those of the solver's own density, run on tangents (:mod:`tangent`); a change of
 from math import sqrt
 
 from ...jit import kernel
-from .. import lagrangian
+from ..physics import lagrangian
 from .inlined import inlined
 from .nested import MIDDLE
 from .tangent import change_of, join, value_of
@@ -87,7 +87,7 @@ def change(x, y, moved, n, cell, load, longer, row):
 
 @kernel
 def middle(x, y, moved, n, base, u, cell, load, longer, long, share, room, row):
-    """The stretch in the middle of ``long`` tubes, as :mod:`..middle` tells it, changes by what goes into ``row``:
+    """The stretch in the middle of ``long`` tubes, as :mod:`..numerics.middle` tells it, changes by what goes into ``row``:
     ``u + (y_node - u)/cosh(depth)`` with ``depth = k (half - x_node)``.
     """
     still, flat = spread(0.0), join(spread(0.0), spread(0.0))

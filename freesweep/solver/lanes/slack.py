@@ -1,11 +1,11 @@
-"""Fibers that would have to push, or are slack, of :mod:`freesweep.solver.slack`, for a vector of designs."""
+"""Fibers that would have to push, or are slack, of :mod:`freesweep.solver.along.slack`, for a vector of designs."""
 
 from ...jit import kernel
-from .. import lagrangian, physical
-from ..axial import axial_stretch
-from ..mesh import nothing_yet, of_length
-from ..slack import NOTHING, TENSIONLESS, TENSIONLESS_END
-from ..wall import is_loose
+from ..along.axial import axial_stretch
+from ..along.slack import NOTHING, TENSIONLESS, TENSIONLESS_END
+from ..cells import nothing_yet, of_length
+from ..physics import lagrangian, physical
+from ..physics.wall import is_loose
 from .vector import get, mask_of
 
 

@@ -7,13 +7,13 @@ along any number of directions are exact (:mod:`response`); they are extrapolate
 import numpy as np
 
 from ...jit import entry_point, kernel
-from .. import lagrangian
-from ..nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
-from ..newton import SMALL_STEP
+from ..numerics.nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
+from ..numerics.newton import SMALL_STEP
+from ..physics import lagrangian
 from ..problem import LENGTH, SOURCE
 from . import layer, mesh, middle, newton, response
 from .nested import EARLY, LANE_DOUBLINGS, MIDDLE, OUTPUTS, foresee, integrate
-from .seat import COLUMNS, PRESSURE, aligned, enter, loads, lock
+from .pack import COLUMNS, PRESSURE, aligned, enter, loads, lock
 from .tangent import join
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
@@ -164,7 +164,7 @@ def differentiate_lanes(problems, pressures, stretches, order, changes, constant
 
     Row i is a problem of its own under ``pressures[i]``, whose uniform tube has the stretch ``stretches[i]``, NaN where that
     is not known, unless it is a straight cylinder; ``changes``
-    (rows, directions, COLUMNS) are what the columns of a seat (:mod:`seat`) change by.
+    (rows, directions, COLUMNS) are what the columns of a seat (:mod:`.pack`) change by.
     """
     size, directions = (base << LANE_DOUBLINGS) + 2, changes.shape[1]
     numbers = OUTPUTS * (directions + 1)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...actuator import MooneyRivlin
+from ...description.actuator import MooneyRivlin
 from ...holding import blocked_force
 from ...statics import inflate
 from ...status import OK

@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 
-from ...actuator import ActuatorError
+from ...description.actuator import ActuatorError
 from ...statics import inflate, lock
 from ..prototypes import RADIUS, ROTATOR_RUBBER, TABLE_1, WALL, rotator, source_tube, two_walls
 from .claim import NO, YES, Claim, Found, holds

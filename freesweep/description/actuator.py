@@ -1,0 +1,349 @@
+"""What a person describes: the actuator, checked, in SI units and degrees."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .along import Profile as Given
+from .along import rule_of, written
+from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
+from .faults import ActuatorError
+from .given import numbers, read_number
+from .options import read_choice
+from .profiles import Along as AlongTube
+from .profiles import ProfileError, as_profile, is_profile, together
+from .quantities import Along, Quantities, Quantity
+from .revolution import resolved
+from .tube_model import DEFAULT, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
+from .unit_warnings import doubts, warn_of
+
+LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
+SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
+LARGEST_EXTENSION = 10.0  # of fibers: a stretch, not a percentage
+ENERGIES = ("full", "principal")
+HASHED = np.linspace(0.0, 1.0, 9)  # places of profiles whose values go into a hash
+VARYING = {"alpha": "degree", "beta": "degree", "wall": "m", "radius": "m"}
+POSITIVE = ("wall", "radius")
+EVENLY = np.linspace(0.0, 1.0, 257)  # places of a body at which its wall is held against its radius
+
+
+def _read_along(name, value, unit, faults):
+    """A float, pairs of floats, smooth or not, a callable or a rule; None after noting what is wrong with it."""
+    positive = name in POSITIVE
+    if text := rule_of(name, value):
+        number = read_number(name, text, unit, faults, positive=positive)
+        return None if number is None else written(name, number, unit)
+    if not is_profile(value):
+        return read_number(name, value, unit, faults, positive=positive)
+    try:
+        profile = as_profile(value, unit)
+        samples = profile.samples()
+    except ProfileError as error:
+        faults.append(f"{name}: {error}")
+        return None
+    if positive and not np.all(samples > 0.0):
+        faults.append(f"{name}: the profile falls to {samples.min():g} {unit}; it has to be above 0")
+    if callable(value):
+        return value
+    pairs = tuple(zip(profile.x.tolist(), profile.values.tolist()))
+    if name == "radius":
+        if np.any((np.diff(profile.x) == 0.0) & (np.diff(profile.values) != 0.0)):
+            faults.append("radius: it jumps; a body's radius may bend at a place, but not jump")
+        if len(set(profile.values.tolist())) == 1:
+            return pairs[0][1]  # a tube
+    return Given(pairs, smooth=True) if isinstance(value, Given) and value.smooth else pairs
+
+
+@dataclass(frozen=True, kw_only=True)
+class Actuator:
+    """A fiber-reinforced tube before deformation.
+
+    Parameters
+    ----------
+    alpha, beta : fiber angles from the axis [degree], between -90 and 90, at least 0.5 apart; a number, or a profile
+        along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump), a callable of x/l (array in, array out), or
+        ``Profile(pairs, smooth=True)``, a spline through pairs. On a body of revolution also "geodesic 30 deg": the winding
+        of that angle at x = 0 that does not slip (Clairaut)
+    length, radius : undeformed length, inner radius [m]; numbers, texts with units ("4.76 mm") or what carries units. The
+        radius may be a profile over x/l along the axis, which may bend but not jump: a body of revolution
+    wall : wall thickness [m], number or profile; of a body also "constant volume 1.5 mm": the section stays that at x = 0
+    material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or a rubber of the library,
+        :func:`freesweep.material`
+    fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
+    model : "source": the membrane with bonded fibers at the inner radius that the source computes; "physical": a thick wall
+        with loose fibers at the outer radius. Each part can be given by itself:
+    fiber_radius : "inner", "middle", "outer" (of a wall that varies, where it is thinnest), or the radius at which the
+        fibers lie [m], from the inner to the outer one; None: as the model has it
+    wall_model : "thick": each layer of the wall is strained by itself; "membrane": all of it as at the fibers; or None
+    fibers : "loose": threads, which cannot push; "bonded": fibers that push where they have to; or None
+    energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed, for bonded fibers only
+
+    Raises :class:`ActuatorError`, which lists every fault. Warns of what looks like a slip of units, and where the wall is
+    thicker than the radius. Equal actuators have equal hashes; callables are equal if they are the same.
+    """
+
+    alpha: Any
+    beta: Any
+    length: float
+    radius: Any
+    wall: Any
+    material: MooneyRivlin | Yeoh
+    fiber_extension: float = 1.0
+    fiber_radius: float | str | None = None
+    energy: str = "full"
+    model: str = DEFAULT
+    wall_model: str | None = None
+    fibers: str | None = None
+
+    if TYPE_CHECKING:  # what may be given is more than what is kept
+
+        def __init__(
+            self,
+            *,
+            alpha: Along,
+            beta: Along,
+            length: Quantity,
+            radius: Along,
+            wall: Along,
+            material: MooneyRivlin | Yeoh,
+            fiber_extension: Quantity = 1.0,
+            fiber_radius: Quantity | None = None,
+            energy: str = "full",
+            model: str = DEFAULT,
+            wall_model: str | None = None,
+            fibers: str | None = None,
+        ) -> None: ...
+
+    def __post_init__(self):
+        faults = []
+        read = {}
+        for name in ("alpha", "beta", "length", "radius", "wall"):
+            if name in VARYING:
+                read[name] = _read_along(name, getattr(self, name), VARYING[name], faults)
+            else:
+                read[name] = read_number(name, getattr(self, name), "m", faults, positive=True)
+        if isinstance(read["radius"], float):  # rules follow a radius that varies
+            for name in VARYING:
+                if text := rule_of(name, read[name]):
+                    read[name] = read_number(name, text, VARYING[name], faults)
+        read["fiber_extension"] = read_number(
+            "fiber_extension", self.fiber_extension, "1", faults, least=1.0, most=LARGEST_EXTENSION
+        )
+        if self.fiber_radius is not None and not (
+            isinstance(self.fiber_radius, str) and self.fiber_radius in FIBER_PLACES
+        ):
+            unread = []
+            read["fiber_radius"] = read_number("fiber_radius", self.fiber_radius, "m", unread, positive=True)
+            faults += [f"{fault}, or one of {', '.join(map(repr, FIBER_PLACES))}" for fault in unread]
+        if not isinstance(self.material, ELASTOMERS):
+            faults.append(
+                f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01), NeoHookean(c10) or"
+                " Yeoh(c1, c2, c3), in [Pa], or material(name)"
+            )
+        faults += word_faults(self.model, self.wall_model, self.fibers, self.energy, ENERGIES)
+        for name, value in read.items():
+            object.__setattr__(self, name, value)
+        if not faults:
+            try:
+                faults = self._impossible()
+            except ProfileError as error:
+                faults = [f"alpha, beta, wall, radius: {error}"]
+        if faults:
+            raise ActuatorError(faults)
+        varying = VARYING if self.is_body else ("alpha", "beta", "wall")
+        numbers = self.design() | {name: self.profile(name).samples() for name in varying}
+        own = {name: numbers[name] for name in (*VARYING, "length", "c10")}
+        if self.is_body:
+            own["thickness"] = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY)
+        warn_of(doubts(**own), stacklevel=3)
+
+    @classmethod
+    def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":
+        """The muscle of a cord of length ``cord`` [m] that winds ``turns`` times around ``length`` [m].
+
+        Unrolled, the cord is the hypotenuse: ``cord^2 = length^2 + (2 pi R turns)^2``, with the angle
+        ``acos(length/cord)`` from the axis and R the radius on which it lies. ``others`` are parameters of the actuator.
+        Where ``radius`` is left out, it is what puts the fibers there: R for fibers inside, less the wall for fibers
+        outside; where it is given, R becomes the fiber radius. ``beta`` is ``-alpha`` by default. Raises
+        :class:`ActuatorError`.
+        """
+        faults = []
+        read = {
+            name: read_number(name, value, unit, faults, positive=True)
+            for name, value, unit in (("cord", cord, "m"), ("turns", turns, "1"), ("length", length, "m"))
+        }
+        if not faults and read["cord"] <= read["length"]:
+            faults.append(
+                f"cord: found {read['cord']:g} m around a length of {read['length']:g} m; it has to be longer"
+            )
+        place = others.get("fiber_radius")
+        if "alpha" in others or not (place is None or place in FIBER_PLACES) or (place and "radius" in others):
+            faults.append("cord: it tells alpha and where the fibers lie; leave alpha and a fiber radius out")
+        if others.get("model", DEFAULT) not in MODELS:
+            faults += word_faults(others["model"], None, None, "full", ENERGIES)
+        if faults:
+            raise ActuatorError(faults)
+        cord, turns, length = read.values()
+        around = math.sqrt(cord**2 - length**2) / (2.0 * math.pi * turns)
+        alpha = math.degrees(math.acos(length / cord))
+        if "radius" in others:
+            others["fiber_radius"] = around
+        else:
+            place = place or MODELS[others.get("model", DEFAULT)].fiber_radius
+            thickness = (
+                read_number("wall", others.get("wall"), "m", faults, positive=True) if SHARES[place] > 0.0 else 0.0
+            )
+            if not faults and around <= SHARES[place] * thickness:
+                faults.append(f"cord: it lies at a radius of {around:g} m, which is less than the wall inside it")
+            if faults:
+                raise ActuatorError(faults)
+            others["radius"] = around - SHARES[place] * thickness
+        return cls(alpha=alpha, length=length, **({"beta": -alpha} | others))
+
+    def __hash__(self):
+        fields = (
+            self.length, self.material, self.fiber_extension, self.fiber_radius, self.energy, self.model, self.wall_model,
+            self.fibers,
+        )  # fmt: skip
+        varying = tuple(tuple(self.profile(name).at(HASHED).tolist()) for name in VARYING)
+        return hash((*fields, varying))
+
+    def _repr_html_(self):
+        from ..notebook import of_actuator
+
+        return of_actuator(self)
+
+    def _impossible(self):
+        """Faults of numbers that are each fine alone."""
+        alpha, beta = together(self.profile("alpha"), self.profile("beta"))
+        faults = [
+            f"{name}: found {angle[np.argmax(np.abs(angle))]:g} degree; it has to lie between -90 and 90, both excluded"
+            for name, angle in (("alpha", alpha), ("beta", beta))
+            if not np.all(np.abs(angle) < LARGEST_ANGLE)
+        ]
+        closest = np.argmin(np.abs(alpha - beta))
+        if alpha[closest] == beta[closest]:
+            faults.append(
+                f"alpha, beta: both are {alpha[closest]:g} degree (line DF of Figure 1-2): one fiber family leaves the shape"
+                f" free; choose angles at least {SMALLEST_DIFFERENCE:g} degree apart"
+            )
+        elif abs(alpha[closest] - beta[closest]) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
+            faults.append(
+                f"alpha, beta: {alpha[closest]:g} and {beta[closest]:g} degree are less than {SMALLEST_DIFFERENCE:g} degree"
+                " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"
+                " keep alpha above beta all along, or below"
+            )
+        if self.is_body:
+            if isinstance(self.fiber_radius, float):
+                faults.append(
+                    f"fiber_radius: found {self.fiber_radius:g} m, but the radius varies; choose one of"
+                    f" {', '.join(map(repr, FIBER_PLACES))}"
+                )
+            return faults
+        outer = self.radius + float(np.min(self.profile("wall").samples()))
+        if isinstance(self.fiber_radius, float) and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):
+            faults.append(
+                f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
+                f" {self.radius:g} to {outer:g} m"
+            )
+        if not faults and not self.clamped_stretch() > 0.0:
+            faults.append(
+                f"fiber_extension: with {self.fiber_extension:g} these fibers cannot meet the clamped ends, whose radius"
+                " stays; reduce it or the angles"
+            )
+        return faults
+
+    def clamped_stretch(self) -> float:
+        """Squared meridional stretch at the clamped ends [-] (G at y = 1): positive if the fibers can meet them."""
+        return min(clamped_stretch(a, b, self.fiber_extension) for a, b in zip(*self.angles(np.array([0.0, 1.0]))))
+
+    @property
+    def varies(self) -> bool:
+        """Whether a fiber angle, the wall or the radius is a profile along the tube."""
+        return any(is_profile(getattr(self, name)) for name in VARYING)
+
+    @property
+    def is_body(self) -> bool:
+        """Whether the radius varies: a body of revolution."""
+        return is_profile(self.radius)
+
+    def angles(self, share: Quantities) -> tuple[Any, Any]:
+        """Both fiber angles [degree] at shares x/l of the length, 0 to 1; on a jump the left ones.
+
+        Raises :class:`ActuatorError`.
+        """
+        try:
+            share = numbers(share, "1")
+        except ValueError as error:
+            raise ActuatorError([f"share: {error}"]) from None
+        if not np.all((share >= 0.0) & (share <= 1.0)):
+            raise ActuatorError(["share: a place x/l lies beyond the tube; give numbers from 0 to 1"])
+        return self.profile("alpha").at(share), self.profile("beta").at(share)
+
+    def profile(self, name: str) -> AlongTube:
+        """Fiber angle [degree], wall or inner radius [m] along the tube, as
+        :class:`freesweep.description.profiles.Along`, numbers too.
+
+        ``name`` is "alpha", "beta", "wall" or "radius". Raises :class:`ActuatorError`.
+        """
+        faults = []
+        if read_choice("name", name, VARYING, faults) is None:
+            raise ActuatorError(faults)
+        value = getattr(self, name)
+        return getattr(resolved(self), name) if rule_of(name, value) else as_profile(value, VARYING[name])
+
+    @property
+    def fiber_surface(self) -> float:
+        """Radius at which the fibers lie [m], of a body at x = 0; every formula is scaled by it."""
+        if self.is_body:
+            return resolved(self).scale[1]
+        place = MODELS[self.model].fiber_radius if self.fiber_radius is None else self.fiber_radius
+        if isinstance(place, str):
+            return fiber_place(place, self.radius, float(np.min(self.profile("wall").samples())))
+        return place
+
+    @property
+    def fiber_share(self) -> float:
+        """Share of the wall inside the fibers of a body."""
+        return SHARES[self.fiber_radius or MODELS[self.model].fiber_radius]
+
+    def fiber_surface_at(self, share: Quantities) -> Any:
+        """Radius at which the fibers lie [m] at shares x/l of the length; one number of a tube."""
+        return resolved(self).fibers.at(share) if self.is_body else self.fiber_surface
+
+    @property
+    def is_thick(self) -> bool:
+        """Whether each layer of the wall is strained by itself."""
+        return (self.wall_model or MODELS[self.model].wall_model) == "thick"
+
+    @property
+    def is_loose(self) -> bool:
+        """Whether the fibers are threads, which cannot push."""
+        return (self.fibers or MODELS[self.model].fibers) == "loose"
+
+    def design(self) -> dict[str, float]:
+        """The numbers that a sweep would vary: name -> value in SI units and degrees; of a profile, the middle's."""
+        alpha, beta = self.angles(0.5)
+        return {
+            "alpha": alpha.item(),
+            "beta": beta.item(),
+            "length": self.length,
+            "radius": self.profile("radius").at(0.5).item(),
+            "wall": self.profile("wall").at(0.5).item(),
+            "fiber_radius": self.fiber_surface,
+            "fiber_extension": self.fiber_extension,
+            "c10": self.material.c10,
+            "c01": self.material.c01,
+            "c20": self.material.c20,
+            "c30": self.material.c30,
+        }
+
+
+def clamped_stretch(alpha, beta, fiber_extension):
+    """G at y = 1 [-] for fiber angles in [degree]; where it is not positive, clamped ends cannot be met."""
+    ta, tb = math.tan(math.radians(alpha)), math.tan(math.radians(beta))
+    half_sum, half_difference = 0.5 * (ta + tb), 0.5 * (ta - tb)
+    g2 = fiber_extension * fiber_extension
+    return 1.0 + (g2 - 1.0) * (1.0 + half_difference**2 - g2 * half_sum**2)

@@ -1,0 +1,66 @@
+"""Profiles as accurate as asked for: where three meshes do not do, a finer one joins them.
+
+Tensions ask for it at a low pressure and large angles, where the wall's stress, beside theirs, feels an error of the
+stretch a thousandfold.
+"""
+
+import numpy as np
+
+from ...jit import kernel
+from ..numerics import held, nested, newton
+from ..numerics.finest import LEFT, MESHES, NO_MESH, load_of
+from ..numerics.properties_along import fill
+from ..physics import lagrangian
+from .profile import at_stations
+
+
+@kernel
+def draw(stations, base, doublings, tube, load, fine, nodes, work, accuracy, profile):
+    """:func:`profile.at_stations`, refined until its bounds meet the ``accuracy``; returns whether they do."""
+    met, finer = False, True
+    while finer and not met:
+        met = at_stations(stations, base, doublings, tube, load, fine, nodes, profile) <= accuracy
+        finer = not met and doublings < nested.MAX_DOUBLINGS and fine[3, LEFT] != NO_MESH
+        if finer:
+            finer = refine(base, doublings, tube, load, accuracy, fine, work)
+            doublings += 1
+    return met
+
+
+@kernel
+def refine(base, doublings, tube, load, accuracy, fine, work):
+    """Solve on twice as many cells as the finest mesh has, with held what was held there; whether that converged."""
+    course, edges, cells, free, _, _ = tube
+    count = base << doublings
+    tolerance = max(nested.STEP_SHARE * accuracy, nested.SMALLEST_TOLERANCE)
+    x, changes = np.empty(base + 1), np.empty(3 * MESHES)
+    for i in range(base + 1):
+        x[i] = fine[0, i << doublings]
+    for k in range(3 * MESHES):
+        changes[k] = fine[3, k]
+    now = load_of(0, load, fine)
+    most = max(abs(now[3]), max(abs(now[4]), abs(now[5])))
+    by_force, by_torque = changes[1] != changes[4], changes[2] != changes[5]
+    direction = (0.0, 0.0, 0.0, 0.0, most if by_force else 0.0, most if by_torque else 0.0, 0.0)
+    holds = by_force or by_torque
+    density, conjugate = lagrangian.density, lagrangian.conjugate
+    own = fill(course, edges, fine[0], count, base, cells)
+    target = held.hold(conjugate, fine[0], fine[1], count, own, now, direction, work[8])[0] if holds else 0.0
+    for i in range(count // 2 + 1):
+        fine[3, i] = fine[4, i]
+    nested.go_finer(x, base, edges, doublings, fine, work)
+    own, mu, left = fill(course, edges, fine[0], 2 * count, base, cells), 0.0, tolerance
+    if holds:
+        status, _, mu, _ = held.solve_held(
+            density, conjugate, fine[0], fine[1], 2 * count, free, own, now, direction, mu, target, tolerance,
+            newton.MAX_ITERATIONS, work,
+        )  # fmt: skip
+    else:
+        status, _, _, left = newton.solve(
+            density, fine[0], fine[1], 2 * count, free, own, now, newton.UNKNOWN, tolerance, work
+        )
+    for i in range(3):
+        fine[3, 3 + i], fine[3, 6 + i] = changes[i], changes[3 + i]
+    fine[3, 0], fine[3, 1], fine[3, 2] = changes[0], changes[1] + mu * direction[4], changes[2] + mu * direction[5]
+    fine[3, LEFT] = left
+    return status == newton.CONVERGED

@@ -1,0 +1,93 @@
+"""Held states: the deformed length or the rotation of the free end is given, the force or the torque that keeps it unknown.
+
+The state meant is the one on the branch that begins without load: pressure, the other load and fiber extension - 1 rise in
+proportion while the undeformed length (no rotation) is held, then what is held changes to its target. The straight cylinder
+y = 1 of a tube that is the same all along is an equilibrium on this way under the load that makes L_y(1, 0) = 0: the way
+may begin there at once, as long as no state on it is unstable. Else all of it is gone, as by a tube that varies.
+
+Where the wall would have to be pushed on that way, or another length or rotation than the undeformed one is not come to,
+the other is gone: the loads rise with nothing held, then what is held changes from what was found. Without pressure neither
+way begins; they go to a pressure like the wall's stiffness, which is lowered at the end.
+
+A tube that is the same all along, or its own mirror image, keeps a symmetric state. Beyond a critical pressure of blocked
+torque an antisymmetric mode makes it unstable, which is no obstacle on the way; somewhat later, with fiber extension, the
+branch turns back, at most designs for good: BEYOND_LIMIT.
+"""
+
+from ...jit import kernel
+from ..physics import lagrangian
+from ..status import COMPRESSED, NOT_CONVERGED, OK, PENDING
+from . import ways
+from .settle import finish, lower, settle, with_neck
+from .sought import (  # noqa: F401
+    FROM_FREE,
+    FROM_REST,
+    HELD_LENGTH,
+    HELD_ROTATION,
+    Sought,
+    describe,
+    failed,
+    load_of,
+    mirrored,
+    refused,
+    valued,
+)
+from .ways import EVERY, cylinder_multiplier, held_at
+
+
+@kernel
+def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
+    """One held state on one base mesh. Which way is gone must not hang on the accuracy: the other one is not, where only
+    finer meshes have no state that the base mesh has come to.
+    """
+    load = load_of(problem, walls, p, other, kind)
+    status = refused(load, target, kind, tube)
+    if status != PENDING:
+        return failed(status, load)
+    sought = describe(load, target, kind, tube)
+    found, came_to = failed(COMPRESSED, load), False
+    if sought.stands:
+        end = first_way(room, tube, sought)
+        came_to = end.status == OK
+        found, end = settle(room, tube, end, sought, FROM_REST, accuracy, out)
+        if not valued(found.status) and not found.sure and found.status != COMPRESSED and not sought.varies:
+            necked = with_neck(room, tube, end, sought, accuracy, out)
+            if valued(necked.status):
+                return necked
+    lost = sought.wanted != sought.natural and not (came_to and found.status == NOT_CONVERGED)
+    if found.status == COMPRESSED or (lost and not valued(found.status)):
+        end = ways.from_free(room, tube, sought.with_pressure, sought.unit, sought.wanted)
+        again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy, out)
+        found = again if valued(again.status) else found
+    return finish(room, tube, sought, found, out) if valued(found.status) else found
+
+
+@kernel
+def first_way(room, tube, sought):
+    """The way from rest, as far as it goes: by a tube that is the same all along from the straight cylinder, if it may."""
+    there, unit, natural, wanted = sought.with_pressure, sought.unit, sought.natural, sought.wanted
+    if not sought.varies:
+        end = from_cylinder(room, tube, sought)
+        if end.status == OK or end.status == COMPRESSED:
+            return end
+    allowed = 1 if sought.varies and mirrored(tube) else 0
+    end = ways.from_rest(room, tube, sought.cell, there, held_at(unit, natural, natural, allowed))
+    if end.status == COMPRESSED and sought.varies and sought.raised[3] != there[3]:
+        end = ways.from_rest(room, tube, sought.cell, sought.raised, held_at(unit, natural, natural, allowed))
+        if end.status == OK and wanted != natural:
+            end = ways.go(room, tube, ways.moving(sought.raised, held_at(unit, natural, wanted, EVERY)))
+        return lower(room, tube, end, sought.raised, there, sought) if end.status == OK else end
+    if end.status == OK and wanted != natural:
+        end = ways.go(room, tube, ways.moving(there, held_at(unit, natural, wanted, EVERY)))
+    return end
+
+
+@kernel
+def from_cylinder(room, tube, sought):
+    """From the straight cylinder to what is wanted, through stable states, under a pressure that is lowered at last."""
+    track, x, load, unit = room.track, tube[5], sought.raised, sought.unit
+    multiplier = cylinder_multiplier(sought.cell, load, unit)
+    ways.make_straight(track, tube, multiplier)
+    first = lagrangian.conjugate(1.0, 0.0, sought.cell, load, unit)[0] * x[len(x) - 1]
+    end = ways.go(room, tube, ways.moving(load, held_at(unit, first, sought.wanted, 0)))
+    return lower(room, tube, end, load, sought.with_pressure, sought) if end.status == OK else end

@@ -1,0 +1,121 @@
+"""What the end of a way gives: the state there on nested meshes, the one before a turn, or none; and how it stands."""
+
+from ...jit import kernel
+from ..constant import necked_shape, necked_tube
+from ..free.fold import locate
+from ..numerics import nested, newton
+from ..numerics.continuation import is_flat
+from ..numerics.held import loaded
+from ..numerics.path import load_at
+from ..numerics.properties_along import fill
+from ..numerics.shapes import differ, extremes
+from ..physics import lagrangian
+from ..stability import pushed, unstable_directions
+from ..status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
+from . import near_turn, ways
+from .sought import FROM_REST, Found, failed, valued
+from .ways import EVERY, held_at
+
+ROUNDED = 1e-12  # relative
+NEAR = 0.05  # of the way behind its end: as far it is looked for a turn where no mesh holds the state
+
+
+@kernel
+def lower(room, tube, end, start, load, sought):
+    """From the ``end`` of a way to the same state under the pressure of another load."""
+    if start[3] == load[3]:
+        return end
+    return ways.go(room, tube, ways.falling(start, load, held_at(sought.unit, sought.wanted, sought.wanted, EVERY)))
+
+
+@kernel
+def settle(room, tube, end, sought, path, accuracy, out):
+    """The state at the ``end`` of a way, or before its turn, on finer meshes; and where its branch was left at last."""
+    load, space, track = sought.load, room.space, room.track
+    if end.status == OK and sought.with_pressure[3] != load[3]:
+        end = lower(room, tube, end, sought.with_pressure, load, sought)
+        if end.status == NOT_CONVERGED and end.here[0] > 1.0 - NEAR:
+            return Found(COMPRESSED, 0, 0, load, end.here[0], False, path), end
+    found = Found(end.status, 0, 0, load, end.here[0], False, path)
+    if end.status == OK:
+        found = on_meshes(track, space, tube, end, sought, path, accuracy, out)
+        if found.status == NOT_CONVERGED:  # a turn just behind?
+            end = ways.follow(room, tube, end.path, 1.0, end.here[1], 1.0 + NEAR)
+    turned = end.status == BEYOND_LIMIT and end.path.held.any and end.ahead[2] > 0.0
+    if turned and is_flat(end.ahead[0], end.ahead[1], end.path):
+        found = at_turn(room, tube, end, sought, path, accuracy, out)
+    if valued(found.status) and not found.load[3] + found.load[4] > 0.0:  # at the clamped ends, where y = 1
+        return Found(COMPRESSED, 0, 0, load, 1.0, True, path), end
+    return found, end
+
+
+@kernel
+def leads_to(path, sought):
+    """Whether a path is the last one of its way."""
+    first, wanted = path.held.first, sought.wanted
+    missed, size = abs(first + path.held.change - wanted), max(abs(first), abs(wanted))
+    pressure, p = path.origin[3] + path.direction[3], sought.load[3]
+    return missed <= ROUNDED * size and abs(pressure - p) <= ROUNDED * max(path.origin[3], p)
+
+
+@kernel
+def at_turn(room, tube, end, sought, path, accuracy, out):
+    """What is at the end of a way that turns back there: the state before the turn, if all meshes together have it."""
+    status = BEYOND_LIMIT if sought.wanted == sought.natural else HELD_IMPOSSIBLE
+    space, track, load = room.space, room.track, sought.load
+    limit, bound = locate(track, room.roomy, space, tube, end.path, end.here, end.ahead, 1.0)
+    if limit > 1.0 + bound and leads_to(end.path, sought):
+        again, doublings, unstable = near_turn.before(track, space, tube, end, limit, accuracy)
+        now = loaded(load, end.path.held.unit, space.out[0, nested.MULTIPLIER])
+        return Found(again if valued(again) else status, unstable, doublings, now, limit, False, path)
+    return Found(status, 0, 0, load, limit if limit == limit else end.here[0], limit <= 1.0 + bound, path)
+
+
+@kernel
+def on_meshes(track, space, tube, end, sought, path, accuracy, out):
+    """The track's state on finer meshes; NOT_CONVERGED where these have another or none."""
+    n, load, unit = len(track.x) - 1, sought.load, sought.unit
+    for i in range(n + 1):
+        space.x[i], space.y[i] = track.x[i], track.y[i]
+    status, unstable, doublings, _ = nested.solve(
+        lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, space.x, space.y, tube, load,
+        nested.HELD, unit, sought.wanted, track.y[n + 1], 1, accuracy, space.fine, space.work, space.table, out,
+    )  # fmt: skip
+    if status == newton.CONVERGED or status == nested.UNREACHED:
+        if not differ(extremes(track.y[: n + 1], tube[4]), extremes(space.y, tube[4])):
+            now = loaded(load, unit, out[0, nested.MULTIPLIER])
+            return Found(OK if status == newton.CONVERGED else INACCURATE, unstable, doublings, now, 1.0, False, path)
+    own = fill(tube[0], tube[1], track.x, n, n, tube[2])
+    gone = pushed(track.y[: n + 1], own, load_at(end.path, track.y, n, 1.0))
+    return Found(COMPRESSED if gone else NOT_CONVERGED, 0, 0, load, 1.0, False, path)
+
+
+@kernel
+def with_neck(room, tube, end, sought, accuracy, out):
+    """The state of a tube with a neck, from a mesh's shape where the last way to it was left."""
+    space, track, path, load = room.space, room.track, end.path, sought.load
+    n = len(track.x) - 1
+    if not leads_to(path, sought):
+        return failed(NOT_CONVERGED, load)
+    status, doublings, now = necked_tube.solve(
+        sought.cell, tube, track.x, track.y[: n + 1], track.y[n + 1], path, min(end.here[0], 1.0), sought.scale, accuracy,
+        n, space.fine, space.curve, space.table, out,
+    )  # fmt: skip
+    return Found(status, 1, doublings, now, 1.0, True, FROM_REST)
+
+
+@kernel
+def finish(room, tube, sought, found, out):
+    """The unstable directions of a state on the whole tube, and the load that holds it without its unit."""
+    space, edges = room.space, tube[1]
+    base = edges[len(edges) - 1]
+    size = (2.0 if tube[3] else 1.0) * max(abs(sought.wanted), abs(sought.natural))
+    unstable, rounding = unstable_directions(
+        space.fine[0], space.fine[1], base << found.doublings, base, tube, found.load, sought.unit, size, space.work
+    )
+    if not sought.varies and necked_shape.depth_of(space.y) > 0.0:
+        unstable = max(unstable, 1)  # of which a mesh may know nothing
+    out[1, nested.MULTIPLIER] += rounding
+    out[0, nested.MULTIPLIER] *= sought.scale
+    out[1, nested.MULTIPLIER] *= sought.scale
+    return Found(found.status, unstable, found.doublings, found.load, found.reached, found.sure, found.path)

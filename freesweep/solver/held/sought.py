@@ -1,0 +1,134 @@
+"""Which held state is sought, in terms of the solver; what nothing has to be solved for; and what became of it."""
+
+from typing import NamedTuple
+
+from ...jit import kernel
+from .. import guide
+from ..numerics.held import loaded
+from ..physics import lagrangian
+from ..problem import GAMMA, rubber_of, wall_of
+from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, OK, PENDING
+from .ways import cylinder_multiplier
+
+HELD_LENGTH, HELD_ROTATION = 0, 1
+FROM_REST, FROM_FREE = 0, 1
+LONGER = 1e-9  # relative: than all that the fibers allow
+RAISES = 40  # of the pressure by a half, until the wall of the starting cylinder is under tension
+WITHOUT_PRESSURE = 0.1  # times the wall's section: the pressure that is gone to first where none is asked for
+MIRROR_OFFSET, MIRROR_TOLERANCE = 0.37, 1e-12  # places off jumps; of H, D and the section
+
+
+class Sought(NamedTuple):
+    """A held state: its load, but for what holds it; ``with_pressure``, the same where there is none; and ``raised``, with
+    more, at which the wall of the straight cylinder ``cell`` is under tension, if it ``stands``. The load ``unit`` holds
+    the integral, in units of ``scale``; it is ``natural`` undeformed, and ``wanted``.
+    """
+
+    load: tuple
+    with_pressure: tuple
+    raised: tuple
+    cell: tuple
+    stands: bool
+    unit: tuple
+    scale: float
+    natural: float
+    wanted: float
+    varies: bool
+
+
+class Found(NamedTuple):
+    """What became of it: of a state its unstable directions, doublings of the mesh, and whole load; else the share reached
+    of the way that ended, and whether that is certain, so that no finer mesh has to confirm it; and which way it was.
+    """
+
+    status: int
+    unstable: int
+    doublings: int
+    load: tuple
+    reached: float
+    sure: bool
+    path: int
+
+
+@kernel
+def at_pressure(load, p):
+    """The load under another pressure."""
+    return load[0], load[1], load[2], p, load[4], load[5], load[6]
+
+
+@kernel
+def unit_of(kind, scale):
+    """The load that holds."""
+    return (0.0, 0.0, 0.0, 0.0, scale, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, scale, 0.0)
+
+
+@kernel
+def load_of(problem, walls, p, other, kind):
+    """The load but for what holds."""
+    force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
+    return problem[GAMMA], rubber_of(problem), wall_of(problem, walls), p, force, torque, 1.0
+
+
+@kernel
+def valued(status):
+    """Whether a state was found."""
+    return status == OK or status == INACCURATE
+
+
+@kernel
+def failed(status, load):
+    """No state, for certain."""
+    return Found(status, 0, 0, load, 0.0, True, FROM_REST)
+
+
+@kernel
+def refused(load, target, kind, tube):
+    """COMPRESSED or HELD_IMPOSSIBLE where nothing has to be solved to know it, else PENDING."""
+    cell, course, places = guide.cell_along(tube, 0.5), tube[0], tube[5]
+    varies = course.shape[0] > 1 or course.shape[1] > 1
+    # a straight fiber cannot stretch: whatever the force, the length stays (the pole of Eq. 2.16)
+    if course.shape[0] == 1 and lagrangian.conjugate(1.0, 0.0, cell, load, unit_of(kind, 1.0))[1] == 0.0:
+        return HELD_IMPOSSIBLE
+    if kind == HELD_LENGTH and not varies:
+        if target > (1.0 + LONGER) * places[len(places) - 1] * lagrangian.longest(cell, load[0]):
+            return HELD_IMPOSSIBLE
+    if kind == HELD_ROTATION and not load[3] + load[4] > 0.0:  # at the clamped ends
+        return COMPRESSED
+    return PENDING
+
+
+@kernel
+def describe(load, target, kind, tube):
+    """What is sought. A place is chosen whose cylinder can carry the load, at a higher pressure if it must be."""
+    course, places = tube[0], tube[5]
+    varies = course.shape[0] > 1 or course.shape[1] > 1
+    cell, unit = guide.cell_along(tube, 0.5), unit_of(kind, 1.0)
+    there = at_pressure(load, load[3] if load[3] > 0.0 or kind == HELD_ROTATION else WITHOUT_PRESSURE * cell[2])
+    raised, stands = there, False
+    for attempt in range((guide.PLACES if varies else 1) * RAISES):
+        share = ((attempt // RAISES) * 0.5 / (guide.PLACES - 1) + 0.5) % 1.0
+        cell = guide.cell_along(tube, share)
+        raised = at_pressure(there, there[3] * 1.5 ** (attempt % RAISES))
+        now = loaded(raised, unit, cylinder_multiplier(cell, raised, unit))
+        stands = lagrangian.density(1.0, 0.0, cell, now)[0] > 0.0
+        if stands:
+            break
+    scale = max(there[3], abs(load[4]))
+    if stands:
+        scale = max(scale, abs(cylinder_multiplier(cell, raised, unit)))
+    natural = places[len(places) - 1] * scale if kind == HELD_LENGTH else 0.0
+    return Sought(
+        load, there, raised, cell, stands, unit_of(kind, scale), scale, natural, target * scale, varies
+    )  # fmt: skip
+
+
+@kernel
+def mirrored(tube):
+    """Whether a tube is its own mirror image."""
+    same = True
+    for k in range(guide.PLACES):
+        share = (k + MIRROR_OFFSET) / guide.PLACES
+        one, other = guide.cell_along(tube, share), guide.cell_along(tube, 1.0 - share)
+        for i in range(len(one)):
+            same = same and abs(one[i] - other[i]) < MIRROR_TOLERANCE * max(1.0, abs(one[i]))
+    return same

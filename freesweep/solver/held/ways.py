@@ -1,0 +1,223 @@
+"""The ways to a held state, each a path from mu = 0 to 1 along which a branch is followed
+(:mod:`..numerics.continuation`): loads rise
+from rest while something is held, or nothing; what is held moves to its target; the pressure falls to the one asked for.
+"""
+
+from typing import NamedTuple
+
+from ...jit import kernel
+from .. import guide
+from ..free.branch import begin
+from ..free.fold import FINEST
+from ..free.meshes import stand, take
+from ..free.space import Space, make_space, make_track
+from ..numerics import held
+from ..numerics.bordered import FOLLOWED
+from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
+from ..numerics.held import loaded
+from ..numerics.path import NOTHING, Held, Path, Track, load_at
+from ..numerics.properties_along import fill
+from ..numerics.shapes import differ, extremes
+from ..physics import lagrangian
+from ..physics.wall import is_loose
+from ..stability import pushed
+from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
+
+EVERY = 1 << 30  # unstable directions allowed: any number
+MOST_STEPS = 1000
+SMALL_STRAIN = 0.02  # of the first state on the way from rest: there the wall has one state only
+HALVINGS = 60  # of its load, until that holds
+NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class Room(NamedTuple):
+    """What a way is followed with: scratch, the branch, and one on finer meshes."""
+
+    space: Space
+    track: Track
+    roomy: Track
+
+
+class End(NamedTuple):
+    """Where a way was left: OK at its end, BEYOND_LIMIT where it turns back or becomes unstable; (mu, the tangent's mu) of
+    the state in the track, and (mu, the tangent's mu, step) of the last one ahead of it.
+    """
+
+    status: int
+    path: Path
+    here: tuple
+    ahead: tuple
+
+
+@kernel
+def make_room(base, half, varying):
+    """Scratch for a base mesh of so many cells."""
+    return Room(
+        make_space(base, guide.PLACES if varying else 1), make_track(base, half, True), make_track(FINEST * base, half, True)
+    )  # fmt: skip
+
+
+@kernel
+def at_rest(load):
+    """No load on the same tube."""
+    return 1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0
+
+
+@kernel
+def held_at(unit, first, last, allowed):
+    """What is held, from ``first`` to ``last``."""
+    return Held(unit, first, last - first, True, allowed)
+
+
+@kernel
+def rising(load, what):
+    """Pressure, the other load and fiber extension - 1 rise in proportion."""
+    direction = (load[0] - 1.0, 0.0, 0.0, load[3], load[4], load[5], 0.0)
+    return Path(at_rest(load), direction, 0.0, is_loose(load[2]), what)
+
+
+@kernel
+def moving(load, what):
+    """What is held moves to its target."""
+    return Path(load, NO_LOAD, 1.0, is_loose(load[2]), what)
+
+
+@kernel
+def falling(start, load, what):
+    """The pressure falls."""
+    direction = (0.0, 0.0, 0.0, load[3] - start[3], 0.0, 0.0, 0.0)
+    return Path(start, direction, 1.0, is_loose(load[2]), what)
+
+
+@kernel
+def cylinder_multiplier(cell, load, direction):
+    """The multiplier that makes y = 1 an equilibrium of a tube that is ``cell`` all along."""
+    return -lagrangian.density(1.0, 0.0, cell, load)[1] / lagrangian.conjugate(1.0, 0.0, cell, load, direction)[1]
+
+
+@kernel
+def even_mesh(x, places, edges):
+    """Equal cells within each segment."""
+    for s in range(len(edges) - 1):
+        a, b = edges[s], edges[s + 1]
+        for i in range(a, b + 1):
+            x[i] = places[s] + (places[s + 1] - places[s]) * (i - a) / (b - a)
+
+
+@kernel
+def make_straight(track, tube, multiplier):
+    """The straight cylinder, on equal cells."""
+    n = len(track.x) - 1
+    even_mesh(track.x, tube[5], tube[1])
+    for i in range(n + 1):
+        track.y[i] = 1.0
+    track.y[n + 1] = multiplier
+
+
+@kernel
+def stopped(status, path, mu, tangent_mu):
+    """The end of a way at the state in the track."""
+    return End(status, path, (mu, tangent_mu), (mu, tangent_mu, 0.0))
+
+
+@kernel
+def land(room, tube, path, here, ahead, until):
+    """Stand at ``until``, on the step that leads beyond it."""
+    track = room.track
+    n, guess = len(track.x) - 1, room.space.curve[0, : len(track.y)]
+    between(track, n, here[0], here[1], ahead[0], ahead[1], ahead[2], until, guess)
+    for i in range(len(track.y)):
+        track.y[i] = guess[i]
+    status, _, tangent_mu = stand(track, tube, path, until, 1.0, 0, room.space.work)
+    if status != FOLLOWED or differ(extremes(guess[: n + 1], tube[4]), extremes(track.y[: n + 1], tube[4])):
+        return stopped(NOT_CONVERGED, path, here[0], here[1])
+    return stopped(OK, path, until, tangent_mu)
+
+
+@kernel
+def follow(room, tube, path, mu, tangent_mu, until):
+    """Follow the branch from the state in the track, at ``mu``, to the state at ``until``."""
+    track, work = room.track, room.space.work
+    course, edges, cells, _, _, _ = tube
+    n, here, step = len(track.x) - 1, (mu, tangent_mu), FIRST_STEP * CHANGE
+    for _ in range(MOST_STEPS):
+        own = fill(course, edges, track.x, n, n, cells)
+        status, negative, mu, tangent_mu, made, step = advance(
+            lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], step, work
+        )
+        if status != FOLLOWED:
+            gone = pushed(track.y[: n + 1], own, load_at(path, track.y, n, here[0]))
+            flat = is_flat(here[0], here[1], path)  # no step leads round so sharp a fold
+            return stopped(COMPRESSED if gone else BEYOND_LIMIT if flat else NOT_CONVERGED, path, here[0], here[1])
+        ahead, ends = (mu, tangent_mu, made), not is_stable(negative, tangent_mu, 1.0)
+        if ends:
+            ahead = last_alike(
+                lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], made, 1.0, True, work
+            )
+        if ahead[0] >= until:
+            return land(room, tube, path, here, ahead, until)
+        if ends:
+            return End(BEYOND_LIMIT, path, here, ahead)
+        here = take(track, tube, path, mu, tangent_mu, work)
+    return stopped(NOT_CONVERGED, path, here[0], here[1])
+
+
+@kernel
+def go(room, tube, path):
+    """All of a path, from the state in the track."""
+    status, negative, tangent_mu = stand(room.track, tube, path, 0.0, 1.0, 0, room.space.work)
+    if status != FOLLOWED or negative > 0:
+        return stopped(NOT_CONVERGED if status != FOLLOWED else BEYOND_LIMIT, path, 0.0, 1.0)
+    return follow(room, tube, path, 0.0, tangent_mu, 1.0)
+
+
+@kernel
+def from_rest(room, tube, cell, load, what):
+    """The state at ``load`` on the branch that begins without load while ``what`` is held stays. It begins at a share of the
+    load so small that the wall's stiffness prevails: there it has one state only.
+    """
+    track, path, share = room.track, rising(load, what), 1.0
+    for _ in range(HALVINGS):
+        share *= 0.5
+        now = loaded(path.origin, path.direction, share)
+        make_straight(track, tube, cylinder_multiplier(cell, now, what.unit))
+        status, negative, tangent_mu = stand(track, tube, path, share, 1.0, 0, room.space.work)
+        n, largest = len(track.x) - 1, 0.0
+        for i in range(n + 1):
+            largest = max(largest, abs(track.y[i] - 1.0))
+        if status == FOLLOWED and negative == 0 and largest < SMALL_STRAIN and is_stiff(tube, path, share):
+            return follow(room, tube, path, share, tangent_mu, 1.0)
+    return stopped(NOT_CONVERGED, path, 0.0, 1.0)
+
+
+@kernel
+def is_stiff(tube, path, mu):
+    """Whether the wall keeps every place of the tube straight."""
+    load = loaded(path.origin, path.direction, mu)
+    for k in range(guide.PLACES):
+        cell = guide.cell_along(tube, k / (guide.PLACES - 1))
+        now = loaded(load, path.held.unit, cylinder_multiplier(cell, load, path.held.unit))
+        if lagrangian.density(1.0, 0.0, cell, now)[3] >= 0.0:  # not a number: no twist
+            return False
+    return True
+
+
+@kernel
+def from_free(room, tube, load, unit, target):
+    """The state at ``load`` on the branch that begins with nothing held: the loads rise, then the length or rotation found
+    is changed to the ``target``.
+    """
+    track, path = room.track, rising(load, NOTHING)
+    n = len(track.x) - 1
+    course, edges, cells, _, _, _ = tube
+    track.y[n + 1] = track.next_y[n + 1] = 0.0
+    status, mu, tangent_mu = begin(track, room.space, tube, path)
+    if status != FOLLOWED:
+        return stopped(NOT_CONVERGED, path, 0.0, 1.0)
+    if mu < 1.0:
+        end = follow(room, tube, path, mu, tangent_mu, 1.0)
+        if end.status != OK:
+            return end
+    own = fill(course, edges, track.x, n, n, cells)
+    first, _ = held.hold(lagrangian.conjugate, track.x, track.y, n, own, load, unit, room.space.work[8])
+    return go(room, tube, moving(load, held_at(unit, first, target, EVERY)))

@@ -1,0 +1,137 @@
+"""The uniform tube of :mod:`freesweep.solver.physics.uniform_tube` as a guide, for a vector of designs.
+
+L_y and L_yy are linear in pressure, force and torque: their values at the two ends of a path give them all along it. Where
+the fibers' extension changes, or fibers are loose, the secant finds the place on it.
+"""
+
+from ...jit import kernel
+from ..guide import FAR_FROM, STRAY
+from ..physics import lagrangian
+from ..physics.uniform_tube import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
+from ..physics.wall import is_loose
+from .vector import HUGE, get, mask_of, select, some, spread
+
+FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
+GLANCE = 0.06  # relative change of the stretch between two looks at the slope, where that is even:
+EVEN = 0.5  # its smallest value is more than this share of the largest
+SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernels
+
+
+@kernel
+def seek(here, cell, start, end, low, high, first, last, todo):
+    """``(L_yy, L_vv)`` where the stretches ``here`` are equilibria on a way along which L_y, ``first`` at its share ``low``
+    and ``last`` at ``high``, is not linear: see :func:`..physics.uniform_tube.curvature_at`.
+    """
+    close = CLOSE * max(abs(first), abs(last))
+    L_yy, L_vv = spread(1.0), spread(-1.0)
+    for i in range(SECANTS):
+        t = min(max(low - first * (high - low) / (last - first), low), high) if i % 2 == 0 else 0.5 * (low + high)
+        _, L_y, _, now_yy, _, now_vv = lagrangian.density(here, 0.0, cell, between(start, end, t))
+        there = todo & (abs(L_y) <= close)
+        L_yy, L_vv = select(there, now_yy, L_yy), select(there, now_vv, L_vv)
+        todo = todo & ~there
+        if not some(todo):
+            break
+        above = L_y * last > 0.0
+        first, last = select(above, first, L_y), select(above, L_y, last)
+        low, high = select(above, low, t), select(above, t, high)
+    return L_yy, L_vv
+
+
+@kernel
+def scan(u, change, samples, cell, start, end, low, high, half, asked):
+    """Where the load rises at all so many ``samples`` of the way, and between them; smallest and largest -L_yy."""
+    risen, least, most = asked, spread(HUGE), spread(0.0)
+    first, second = spread(0.0), spread(0.0)
+    drawn, before, after = lagrangian.drawn_in(cell, end), between(start, end, low), between(start, end, high)
+    bent = asked if is_loose(end[2]) else asked & (abs(end[0] - start[0]) > 0.0)
+    i = 0
+    while True:
+        within = asked & (samples + 1.0 > i)
+        if not some(within):
+            break
+        here = u + change * min(i / samples, 1.0)
+        _, low_y, _, low_yy, _, low_vv = lagrangian.density(here, 0.0, cell, before)
+        _, high_y, _, high_yy, _, high_vv = lagrangian.density(here, 0.0, cell, after)
+        share = low_y / (low_y - high_y)
+        L_yy, L_vv = low_yy + share * (high_yy - low_yy), low_vv + share * (high_vv - low_vv)
+        if some(bent):
+            bent_yy, bent_vv = seek(here, cell, start, end, low, high, low_y, high_y, bent & within)
+            L_yy, L_vv = select(bent, bent_yy, L_yy), select(bent, bent_vv, L_vv)
+        far = L_yy * half * half < FAR * FAR * L_vv
+        slope = -L_yy
+        risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
+        if i >= 2 and not is_loose(end[2]):
+            dips = within & (second < first) & (second < slope)
+            bend = first - 2.0 * second + slope
+            lowest = second - (slope - first) * (slope - first) / (8.0 * bend)
+            risen = risen & (~dips | (lowest > 0.0))
+        least, most = select(within, min(least, slope), least), select(within, max(most, slope), most)
+        first, second = second, slope
+        i += 1
+    return risen, least, most
+
+
+@kernel
+def rising(u, trial, cell, start, end, low, high, half, asked):
+    """Where the load rises all the way from ``u``, at the share ``low``, to ``trial`` at ``high``: see
+    :func:`..physics.uniform_tube.rising`. A few looks tell it where L_yy hardly changes, which leaves no room for a
+    dip, and the tube is not drawn in.
+    """
+    change = trial - u
+    still = abs(change) < 1e-9 * u
+    asked = asked & ~still
+    size = abs(change) / min(u, trial)
+    risen, least, most = scan(u, change, max(1.0 + size / GLANCE, 2.0), cell, start, end, low, high, half, asked)
+    unsure = risen & ((least < EVEN * most) | (min(u, trial) < lagrangian.drawn_in(cell, end)))
+    if some(unsure):
+        risen_all, _, _ = scan(u, change, 2.0 + size / SCAN, cell, start, end, low, high, half, unsure)
+        risen = risen & (~unsure | risen_all)
+    return still | risen
+
+
+@kernel
+def follow(u, cell, start, end, half, asked):
+    """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the lanes that arrived."""
+    t, step = spread(0.0), spread(FIRST_STEP)
+    todo, done = asked, mask_of(0)
+    while some(todo):
+        ahead = min(t + step, 1.0)
+        trial, before, least, most = u, spread(HUGE), spread(0.0), spread(HUGE)
+        going, arrived = todo, mask_of(0)
+        for _ in range(ITERATIONS):
+            room, L_y, _, L_yy, _, _ = lagrangian.density(trial, 0.0, cell, between(start, end, ahead))
+            going = going & (room > 0.0) & (L_yy < 0.0)
+            least, most = select(L_y > 0.0, trial, least), select(L_y > 0.0, most, trial)
+            new = trial - L_y / L_yy
+            new = select((least <= new) & (new <= most), new, 0.5 * (least + most))
+            size = abs(new - trial)
+            trial = select(going, new, trial)
+            going = going & (abs(trial - u) < LARGEST_CHANGE * u)
+            there = going & ((size < 1e-13 * u) | ((size < 1e-10 * u) & (size >= 0.5 * before)))
+            arrived, going, before = arrived | there, going & ~there, size
+            if not some(going):
+                break
+        arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived
+        t, u = select(arrived, ahead, t), select(arrived, trial, u)
+        step = select(arrived, 2.0 * step, 0.5 * step)
+        done = done | (todo & (t >= 1.0))
+        todo = todo & (t < 1.0) & (step > SMALLEST_STEP)
+    return u, done
+
+
+@kernel
+def within(y, n, u, cell, load, half):
+    """Where the shape lies between 1 and the uniform stretch, and its middle near one that draws the tube in while the end
+    is far; elsewhere it is another branch.
+    """
+    slack = STRAY * abs(u - 1.0) + 1e-6
+    low, high = spread(HUGE), spread(-HUGE)
+    for i in range(n + 1):
+        low, high = min(low, get(y, i)), max(high, get(y, i))
+    kept = (min(u, 1.0) - slack <= low) & (high <= max(u, 1.0) + slack)
+    missed = kept & (u < lagrangian.drawn_in(cell, load)) & (get(y, n) - u > FAR_FROM * (1.0 - u))
+    if some(missed):
+        _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
+        kept = kept & ~(missed & (L_yy * half * half < FAR * FAR * L_vv))
+    return kept

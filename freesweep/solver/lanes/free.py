@@ -1,0 +1,167 @@
+"""Free states of tubes that are the same all along, a vector of designs at a time.
+
+First each design's uniform tube is carried along its pressures, as far as it rises without a turning point. Then the
+states are solved, in vectors of states that are alike, whichever designs they belong to: each begins with the shape of a
+long tube, so none needs another one. No lane's numbers depend on its neighbours.
+"""
+
+import numpy as np
+
+from ...jit import entry_point, kernel
+from ..physics import lagrangian
+from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
+from . import first_guess, layer, nested
+from .pack import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
+from .pack import LENGTH as HALF
+from .vector import WIDTH, bits, get, mask_of, put, select, spread
+
+
+@kernel
+def first_leg(before, fresh):
+    """The load before, where the ``fresh`` lanes begin without any."""
+    zero, one = spread(0.0), spread(1.0)
+    gamma, rubber, k, p, f, m, e = before
+    return select(fresh, one, gamma), rubber, k, p, select(fresh, zero, f), select(fresh, zero, m), e
+
+
+@kernel
+def locked(problem):
+    """Uniform stretch of the locked tube, and its end's cosine."""
+    cell, gamma = (problem[H], problem[D], problem[AREA]), problem[GAMMA]
+    u = lagrangian.locked_stretch(cell, gamma)
+    return u, layer.end_cosine(u, cell, (gamma, rubber_of(problem), (0.0,), 1.0, 0.0, 0.0, 0.0))
+
+
+@kernel
+def carry(problems, first, pressures, order, constants, walls, layers, values, bounds, status, stretches, cosines):
+    """Uniform ``stretches`` (pressures,) of the problems, taken in the given ``order``, WIDTH at a time: NaN from where no
+    quick way leads on; and ``cosines`` (pressures,) of the meridian's angle at an end, which tell states that are alike.
+    What needs no solving at all is written to ``values``, ``bounds`` and ``status``. ``constants`` are the columns of the
+    rubbers' constants, MOONEY_RIVLIN or YEOH, and ``walls`` those of the walls, SOURCE or PHYSICAL, whose ``layers`` and
+    loose fibers are the same for all: each has machine code of its own.
+    """
+    columns, found = aligned(1, COLUMNS)[0], aligned(1, 2)[0]
+    members, rows = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
+    for group in range(0, len(order), WIDTH):
+        count = min(WIDTH, len(order) - group)
+        longest, going = 0, 0
+        for lane in range(WIDTH):
+            k = order[group + min(lane, count - 1)]
+            members[lane] = k
+            going |= (1 if is_clamped(problems[k]) else 0) << lane
+            longest = max(longest, first[k + 1] - first[k])
+            enter(lane, problems[k], columns)
+        u, started, valid = spread(1.0), 0, going
+        for step in range(longest):
+            active = 0
+            for lane in range(count):
+                k = members[lane]
+                row = first[k] + step
+                rows[lane] = row
+                if row < first[k + 1]:
+                    p, clamped = pressures[row], (valid >> lane) & 1 == 1
+                    stretches[row] = np.nan
+                    if settle(p, problems[k], clamped, row, values, bounds, status):
+                        continue
+                    if p == np.inf:
+                        stretches[row], cosines[row] = locked(problems[k])
+                    elif (going >> lane) & 1:
+                        columns[PRESSURE, lane] = p
+                        active |= 1 << lane
+            if active == 0:
+                continue
+            cell, before, now = loads(columns, constants, walls, layers)
+            ahead, arrived = first_guess.follow(
+                u, cell, first_leg(before, mask_of(active & ~started)), now, get(columns, HALF), mask_of(active)
+            )
+            u = select(arrived, ahead, u)
+            put(columns, BEFORE, select(arrived, now[3], get(columns, BEFORE)))
+            put(found, 0, ahead)
+            put(found, 1, layer.end_cosine(ahead, cell, now))
+            for lane in range(count):
+                if (bits(arrived) >> lane) & 1:
+                    stretches[rows[lane]], cosines[rows[lane]] = found[0, lane], found[1, lane]
+            started |= bits(arrived)
+            going &= ~(active & ~bits(arrived))
+
+
+@kernel
+def solve(
+    problems, owners, pressures, stretches, order, constants, walls, layers, base, most, accuracy, values, bounds, status,
+    slack, stations, profiles,
+):  # fmt: skip
+    """Solve the rows in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]`` and has the uniform
+    stretch ``stretches[i]``. Other arguments as of :func:`follow_many`; rows that a lane could not do keep the status
+    that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
+    """
+    size = (base << most) + 2
+    space = aligned(23, size)
+    meshes, work, table, out, found = space[:7], space[7:11], space[11:19], space[19:21], space[21:]
+    shape, small = aligned(2, base + 1), aligned(3, COLUMNS)
+    x, y = shape[0], shape[1]
+    columns, sizes, start = small[0], small[1], small[2]
+    doublings = np.zeros(WIDTH, np.int64)
+    if stations is None:
+        kept = None
+    else:
+        kept, nodes = np.zeros((WIDTH, 5, size)), np.zeros((5, size))
+        tube = (np.zeros((1, 1, 3, 4)), np.array([0, base]), np.zeros((1, 3)), True, base, np.zeros(2))
+    rows = np.zeros(WIDTH, np.int64)
+    for group in range(0, len(order), WIDTH):
+        count = min(WIDTH, len(order) - group)
+        for lane in range(WIDTH):
+            row = order[group + min(lane, count - 1)]
+            rows[lane] = row
+            enter(lane, problems[owners[row]], columns)
+            start[0, lane] = stretches[row]
+            if pressures[row] == np.inf:
+                lock(lane, columns)
+            else:
+                columns[PRESSURE, lane] = pressures[row]
+        cell, _, load = loads(columns, constants, walls, layers)
+        u, half = get(start, 0), get(columns, HALF)
+        layer.begin(u, cell, load, half, base, work, meshes, x, y)
+        met, alpha, beta = nested.solve(
+            x, y, base, u, cell, load, half, mask_of((1 << count) - 1), most, accuracy, meshes, work, table, sizes, found,
+            out, kept, doublings,
+        )  # fmt: skip
+        met = met & first_guess.within(y, base, u, cell, load, half)
+        done = bits(met)
+        if stations is not None:
+            done = draw_profiles(done, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles)
+        record(done, bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
+
+
+@entry_point
+def carry_lanes(problems, first, pressures, order, constants, values, bounds, status, stretches, cosines):
+    """:func:`carry` the source's tubes."""
+    carry(problems, first, pressures, order, constants, SOURCE, 1, values, bounds, status, stretches, cosines)
+
+
+@entry_point
+def carry_physical(problems, first, pressures, order, constants, layers, values, bounds, status, stretches, cosines):
+    """:func:`carry` physical tubes."""
+    carry(problems, first, pressures, order, constants, PHYSICAL, layers, values, bounds, status, stretches, cosines)
+
+
+@entry_point
+def solve_lanes(
+    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack,
+    stations, profiles,
+):  # fmt: skip
+    """:func:`solve` the source's tubes."""
+    solve(
+        problems, owners, pressures, stretches, order, constants, SOURCE, 1, base, nested.LANE_DOUBLINGS, accuracy, values,
+        bounds, status, slack, stations, profiles,
+    )  # fmt: skip
+
+
+@entry_point
+def solve_physical(
+    problems, owners, pressures, stretches, order, constants, layers, base, most, accuracy, values, bounds, status, slack,
+):  # fmt: skip
+    """:func:`solve` physical tubes, with ``most`` doublings of the base mesh."""
+    solve(
+        problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, base, most, accuracy, values, bounds,
+        status, slack, None, None,
+    )  # fmt: skip

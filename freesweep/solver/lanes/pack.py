@@ -1,0 +1,159 @@
+"""Designs in and out of lanes: scalar work, done one lane at a time."""
+
+import numpy as np
+
+from ...jit import entry_point, kernel
+from ..along.profile import at_stations
+from ..physics import lagrangian
+from ..physics.wall import layers, reciprocal
+from ..problem import (
+    AREA,
+    FORCE,
+    GAMMA,
+    INNER,
+    LENGTH,
+    LOOSE,
+    RATIO,
+    SECOND,
+    SHEAR,
+    THIRD,
+    TORQUE,
+    D,
+    H,
+    rubber_of,
+    wall_of,
+)
+from ..status import COMPRESSED, INVALID, OK
+from .nested import OUTPUTS
+from .vector import WIDTH, get
+
+# H, D, area, gamma, c, shear, f, m, half length, c2, c3, inner, loose; pressure, pressure before, weight of the energy
+COLUMNS = LOOSE + 4
+PRESSURE, BEFORE, WEIGHT = range(LOOSE + 1, COLUMNS)
+LINE = 64  # bytes: arrays of lanes begin on a cache line
+
+
+@kernel
+def aligned(rows, size):
+    """Zeros of shape (rows, size, WIDTH) that begin on a cache line."""
+    count = rows * size * WIDTH
+    room = np.zeros(count + LINE // 8)
+    skipped = (-(room.ctypes.data // 8)) % (LINE // 8)
+    return room[skipped : skipped + count].reshape((rows, size, WIDTH))
+
+
+@kernel
+def rubber_in(columns, constants):
+    """The rubbers in the lanes: as many of C01/C10, C2/C1, C3/C1 as there are ``constants``, (RATIO,) or three columns."""
+    if len(constants) == 1:
+        return (get(columns, RATIO),)
+    return get(columns, RATIO), get(columns, SECOND), get(columns, THIRD)
+
+
+@kernel
+def wall_in(columns, walls, count):
+    """The walls in the lanes, of the columns SOURCE or PHYSICAL; those have ``count`` layers, and all of them loose fibers,
+    or none.
+    """
+    if len(walls) == 1:
+        return (get(columns, SHEAR),)
+    inner = get(columns, INNER)
+    return get(columns, SHEAR), inner, columns[LOOSE, 0], count, reciprocal(get(columns, AREA), inner, count)
+
+
+@entry_point
+def count_layers(problems, walls, out):
+    """How many layers the wall of each of the physical tubes has."""
+    for k in range(len(problems)):
+        out[k] = layers(problems[k, AREA], wall_of(problems[k], walls))
+
+
+@kernel
+def loads(columns, constants, walls, count):
+    """What the density takes: ``(cell, load before, load now)``."""
+    cell = (get(columns, H), get(columns, D), get(columns, AREA))
+    gamma, wall = get(columns, GAMMA), wall_in(columns, walls, count)
+    rubber = rubber_in(columns, constants)
+    f, m, e = get(columns, FORCE), get(columns, TORQUE), get(columns, WEIGHT)
+    now = (gamma, rubber, wall, get(columns, PRESSURE), f, m, e)
+    return cell, (gamma, rubber, wall, get(columns, BEFORE), f, m, e), now
+
+
+@kernel
+def enter(lane, problem, columns):
+    """Put a design into a lane, without load."""
+    for i in range(len(problem)):
+        columns[i, lane] = problem[i]
+    columns[LENGTH, lane] = 0.5 * problem[LENGTH]
+    columns[PRESSURE, lane], columns[BEFORE, lane], columns[WEIGHT, lane] = 1.0, 0.0, 1.0
+
+
+@kernel
+def lock(lane, columns):
+    """Leave nothing in a lane but pressure: what a locked shape bears."""
+    columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane] = 0.0, 0.0, 0.0
+
+
+@kernel
+def seat(lane, columns, tube):
+    """One lane as the scalar kernels take it: its load; ``tube`` is changed to it."""
+    course, _, _, _, _, places = tube
+    for k in range(3):
+        course[0, 0, k, 0] = columns[k, lane]
+    places[1] = columns[LENGTH, lane]
+    return (
+        columns[GAMMA, lane], rubber_of(columns[:, lane]), (columns[SHEAR, lane],), columns[PRESSURE, lane],
+        columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
+    )  # fmt: skip
+
+
+@kernel
+def is_clamped(problem):
+    """Whether the fibers leave the clamped ends any meridional stretch."""
+    rest = (problem[GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return 1.0 + lagrangian.kinematics(1.0, (problem[H], problem[D], problem[AREA]), rest)[3] > 0.0
+
+
+@kernel
+def settle(p, problem, clamped, row, values, bounds, status):
+    """What needs no solving: an unpressed tube, one that is pushed, one that is not valid. Whether that is so."""
+    f, m = problem[FORCE], problem[TORQUE]
+    if not (p >= 0.0 and clamped):
+        status[row] = INVALID
+    elif p == 0.0 and f == 0.0 and m == 0.0:
+        half = 0.5 * problem[LENGTH]
+        status[row] = OK
+        values[row, 0], values[row, 1], values[row, 2], values[row, 3], values[row, 4] = half, half, 0.0, 0.0, 1.0
+        for k in range(OUTPUTS):
+            bounds[row, k] = 0.0
+    elif not p + f > 0.0 and not p == np.inf:
+        status[row] = COMPRESSED
+    else:
+        return False
+    return True
+
+
+@kernel
+def record(met, alpha, beta, rows, out, values, bounds, status, slack):
+    """Write what was found in the lanes that are met."""
+    for lane in range(WIDTH):
+        row = rows[lane]
+        if (met >> lane) & 1:
+            status[row] = OK
+            slack[row] = ((alpha >> lane) & 1) | (((beta >> lane) & 1) << 1)
+            for k in range(OUTPUTS):
+                values[row, k], bounds[row, k] = out[0, k, lane], out[1, k, lane]
+
+
+@kernel
+def draw_profiles(met, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles):
+    """Write the profiles of the lanes that are met, from the meshes that were ``kept`` of them; returns those whose bounds
+    meet the accuracy.
+    """
+    drawn = 0
+    for lane in range(WIDTH):
+        if (met >> lane) & 1:
+            load = seat(lane, columns, tube)
+            missed = at_stations(stations, base, doublings[lane], tube, load, kept[lane], nodes, profiles[rows[lane]])
+            drawn |= (1 if missed <= accuracy else 0) << lane
+    return drawn

@@ -1,0 +1,116 @@
+"""One integral held: Newton's method with its multiplier as one more unknown.
+
+With ``C = sum h c(y_mid, slope)`` held at a target t, the load ``mu`` conjugate to it (c = dL/dmu) is unknown::
+
+    [ H    b ] [ dy  ]     [ g     ]
+    [ b^T -k ] [ dmu ] = - [ t - C ],    b = -dC/dy,  k = dC/dmu where y stays (0 where J is linear in mu)
+
+solved with two tridiagonal solutions. ``sigma = k + b^T H^-1 b = dC/dmu`` along the branch: positive as long as the branch
+is stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
+"""
+
+from ...jit import kernel
+from ..cells import cell_at, of_length
+from .newton import (
+    CONVERGED,
+    INFEASIBLE,
+    MAX_HALVINGS,
+    STALLED,
+    UNKNOWN,
+    assemble,
+    factor,
+    new_rate,
+    settled,
+    substitute,
+)
+
+
+@kernel
+def loaded(load, direction, mu):
+    """The load changed by ``mu`` along ``direction``, component by component; rubber and wall stay."""
+    return (
+        load[0] + mu * direction[0],
+        load[1],
+        load[2],
+        load[3] + mu * direction[3],
+        load[4] + mu * direction[4],
+        load[5] + mu * direction[5],
+        load[6] + mu * direction[6],
+    )
+
+
+@kernel
+def hold(conjugate, x, y, n, cells, load, direction, b):
+    """The held integral C, its gradient as ``b = -dC/dy``, and k: ``(C, k)``."""
+    total, k = 0.0, 0.0
+    b[0] = 0.0
+    for j in range(n):
+        h = x[j + 1] - x[j]
+        c, c_y, c_v, c_mu = conjugate(
+            0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, of_length(cell_at(cells, j), h), load, direction
+        )
+        total += h * c
+        k += h * c_mu
+        b[j] -= 0.5 * h * c_y - c_v
+        b[j + 1] = -(0.5 * h * c_y + c_v)
+    return total, k
+
+
+@kernel
+def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, iterations, work):
+    """Newton, at most so many ``iterations``, for ``y`` (in place) and the multiplier ``mu`` of ``direction``, with the
+    conjugate integral held.
+
+    Returns ``(status, unstable directions that keep the integral, mu, sigma)``; ``work[9]`` is left with the change of y
+    per unit of mu. ``direction`` is to be scaled so that mu is of order 1.
+    """
+    g, d, e, inverse, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
+    b, response = work[8], work[9]
+    first, last = 1, n if free else n - 1
+    for i in range(n + 1):
+        trial[i] = y[i]
+        least[i] = 0.0
+    size, before, rate, fraction, change, sigma = 1e300, 1e300, UNKNOWN, 0.0, 0.0, 0.0
+    made, halvings = 0, 0
+    while made < iterations and halvings < MAX_HALVINGS:
+        now = loaded(load, direction, mu + fraction * change)
+        if not assemble(density, x, trial, n, cells, now, False, least, room, g, d, e):
+            if made == 0:
+                return INFEASIBLE, 0, mu, 0.0
+            fraction *= 0.5
+            halvings += 1
+            for i in range(n + 1):
+                trial[i] = y[i] + fraction * step[i]
+            continue
+        before = size if fraction == 1.0 else 1e300
+        mu += fraction * change
+        for i in range(n + 1):
+            y[i], least[i] = trial[i], room[i]
+        negative = factor(d, e, first, last, inverse)
+        value, sigma = hold(conjugate, x, y, n, cells, now, direction, b)
+        substitute(inverse, e, first, last, g, step)
+        substitute(inverse, e, first, last, b, response)
+        response[0] = 0.0
+        response[n] = response[n] if free else 0.0
+        lag = 0.0
+        for i in range(first, last + 1):
+            response[i] = -response[i]
+            sigma -= b[i] * response[i]
+            lag += b[i] * step[i]
+        # dC = sigma dmu: a held change of C moves mu by change / sigma
+        change = (target - value - lag) / sigma
+        size = abs(change) / max(1.0, abs(mu))
+        step[0] = 0.0
+        step[n] = step[n] if free else 0.0
+        for i in range(1, n + 1):
+            step[i] = change * response[i] - step[i]
+            size = max(size, abs(step[i]) / y[i])
+        rate = new_rate(rate, size, before)
+        for i in range(n + 1):
+            trial[i] = y[i] + step[i]
+        if settled(size, before, rate, tolerance):
+            for i in range(n + 1):
+                y[i] = trial[i]
+            return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu + change, sigma
+        fraction, halvings, made = 1.0, 0, made + 1
+    return STALLED, 1, mu, 0.0

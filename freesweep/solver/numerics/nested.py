@@ -1,0 +1,262 @@
+"""Nested meshes: every output extrapolated, with an error bound, refined until the bound meets the accuracy asked for.
+
+A midpoint cell errs by even powers of its size, so results A on meshes of n/2, n, 2n, 4n cells extrapolate to fourth
+order, ``E = (4 A_2n - A_n)/3``. The difference of two successive E, divided by the 15 that the order allows, estimates the
+error of the second; the difference before it, divided by 225, guards against its passing through zero. So does the
+largest share that such an estimate has in the last change of any output, A_2n - A_n: no other has a smaller one. The bound
+is ``SAFETY`` times the estimate, plus a floor for rounding and for what Newton's last steps left.
+
+The rows of ``table`` belong to the meshes, coarsest first; its columns are the outputs: the four integrals, y in the
+middle, and the multiplier of a held integral.
+"""
+
+from ...jit import kernel
+from ..cells import behind, cell_at, largest_sizes, nothing_yet
+from . import finest, held, mesh, middle, newton
+from .held import loaded
+from .properties_along import fill
+
+OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
+MIDDLE, MULTIPLIER = 4, 5
+MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or more finer ones join
+STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
+SMALLEST_TOLERANCE = 1e-14
+SAFETY = 3.3
+FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
+TINY = 1e-300
+
+PLAIN, HELD = 0, 1
+UNREACHED = 3  # the accuracy was not met on the finest mesh
+
+
+@kernel
+def integrate(integrands, x, y, n, cells, load, row):
+    """Integrals over the tube on one mesh; whether the kind of cell, in which the density is smooth, changes along it."""
+    length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
+    broken, before, near = False, -1.0, nothing_yet(0.0)
+    varying = len(cells) > 1
+    cell = cell_at(cells, 0)
+    for j in range(n):
+        if varying:
+            cell = cell_at(cells, j)
+        h = x[j + 1] - x[j]
+        s, v, t, w, kind, near = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, behind(cell, h, near), load)
+        broken = broken or (kind != before and j > 0)
+        before = kind
+        length += h * s
+        volume += h * v
+        twist += h * t
+        energy += h * w
+    row[0], row[1], row[2], row[3] = length, volume, twist, energy
+    return broken
+
+
+@kernel
+def extrapolate(table, level, scales, floors, missed, broken, values, bounds):
+    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound. ``missed`` is the error of
+    the stretch in the middle that no mesh shows. On a ``broken`` mesh a cell somewhere holds a change of smoothness: it errs
+    now by more, now by less, and no difference is divided by what an order allows.
+    """
+    order, before = (1.0, 4.0) if broken else (15.0, 225.0)
+    largest, share, change = 0.0, 0.0, TINY
+    for k in range(OUTPUTS):
+        change += FAINT / OUTPUTS * abs(table[level, k] - table[level - 1, k]) / scales[k]
+    for k in range(OUTPUTS):
+        a, b, c, d = table[level - 3, k], table[level - 2, k], table[level - 1, k], table[level, k]
+        first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
+        estimate = max(abs(third - second) / order, abs(second - first) / before)
+        values[k] = third
+        bounds[k] = SAFETY * estimate
+        share = max(share, estimate / scales[k] / (abs(d - c) / scales[k] + change))
+    for k in range(OUTPUTS):
+        bounds[k] = max(bounds[k], share * abs(table[level, k] - table[level - 1, k]))
+        bounds[k] += missed if k == MIDDLE else 0.0
+        largest = max(largest, bounds[k] / scales[k])
+        bounds[k] += floors[k]
+    return largest
+
+
+@kernel
+def make_admissible(density, x, y, n, cells, load):
+    """Shrink ``y`` toward 1, where every state is admissible, until each cell has room."""
+    for _ in range(60):
+        if newton.admissible(density, x, y, n, cells, load):
+            return True
+        for i in range(n + 1):
+            y[i] = 1.0 + 0.85 * (y[i] - 1.0)
+    return False
+
+
+@kernel
+def ease(density, integrands, x, y, n, new_x, new_y, count, cells, load, work):
+    """Ease the guess ``new_y`` on half or twice as many cells as the solution ``y`` has, by the slopes of that."""
+    sine, cosine, here = work[0], work[1], work[2]
+    mesh.slants(integrands, x, y, n, cells, load, sine, cosine)
+    for j in range(count):
+        here[j] = min(cosine[2 * j], cosine[2 * j + 1]) if count < n else cosine[j // 2]
+    mesh.ease(integrands, new_x, new_y, count, here, cells, load)
+
+
+@kernel
+def adapt(density, integrands, x, y, n, tube, load, work):
+    """Move the nodes of the base mesh to where the solution bends, and carry the solution over, eased where that leaves a
+    cell no room; returns whether it is admissible there.
+    """
+    course, edges, cells, free, _, _ = tube
+    own = fill(course, edges, x, n, n, cells)
+    cosine, rate, nodes, new_x, new_y, least = work[1], work[2], work[3], work[4], work[5], work[7]
+    for s in range(len(edges) - 1):  # each segment keeps its nodes: the jumps between them stay on the mesh
+        a, b = edges[s], edges[s + 1]
+        here = own[a:b] if len(own) > 1 else own
+        symmetric = free and s == len(edges) - 2
+        mesh.turning(integrands, x[a : b + 1], y[a : b + 1], b - a, symmetric, here, load, work, rate)
+        mesh.node_density(x[a : b + 1], b - a, rate, nodes)
+        mesh.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
+    own = fill(course, edges, new_x, n, n, cells)
+    fits = newton.admissible(density, new_x, new_y, n, own, load)
+    if free and not fits:
+        mesh.least_between(x, cosine, n, new_x, least)
+        mesh.ease(integrands, new_x, new_y, n, least, own, load)
+        fits = newton.admissible(density, new_x, new_y, n, own, load)
+    for i in range(n + 1):
+        x[i], y[i] = new_x[i], new_y[i]
+    return fits
+
+
+@kernel
+def regrade(density, integrands, x, y, n, tube, load, work):
+    """:func:`adapt`, unless that would leave the solution inadmissible."""
+    old_x, old_y = work[10], work[11]
+    for i in range(n + 1):
+        old_x[i], old_y[i] = x[i], y[i]
+    if not adapt(density, integrands, x, y, n, tube, load, work):
+        for i in range(n + 1):
+            x[i], y[i] = old_x[i], old_y[i]
+
+
+@kernel
+def split(x, n, edges, factor, out):
+    """A finer mesh: each cell of the base mesh in ``factor``, smoothly within each segment."""
+    for s in range(len(edges) - 1):
+        a, b = edges[s], edges[s + 1]
+        mesh.split(x[a : b + 1], b - a, factor, out[a * factor : b * factor + 1])
+
+
+@kernel
+def foresee(fine, n, work):
+    """First guess in row 1 of ``fine`` on twice as many cells, whose nodes are in row 0: the solution on n cells (rows 2,
+    4), carried on by the change from n/2 cells (row 3), which doubling the cells will repeat at a quarter.
+    """
+    half_x, change, both = work[0], work[1], work[2]
+    for i in range(n // 2 + 1):
+        half_x[i] = fine[2, 2 * i]
+        change[i] = 0.25 * (fine[4, 2 * i] - fine[3, i])
+    mesh.prolong(half_x, change, n // 2, fine[2], both)
+    for i in range(n + 1):
+        both[i] += fine[4, i]
+    mesh.prolong(fine[2], both, n, fine[0], fine[1])
+
+
+@kernel
+def go_finer(x, n, edges, doublings, fine, work):
+    """Nodes and first guess of the next finer mesh in rows 0, 1 of ``fine``, which hold the solution on this one, after so
+    many ``doublings`` of the base mesh ``x``; row 3 holds that on the coarser one, which becomes the last of three.
+    """
+    count = n << doublings
+    for i in range(count // 2 + 1):
+        fine[2, count + 1 + i], fine[4, count + 1 + i] = fine[0, 2 * i], fine[3, i]
+    for i in range(count + 1):
+        fine[2, i], fine[4, i] = fine[0, i], fine[1, i]
+    split(x, n, edges, 2 << doublings, fine[0])
+    foresee(fine, count, work)
+    for i in range(count + 1):
+        fine[3, i] = fine[4, i]
+
+
+@kernel
+def solve(
+    density, conjugate, integrands, scales, x, y, tube, load, goal, direction, target, mu, regrades, accuracy,
+    fine, work, table, out,
+):  # fmt: skip
+    """Solve on nested meshes until every bound meets ``accuracy``.
+
+    ``tube`` is (course, edges, cells, free, middle, places): what varies along the tube and a buffer for it, whether the
+    last node is a plane of symmetry, the node of the base mesh that lies in the middle, and where segments begin and end.
+    ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
+    call's warm start. ``fine`` is scratch for the finer meshes, left as :mod:`finest` describes. ``out`` is
+    (values, bounds, scales, floors), shape (4, OUTPUTS).
+
+    Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
+    """
+    n = len(x) - 1
+    course, edges, cells, free, center, _ = tube
+    tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
+    error, coarser, where, far = tolerance, tolerance, middle.NOT_LONG, 1.0
+    passes, level, count, on_base = 0, 1, n, mu
+    unstable, rate, shrunk = 0, newton.UNKNOWN, False
+    xs, ys = x, y
+    while True:
+        own = fill(course, edges, xs, count, n, cells)
+        coarser = error
+        if goal == PLAIN:
+            status, unstable, rate, error = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
+        else:
+            status, unstable, mu, _ = held.solve_held(
+                density, conjugate, xs, ys, count, free, own, load, direction, mu, target, tolerance, newton.MAX_ITERATIONS,
+                work,
+            )  # fmt: skip
+        if status == newton.INFEASIBLE and not shrunk:
+            shrunk = True
+            now = loaded(load, direction, mu)
+            if level == 0 and free:
+                ease(density, integrands, x, y, n, xs, ys, count, own, now, work)
+            elif level > 1 and free:
+                ease(density, integrands, fine[2], fine[4], count // 2, xs, ys, count, own, now, work)
+            if make_admissible(density, xs, ys, count, own, now):
+                continue
+        if status != newton.CONVERGED:
+            return status, unstable, max(level - 1, 0), on_base
+        shrunk = False
+        now = loaded(load, direction, mu)
+        if level == 1 and passes < regrades:
+            adapt(density, integrands, x, y, n, tube, now, work)
+            passes += 1
+            continue
+
+        row = table[level]
+        broken = integrate(integrands, xs, ys, count, own, now, row)
+        row[MIDDLE], row[MULTIPLIER], missed = ys[center * count // n], mu, 0.0
+        if free:
+            if level == 1:
+                where, far = middle.node(density, xs, ys, n, cell_at(own, 0), now, accuracy)
+            row[MIDDLE], missed = middle.stretch(density, xs, ys, count, where, n, far, cell_at(own, 0), now)
+        if level >= 3:
+            units, floors = scales(row, largest_sizes(own), now, x[n] - x[0], max(error, coarser))
+            for k in range(OUTPUTS):
+                out[2, k], out[3, k] = units[k], floors[k]
+            if goal == HELD:  # the multiplier counts in units of its direction
+                unit = max(abs(direction[3]), max(abs(direction[4]), abs(direction[5])))
+                out[2, MULTIPLIER] /= max(unit, 1.0)
+                out[3, MULTIPLIER] /= unit
+            met = extrapolate(table, level, out[2], out[3], missed, broken, out[0], out[1]) <= accuracy
+            if met or level == MAX_DOUBLINGS + 1:
+                finest.leave_loads(
+                    table[:, MULTIPLIER], level, out[0, MULTIPLIER], direction, max(error, coarser), fine
+                )
+                return newton.CONVERGED if met else UNREACHED, unstable, level - 1, on_base
+
+        # order of the meshes: base (row 1), half of it (row 0), then double, double again, ...
+        if level == 1:
+            on_base = mu
+            level, count = 0, n // 2
+            xs, ys = fine[2], fine[3]
+            for i in range(count + 1):
+                xs[i], ys[i] = x[2 * i], y[2 * i]
+            continue
+        if level == 0:
+            level, mu = 1, on_base
+            for i in range(n + 1):
+                fine[0, i], fine[1, i] = x[i], y[i]
+        go_finer(x, n, edges, level - 1, fine, work)
+        level += 1
+        count, xs, ys = n << (level - 1), fine[0], fine[1]

@@ -1,0 +1,178 @@
+"""The density of a cell of a mesh: its mean along the cell, where loose fibers make it bend.
+
+A midpoint stands for a cell as long as the density is smooth there. Where the active set of loose fibers changes, L is only
+C1, and between two families that hold one after the other lies a stretch as narrow as one likes in which both do: L_y all
+but jumps. Along a cell y is linear, so the mean of L over it is::
+
+    L(y, v) = 1/h integral of L(y + r v, v) dr,   r from -h/2 to h/2
+
+by Simpson's rule, on four panels where its three points are not of one kind; r is the share of L_v that moves the place. It
+is one more functional, with all its derivatives, so Newton's method and the nested meshes take it as they take others.
+
+``cell`` is that of :mod:`lagrangian` with the length h of the cell behind, and what the cell before handed on, where fibers
+are looked for first; these functions hand on, last, what the next one may have. A body's radius and its slope are those of
+the cell's middle.
+"""
+
+from ...jit import kernel
+from ..either import select, some
+from . import body, physical
+
+EIGHTHS = 8  # of a cell lie between the points of the finer rule
+MIXED = 4.0  # beside the kinds of :mod:`relaxed`
+
+
+@kernel
+def along_cell(k, h):
+    """``(place from the middle, weight in 24ths)`` of point k of the finer rule, from 0 to EIGHTHS."""
+    return h * (k / EIGHTHS - 0.5), 4.0 if k % 2 == 1 else 2.0
+
+
+@kernel
+def plus(total, weight, part):
+    """Five sums, with one part more."""
+    return (
+        total[0] + weight * part[0],
+        total[1] + weight * part[1],
+        total[2] + weight * part[2],
+        total[3] + weight * part[3],
+        total[4] + weight * part[4],
+    )
+
+
+@kernel
+def mean(changes, ends, middle, between):
+    """Simpson's rule, on four panels where the kind ``changes``: the points ``between`` are weighted already."""
+    sixth, part = 1.0 / 6.0, 1.0 / 24.0
+    coarse = plus(ends, 4.0, middle)
+    fine = plus(plus(ends, 2.0, middle), 1.0, between)
+    return (
+        select(changes, part * fine[0], sixth * coarse[0]),
+        select(changes, part * fine[1], sixth * coarse[1]),
+        select(changes, part * fine[2], sixth * coarse[2]),
+        select(changes, part * fine[3], sixth * coarse[3]),
+        select(changes, part * fine[4], sixth * coarse[4]),
+    )
+
+
+@kernel
+def parts_of(cell):
+    """``(the cell as a point, its length, what the cell before handed on)``."""
+    if len(cell) == 5:
+        return (cell[0], cell[1], cell[2]), cell[3], cell[4]
+    return (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), cell[6], cell[7]
+
+
+@kernel
+def look(y, v, point, load, near):
+    """``(State, what is handed on)`` of the tube that is there."""
+    tube, w, own = body.as_tube(y, v, point, load)
+    at = physical.state(y, w, tube, own, near)
+    return at, physical.handed_on(at, y, w, own)
+
+
+@kernel
+def slopes_at(at, y, r, v, point, load):
+    """``(room, (L_y, L_v, L_yy, L_yv, L_vv))`` of the place r from the middle, as what the cell is differentiated by."""
+    _, w, own = body.as_tube(y, v, point, load)
+    room, by_y, by_v, by_yy, by_yv, by_vv = body.of_partials(point, physical.partials(at, y, w, own))
+    return room, (by_y, by_v + r * by_y, by_yy, by_yv + r * by_yy, by_vv + 2.0 * r * by_yv + r * r * by_yy)
+
+
+@kernel
+def integrals(at, y, v, point, load):
+    """Axial length, volume, twist, strain energy, and the kind."""
+    tube, _, own = body.as_tube(y, v, point, load)
+    return body.of_integrals(point, physical.integrals(at, y, tube, own))
+
+
+@kernel
+def along(at, y, v, point, load, direction):
+    """``(c, c_y, c_v, c_mu)`` as of :func:`physical.conjugate`."""
+    _, w, _ = body.as_tube(y, v, point, load)
+    return body.of_conjugate(point, physical.along(at, y, w, body.own_direction(point, direction)))
+
+
+@kernel
+def density(y, v, cell, load):
+    """``(room, L_y, L_v, L_yy, L_yv, L_vv, what is handed on)``: room is the least along the cell."""
+    point, h, before = parts_of(cell)
+    at, near = look(y, v, point, load, before)
+    room, middle = slopes_at(at, y, 0.0, v, point, load)
+    if not load[2][2] > 0.0:
+        return room, middle[0], middle[1], middle[2], middle[3], middle[4], near
+    zero = 0.0 * y
+    ends, between, changes = (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
+    for k in range(0, EIGHTHS + 1, EIGHTHS):
+        r, _ = along_cell(k, h)
+        here, _ = look(y + r * v, v, point, load, near)
+        space, part = slopes_at(here, y + r * v, r, v, point, load)
+        room, ends, changes = min(room, space), plus(ends, 1.0, part), changes | (abs(here.kind - at.kind) > 0.5)
+    if some(changes):
+        last, least = near, room
+        for k in range(1, EIGHTHS):
+            if 2 * k == EIGHTHS:
+                continue
+            r, weight = along_cell(k, h)
+            here, last = look(y + r * v, v, point, load, last)
+            space, part = slopes_at(here, y + r * v, r, v, point, load)
+            least, between = min(least, space), plus(between, weight, part)
+        room = select(changes, least, room)
+    by_y, by_v, by_yy, by_yv, by_vv = mean(changes, ends, middle, between)
+    return room, by_y, by_v, by_yy, by_yv, by_vv, near
+
+
+@kernel
+def integrands(y, v, cell, load):
+    """Axial length, volume, twist, strain energy; the kind of the cell, which is MIXED where it changes in it; and what is
+    handed on.
+    """
+    point, h, before = parts_of(cell)
+    at, near = look(y, v, point, load, before)
+    middle = integrals(at, y, v, point, load)
+    if not load[2][2] > 0.0:
+        return middle[0], middle[1], middle[2], middle[3], middle[4], near
+    zero = 0.0 * y
+    ends, between, changes = (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
+    for k in range(0, EIGHTHS + 1, EIGHTHS):
+        r, _ = along_cell(k, h)
+        here, _ = look(y + r * v, v, point, load, near)
+        ends = plus(ends, 1.0, integrals(here, y + r * v, v, point, load))
+        changes = changes | (abs(here.kind - at.kind) > 0.5)
+    if some(changes):
+        last = near
+        for k in range(1, EIGHTHS):
+            if 2 * k == EIGHTHS:
+                continue
+            r, weight = along_cell(k, h)
+            here, last = look(y + r * v, v, point, load, last)
+            between = plus(between, weight, integrals(here, y + r * v, v, point, load))
+    s, volume, twist, energy, _ = mean(changes, ends, middle, between)
+    return s, volume, twist, energy, select(changes, MIXED, at.kind), near
+
+
+@kernel
+def conjugate(y, v, cell, load, direction):
+    """``(c, c_y, c_v, c_mu)`` of :func:`physical.conjugate`."""
+    point, h, before = parts_of(cell)
+    at, near = look(y, v, point, load, before)
+    middle = along(at, y, v, point, load, direction)
+    if not load[2][2] > 0.0:
+        return middle
+    ends, between, changes = (0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0), False
+    for k in range(0, EIGHTHS + 1, EIGHTHS):
+        r, _ = along_cell(k, h)
+        here, _ = look(y + r * v, v, point, load, near)
+        c, c_y, c_v, c_mu = along(here, y + r * v, v, point, load, direction)
+        ends, changes = plus(ends, 1.0, (c, c_y, c_v + r * c_y, c_mu, 0.0)), changes or here.kind != at.kind
+    if changes:
+        last = near
+        for k in range(1, EIGHTHS):
+            if 2 * k == EIGHTHS:
+                continue
+            r, weight = along_cell(k, h)
+            here, last = look(y + r * v, v, point, load, last)
+            c, c_y, c_v, c_mu = along(here, y + r * v, v, point, load, direction)
+            between = plus(between, weight, (c, c_y, c_v + r * c_y, c_mu, 0.0))
+    c, c_y, c_v, c_mu, _ = mean(changes, ends, (*middle, 0.0), between)
+    return c, c_y, c_v, c_mu

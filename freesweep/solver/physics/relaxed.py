@@ -1,0 +1,265 @@
+"""Fibers at one point: meridional stretch and twist rate that the fibers leave a wall, by the circumferential stretch.
+
+A fiber family with t = tan(angle) allows (theory, sections 2 and 10)::
+
+    g_i = G + y^2 (t_i + psi)^2 - gamma^2 (1 + t_i^2) <= 0,   i = a, b
+
+Bonded fibers hold both as equalities, and push where a multiplier is negative. Loose ones are threads: G and psi are then
+where ``T s - W + m psi`` is largest, ``s = sqrt(G - v^2)``, which is strictly concave (W convex): one maximum. For a given
+psi only one family can be taut, that which is the nearer; beyond the twist rate of both taut it is one family, before it the
+other. So the signs of the two slopes there tell which side to go to, if any, and on a side the slope along psi, ::
+
+    F(psi) = m - W_psi - 2 y^2 mu (t + psi),   mu = max(T/(2 s) - W_G, 0),
+
+falls all along: Newton's method between bounds finds its root. Where ``mu`` is 0 the family is slack, too, and G is where
+``T/(2 s) = W_G``.
+
+Along a tube neighbours are alike: what is known of one point is the first guess of the next (:func:`beside`). As there is
+one maximum, a place where no taut family is pushed and no slack one overreached is the one, however it was come to.
+"""
+
+from math import sqrt
+
+from ...jit import kernel
+from ..either import isnt, select, some
+from .wall import narrowest, slopes
+
+ITERATIONS = 60  # five do nearly always
+CLOSE = 1e-8  # of the unit of what is sought: the next step of Newton's method is its square
+SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves; none is longer in the other direction
+LONG = 1.0  # largest step of y psi
+CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
+NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
+NEARBY = 8  # looks from a neighbour's place; two do nearly always, four where a family goes slack
+NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
+
+
+@kernel
+def taut_twist(y, H, gg):
+    """Twist rate of both families taut (Eqs. 2.3, 2.4)."""
+    return H * (gg / (y * y) - 1.0)
+
+
+@kernel
+def reach(y, psi, t, stretch):
+    """G - 1 up to which a family is not taut; ``stretch`` is gamma^2 - 1."""
+    return stretch * (1.0 + t * t) - (y * (t + psi) - t) * (y * (t + psi) + t)
+
+
+@kernel
+def both_reach(y, H, D, gg, stretch):
+    """G - 1 of both families taut."""
+    return stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * gg / (y * y) - D * D)
+
+
+@kernel
+def axial(G, v):
+    """Axial stretch s."""
+    return sqrt(max(G - v * v, NO_ROOM))
+
+
+@kernel
+def free_point(y, G_1, psi, low, v, T, m, area, rubber, wall, todo):
+    """``(G - 1, psi)`` that nothing holds, from a first guess above ``low``. Only where it is to do."""
+    for _ in range(ITERATIONS):
+        _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, area, rubber, wall)
+        s = axial(1.0 + G_1, v)
+        rise, turn, bend = 0.5 * T / s - W_G, m - W_p, 0.25 * T / (s * s * s) + W_GG
+        cross = select(bend * W_pp > W_Gp * W_Gp, W_Gp, 0.0)  # far off the step is one along G, and one along psi
+        det = bend * W_pp - cross * cross
+        wider, further = (W_pp * rise - cross * turn) / det, (bend * turn - cross * rise) / det
+        most = (1.0 - SHORT) * (G_1 - low)
+        share = min(min(most / max(abs(wider), NO_ROOM), LONG / max(y * abs(further), NO_ROOM)), 1.0)
+        G_1, psi = select(todo, G_1 + share * wider, G_1), select(todo, psi + share * further, psi)
+        todo = todo & (max(abs(wider), y * abs(further)) >= CLOSE * (1.0 + G_1))
+        if not some(todo):
+            break
+    return G_1, psi
+
+
+@kernel
+def pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp):
+    """``(F, F_psi)`` where the family is taut, both times s."""
+    b = 2.0 * y * y * (t + psi)  # -dG/dpsi
+    b_p = 2.0 * y * y
+    rest = m - W_p + b * W_G
+    rest_p = -(W_pp - b * W_Gp) + b_p * W_G + b * (W_Gp - b * W_GG)
+    return s * rest - 0.5 * T * b, -0.5 * b / s * rest + s * rest_p - 0.5 * T * b_p
+
+
+@kernel
+def along_twist(y, psi, t, stretch, v, T, m, area, rubber, wall):
+    """On the side of one family: ``(F, F_psi, taut)``, the first two of the same positive factor."""
+    G_1 = reach(y, psi, t, stretch)
+    _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, area, rubber, wall)
+    s = axial(1.0 + G_1, v)
+    F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
+    return F, F_p, 0.5 * T / s >= W_G
+
+
+@kernel
+def is_between(at, near, far, side):
+    """Whether ``at`` lies on the way from ``near`` to ``far``."""
+    return ((at - near) * side >= 0.0) & ((far - at) * side >= 0.0)
+
+
+@kernel
+def spread_of(y, v, H, D, gg, wall):
+    """``(low, widest, psi, best)``: bounds of G - 1, the twist of both taut and that at which G may be widest."""
+    stretch = gg - 1.0
+    psi = taut_twist(y, H, gg)
+    low = max(v * v, narrowest(y, wall)) - 1.0
+    # beyond the twist of both taut (to the right) alpha is the nearer if D > 0; its reach is widest at psi = -t
+    right, left = H + abs(D), H - abs(D)
+    best = min(max(psi, -right), -left)
+    apart = (psi < -right) | (psi > -left)
+    side = select(psi < -right, right, left)
+    return low, select(apart, reach(y, best, side, stretch), both_reach(y, H, D, gg, stretch)), psi, best
+
+
+@kernel
+def is_taut(kind):
+    """Which families are taut, alpha and beta, from one number."""
+    return (kind == ALPHA_TAUT) | (kind == BOTH_TAUT), (kind == BETA_TAUT) | (kind == BOTH_TAUT)
+
+
+@kernel
+def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
+    """Newton's method for G and psi from what a neighbour handed on, ``near`` = (which families are taut, or -1 where
+    nothing is known, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v). A family that would have to push goes slack, a slack one
+    that is overreached goes taut; where none does any more, this is the maximum.
+
+    Returns ``(known, which families are taut, G - 1, psi, dG, dpsi, slopes of W)``. The last change, which is too small to
+    look once more, is not yet made.
+    """
+    stretch, low, still = gg - 1.0, max(v * v, narrowest(y, wall)) - 1.0, 0.0 * y
+    kind = select(near[0] >= 0.0, near[0], BOTH_TAUT)
+    on, steeper = y - near[1], v - near[2]
+    both_psi, both_G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, stretch)
+    psi, G_1 = near[3] + on * near[4] + steeper * near[5], near[6] + on * near[7] + steeper * near[8]
+    both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
+    G_1 = select(both, both_G_1, select(kind == NONE_TAUT, G_1, reach(y, psi, t, stretch)))
+    psi = select(both, both_psi, psi)
+    known = y > 0.0
+    dpsi, dG, going, W = still, still, known, (still, still, still, still, still, still, still, still, still)
+    for _ in range(NEARBY):
+        known = known & (isnt(going) | (G_1 > low))
+        going = going & known
+        if not some(going):
+            break
+        W = slopes(y, G_1, psi, area, rubber, wall)
+        _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = W
+        s, before = axial(1.0 + G_1, v), kind
+        a, b = multipliers(y, s, psi, both, both, H, D, T, m, W_G, W_p)
+        total = 0.5 * T / s - W_G
+        kind = select(
+            both,
+            select(a >= 0.0, ALPHA_TAUT, NONE_TAUT) + select(b >= 0.0, BETA_TAUT, NONE_TAUT),
+            select(total >= 0.0, kind, NONE_TAUT),
+        )
+        both, none = kind == BOTH_TAUT, kind == NONE_TAUT
+        one, t = isnt(both | none), H + select(kind == ALPHA_TAUT, D, -D)
+        F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
+        known = known & (isnt(going & one) | (F_p < 0.0))
+        dpsi = select(one, -F / F_p, still)
+        dG = select(one, reach(y, psi + dpsi, t, stretch) - G_1, still)
+        if some(none):
+            twist, bend = m - W_p, 0.25 * T / (s * s * s) + W_GG
+            det = bend * W_pp - W_Gp * W_Gp
+            dpsi = select(none, (bend * twist - W_Gp * total) / det, dpsi)
+            dG = select(none, (W_pp * total - W_Gp * twist) / det, dG)
+        to_psi, to_G_1 = psi + dpsi, G_1 + dG
+        slack_alpha, slack_beta = reach(y, to_psi, H + D, stretch) - to_G_1, reach(y, to_psi, H - D, stretch) - to_G_1
+        nearer = select(slack_alpha < slack_beta, ALPHA_TAUT, BETA_TAUT)
+        over = select(
+            kind == ALPHA_TAUT, slack_beta, select(kind == BETA_TAUT, slack_alpha, min(slack_alpha, slack_beta))
+        )
+        more = isnt(both) & (over < 0.0)
+        then = select(more, select(none, nearer, BOTH_TAUT), kind)
+        last = (abs(then - before) < 0.5) & (y * abs(dpsi) < CLOSE) & (abs(dG) < CLOSE * s * s)
+        kind = select(going, then, before)
+        going = going & isnt(last)
+        both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
+        to_G_1 = select(both, both_G_1, select(more & none, reach(y, to_psi, t, stretch), to_G_1))
+        psi, G_1 = select(going, select(both, both_psi, to_psi), psi), select(going, to_G_1, G_1)
+    return known & isnt(going), kind, G_1, psi, dG, dpsi, W
+
+
+@kernel
+def settle(y, v, H, D, gg, T, m, area, rubber, wall):
+    """``(room, G - 1, psi, taut alpha, taut beta)``: where loose fibers leave the wall.
+
+    ``room`` is that of the widest G beyond v^2, or beyond where the innermost layer would reach the axis.
+    """
+    stretch, right, left = gg - 1.0, H + abs(D), H - abs(D)
+    low, widest, psi, best = spread_of(y, v, H, D, gg, wall)
+    G_1, room = both_reach(y, H, D, gg, stretch), widest - low
+    inside = (room > 0.0) & (y > 0.0)
+    if not some(inside):
+        return room, G_1, psi, isnt(inside), isnt(inside)
+
+    reached, roomy = G_1 > low, G_1 - low > CRAMPED * room
+    here = select(reached, G_1, widest)
+    _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, here, psi, area, rubber, wall)
+    s = axial(1.0 + here, v)
+    mu = 0.5 * T / s - W_G
+    held = reached & (mu >= 0.0)
+    twice = 2.0 * y * y * mu
+    beyond, short = m - W_p - twice * (right + psi) > 0.0, m - W_p - twice * (left + psi) < 0.0
+    side = select(held, select(beyond, 1.0, -1.0), select(best > psi, 1.0, -1.0))
+    both = isnt(inside & (isnt(held) | beyond | short))
+    free_1, free_psi, known = here, psi, inside & reached & isnt(held)
+    none = known & both
+    if some(known):
+        free_1, free_psi = free_point(y, here, psi, low, v, T, m, area, rubber, wall, known)
+        none = known & (free_1 <= min(reach(y, free_psi, right, stretch), reach(y, free_psi, left, stretch)))
+        side = select(known, select(free_psi > psi, 1.0, -1.0), side)
+    going = isnt(both | none)
+    if not some(going):
+        return room, select(none, free_1, G_1), select(none, free_psi, psi), both, both
+
+    t = select(side > 0.0, right, left)
+    width = sqrt(max(stretch * (1.0 + t * t) + t * t - low, 0.0)) / y
+    far = -t + side * width  # F has the sign of the side near both taut, the other there
+    edge = -t - side * width
+    near = select((edge - psi) * side > 0.0, edge, psi)
+    unit = abs(far - near)
+    F, F_p = pulled(y, psi, t, s, T, m, W_G, W_p, W_GG, W_Gp, W_pp)
+    ahead = psi - F / F_p
+    at = select(held & (F_p < 0.0) & is_between(ahead, near, far, side), ahead, select(roomy, psi, best))
+    at = select(known, free_psi, at)
+    at = select(is_between(at, near, far, side), at, 0.5 * (near + far))
+    for _ in range(ITERATIONS):
+        F, F_p, taut = along_twist(y, at, t, stretch, v, T, m, area, rubber, wall)
+        limp = going & isnt(taut)
+        fresh = limp & isnt(known)
+        if some(fresh):
+            freed, turned = free_point(y, reach(y, at, t, stretch), at, low, v, T, m, area, rubber, wall, fresh)
+            free_1, free_psi, known = select(fresh, freed, free_1), select(fresh, turned, free_psi), known | fresh
+            none = none | fresh & (free_1 <= min(reach(y, free_psi, right, stretch), reach(y, free_psi, left, stretch)))
+            going = going & isnt(none)
+        before = select(taut, F, free_psi - at) * side > 0.0  # where the family is slack, that point tells the side
+        near, far = select(going & before, at, near), select(going & isnt(before), at, far)
+        new = at - F / F_p
+        new = select((F_p < 0.0) & is_between(new, near, far, side), new, 0.5 * (near + far))
+        change = abs(new - at)
+        at = select(going, new, at)
+        going = going & (change > CLOSE * unit)
+        if not some(going):
+            break
+    one = isnt(both | none)
+    G_1 = select(one, reach(y, at, t, stretch), select(none, free_1, G_1))
+    first = (side > 0.0) & (D > 0.0) | (side < 0.0) & isnt(D > 0.0)
+    return room, G_1, select(one, at, select(none, free_psi, psi)), both | one & first, both | one & isnt(first)
+
+
+@kernel
+def multipliers(y, s, psi, taut_alpha, taut_beta, H, D, T, m, W_G, W_p):
+    """Multipliers of both families, 0 of a slack one."""
+    total = 0.5 * T / s - W_G
+    difference = ((m - W_p) / (2.0 * y * y) - total * (H + psi)) / D
+    both = taut_alpha & taut_beta
+    return (
+        select(both, 0.5 * (total + difference), select(taut_alpha, total, 0.0)),
+        select(both, 0.5 * (total - difference), select(taut_beta, total, 0.0)),
+    )

@@ -1,0 +1,205 @@
+"""The wall at one point: strain energy of its layers, and all first and second partial derivatives.
+
+Three independent numbers deform a tube: the circumferential stretch ``y`` of the fiber surface (radius 1), the squared
+meridional stretch ``G`` and the twist rate ``psi``. The wall is incompressible, so its layer of the undeformed radius rho
+has, exactly in a uniform tube and as a layered membrane elsewhere (theory, section 11)::
+
+    q   = r^2 = y^2 + (rho^2 - 1)/sqrt(G)
+    I1  = G + q/rho^2 + k q psi^2 + rho^2/(G q)
+    I2  = G q/rho^2 + rho^2/q + (1 + k rho^2 psi^2)/G
+    W   = integral over rho^2 of w(I1, I2),  w as in :mod:`membrane`
+
+A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick wall is summed at Gauss points in rho^2, as
+many as its integrand, a rational function of rho^2 with poles at 0 and where q vanishes, asks for.
+
+``wall`` is (k, inner, loose): ``inner`` = rho_i^2, or 0 for a membrane; ``loose`` is :mod:`relaxed`'s. In vectors of designs
+it is (k, inner, loose, layers, mean of 1/rho^2 over the layers), the third and fourth the same for all of them.
+"""
+
+from math import sqrt
+
+import numpy as np
+
+from ...jit import kernel
+from ..either import select, some
+from . import mooney_wall
+from .membrane import excess, yeoh_slope
+
+MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
+MISSED = 1e-8  # of the energy: what a pole at the axis may leave
+_RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
+PLACES = np.concatenate([0.5 + 0.5 * rule[0] for rule in _RULES])  # shares of rho_o^2 - rho_i^2, all rules in a row
+WEIGHTS = np.concatenate([0.5 * rule[1] for rule in _RULES])
+
+
+@kernel
+def is_loose(wall):
+    """Whether fibers cannot push: then the density is no linear function of the loads."""
+    if len(wall) == 1:
+        return False
+    return wall[2] > 0.0
+
+
+@kernel
+def points(inner, area):
+    """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs."""
+    z = (2.0 * inner + area) / area
+    rate = z + sqrt(z * z - 1.0)  # a rule of n points errs by rate^-2n
+    left, n = MISSED * rate * rate, 1
+    while left < 1.0 and n < MOST:
+        left *= rate * rate
+        n += 1
+    return max(n, FEWEST)
+
+
+@kernel
+def layers(area, wall):
+    """As how many layers a wall counts; walls in vectors know that of themselves."""
+    if len(wall) > 3:
+        return wall[3]
+    return points(wall[1], area) if wall[1] > 0.0 else MEMBRANE
+
+
+@kernel
+def reciprocal(area, inner, count):
+    """Mean of 1/rho^2 over so many layers."""
+    total, at = 0.0 * area, first_place(count)
+    if count == 1:
+        return 1.0 + total
+    for j in range(count):
+        total += WEIGHTS[at + j] / (inner + area * PLACES[at + j])
+    return total
+
+
+@kernel
+def reciprocal_of(area, wall, count):
+    """:func:`reciprocal` of a wall; those in vectors know that of themselves."""
+    if len(wall) > 3:
+        return wall[4]
+    return reciprocal(area, wall[1], count)
+
+
+@kernel
+def first_place(n):
+    """Where the rule of n points begins in PLACES."""
+    return (n * (n - 1) - FEWEST * (FEWEST - 1)) // 2
+
+
+@kernel
+def lies_inside(wall):
+    """Whether there is wall inside the surface of the fibers."""
+    return (wall[1] > 0.0) & (wall[1] < 1.0)
+
+
+@kernel
+def least_square(y, G, wall):
+    """r^2 of the innermost layer, which has to be positive; where the fibers lie inside, that is their own."""
+    return y * y + select(lies_inside(wall), wall[1] - 1.0, 0.0) / sqrt(G)
+
+
+@kernel
+def narrowest(y, wall):
+    """G below which the innermost layer would reach the axis."""
+    root = select(lies_inside(wall), 1.0 - wall[1], 0.0) / (y * y)
+    return root * root
+
+
+@kernel
+def layer(square, y, G_1, psi, rubber, k):
+    """Of the layer at rho^2 = ``square``: ``(w, w_y, w_G, w_psi, w_yy, w_yG, w_ypsi, w_GG, w_Gpsi, w_psipsi)``."""
+    c = rubber[0]
+    G = 1.0 + G_1
+    e = 1.0 / G
+    root = sqrt(e)
+    q = y * y + (square - 1.0) * root
+    z = 1.0 / q
+    i = 1.0 / square
+    n = k * psi * psi
+    x = square * z * e  # rho^2/(G q), the squared stretch across the wall
+    b = ((y - 1.0) * (y + 1.0) - (square - 1.0) * root * G_1 / (1.0 / root + 1.0)) * i  # q/rho^2 - 1
+    first = excess(G_1, b, x) + q * n
+    # I1 and I2 along q, G and psi, each by itself
+    first_q, first_G, first_p = i + n - x * z, 1.0 - x * e, 2.0 * k * q * psi
+    first_qq, first_qG, first_GG = 2.0 * x * z * z, x * z * e, 2.0 * x * e * e
+    first_qp, first_pp = 2.0 * k * psi, 2.0 * k * q
+    sheared = 1.0 + square * n
+    second = excess(-G_1 * e, -b * square * z, G * q * i) + square * n * e
+    second_q, second_G, second_p = G * i - square * z * z, q * i - sheared * e * e, 2.0 * k * square * psi * e
+    second_qq, second_qG, second_GG = 2.0 * square * z * z * z, i, 2.0 * sheared * e * e * e
+    second_Gp, second_pp = -second_p * e, 2.0 * k * square * e
+
+    slope, bend, w = yeoh_slope(rubber, first), 0.0, first
+    if len(rubber) > 1:
+        bend = 2.0 * rubber[1] + 6.0 * rubber[2] * first
+        w = first * (1.0 + first * (rubber[1] + rubber[2] * first))
+    w_q, w_G, w_p = slope * first_q + c * second_q, slope * first_G + c * second_G, slope * first_p + c * second_p
+    w_qq = slope * first_qq + bend * first_q * first_q + c * second_qq
+    w_qG = slope * first_qG + bend * first_q * first_G + c * second_qG
+    w_GG = slope * first_GG + bend * first_G * first_G + c * second_GG
+    w_qp = slope * first_qp + bend * first_q * first_p
+    w_Gp = bend * first_G * first_p + c * second_Gp
+    w_pp = slope * first_pp + bend * first_p * first_p + c * second_pp
+    q_y = 2.0 * y
+    q_G = -0.5 * (square - 1.0) * root * e
+    q_GG = -1.5 * q_G * e
+    return (
+        w + c * second, w_q * q_y, w_G + w_q * q_G, w_p, w_qq * q_y * q_y + 2.0 * w_q, (w_qG + w_qq * q_G) * q_y, w_qp * q_y,
+        w_GG + 2.0 * w_qG * q_G + w_qq * q_G * q_G + w_q * q_GG, w_Gp + w_qp * q_G, w_pp,
+    )  # fmt: skip
+
+
+@kernel
+def energy(y, G_1, psi, area, rubber, wall):
+    """``(W, W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)`` of the whole wall; ``G_1`` is G - 1."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)
+    return (stored(y, G_1, psi, area, rubber, wall), *slopes(y, G_1, psi, area, rubber, wall))
+
+
+@kernel
+def stored(y, G_1, psi, area, rubber, wall):
+    """W alone."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)[0]
+    count = layers(area, wall)
+    return mooney_wall.stored(
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count)
+    )
+
+
+@kernel
+def slopes(y, G_1, psi, area, rubber, wall):
+    """The derivatives of :func:`energy`, without W."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)[1:]
+    count = layers(area, wall)
+    return mooney_wall.slopes(
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count),
+        reciprocal_of(area, wall, count),
+    )  # fmt: skip
+
+
+@kernel
+def of_any(y, G_1, psi, area, rubber, wall):
+    """:func:`energy`, layer by layer."""
+    k, inner = wall[0], wall[1]
+    square, one, count, at = 1.0 + 0.0 * area, area, 0, 0
+    W = W_y = W_G = W_p = W_yy = W_yG = W_yp = W_GG = W_Gp = W_pp = 0.0 * area
+    if some(area > 0.0):  # locked, the wall does not count
+        count = layers(area, wall)
+        at = first_place(count)
+    for j in range(count):
+        if count > 1:
+            square, one = inner + area * PLACES[at + j], area * WEIGHTS[at + j]
+        w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
+        W += one * w
+        W_y += one * w_y
+        W_G += one * w_G
+        W_p += one * w_p
+        W_yy += one * w_yy
+        W_yG += one * w_yG
+        W_yp += one * w_yp
+        W_GG += one * w_GG
+        W_Gp += one * w_Gp
+        W_pp += one * w_pp
+    return W, W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp
