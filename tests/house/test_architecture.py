@@ -12,7 +12,7 @@ from grids import CHILD_ENVIRONMENT, SMALL, make, spec
 
 from freesweep.sweep.spec import parse
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 

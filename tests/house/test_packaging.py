@@ -16,7 +16,7 @@ from freesweep import example
 from freesweep.sweep.spec import read_file
 from freesweep.verification import cross_check, verify
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
@@ -71,4 +71,10 @@ def test_what_is_built_contains_what_the_commands_of_the_readme_need(tmp_path):
         assert name in names, name
     with tarfile.open(sdist) as archive:
         inside = {name.partition("/")[2] for name in archive.getnames()}
-    assert {"sweeps/quick.toml", "sweeps/wishes/rotator.toml", "setup.py", "CITATION.cff", "tests/grids.py"} <= inside
+    assert {
+        "sweeps/quick.toml",
+        "sweeps/wishes/rotator.toml",
+        "setup.py",
+        "CITATION.cff",
+        "tests/support/grids.py",
+    } <= inside

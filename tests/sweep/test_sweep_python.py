@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 from grids import FIXED, make
-from test_given import ODD
+from odd import ODD
 
 import freesweep as fs
 from freesweep.sweep.faults import SpecificationError

@@ -18,7 +18,7 @@ from freesweep.inverse.wishes import Wish
 from freesweep.sweep.spec import parse
 from freesweep.thesis.prototypes import found_rotator
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 RUBBER = fs.MooneyRivlin(1.2e5, 6e4)
 AT = look.Misfit.at
 ATLAS = """

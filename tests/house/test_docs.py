@@ -9,12 +9,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from blocks import BLOCK
 from grids import CHILD_ENVIRONMENT
 
 import freesweep as fs
 
-DOCS = Path(__file__).parent.parent / "docs"
-BLOCK = re.compile(r"^```python\n(.*?)^```(?:\n\n```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE)
+DOCS = Path(__file__).parents[2] / "docs"
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
 

@@ -15,7 +15,7 @@ from freesweep.description.units import quantity
 from freesweep.sweep import toml_guard
 from freesweep.sweep.spec import MAX_POINTS, SpecificationError, parse, read_file
 
-SWEEPS = Path(__file__).parent.parent / "sweeps"
+SWEEPS = Path(__file__).parents[2] / "sweeps"
 
 VALID = """
 title = "A sweep"

@@ -13,8 +13,10 @@ from freesweep.atlas.seal import sealed
 from freesweep.atlas.store import FORMAT
 from freesweep.sweep.spec import parse
 
-# for child processes, wherever they start: the package under test
-CHILD_ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(freesweep.__file__).parents[1])}
+# for child processes, wherever they start: the package under test, and these modules
+CHILD_ENVIRONMENT = os.environ | {
+    "PYTHONPATH": os.pathsep.join([str(Path(freesweep.__file__).parents[1]), str(Path(__file__).parent)])
+}
 
 FIXED = {"length": 0.1, "radius": 4.76e-3, "wall": 1.59e-3, "c10": 0.17e6, "c01": 0.08e6}
 GRID = {

@@ -11,7 +11,7 @@ from freesweep.query.family import FAMILIES
 from freesweep.query.refine import as_points, exact_answers
 from freesweep.status import VALUED
 
-SPECIFICATION = Path(__file__).parents[1] / "sweeps" / "design-space.toml"
+SPECIFICATION = Path(__file__).parents[2] / "sweeps" / "design-space.toml"
 DESIGNS, SEED = 100_000, 20260917
 LOOSE = ("rotation", "strain_energy")  # 1e-3 where others have 1e-4
 

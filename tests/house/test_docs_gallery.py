@@ -12,7 +12,7 @@ from matplotlib import pyplot
 
 from freesweep.cli import parser
 
-DOCS = Path(__file__).parent.parent / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 LARGEST = 300_000  # bytes of a picture
 TEXT = (DOCS / "gallery.md").read_text(encoding="utf-8")
 

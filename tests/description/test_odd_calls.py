@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from grids import SMALL, swept
-from test_given import ODD, only_clear_errors
+from odd import ODD, only_clear_errors
 
 import freesweep as fs
 from freesweep.atlas.files import EnvironmentFault

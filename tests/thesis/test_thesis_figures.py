@@ -172,7 +172,7 @@ def test_exact_torque_leaves_the_formula_at_the_critical_pressure():
 
 
 def test_torque_of_b_once_threads_cannot_push_is_that_of_brute_force():
-    """0.264193 and 1.119730 times Eq. 2.20 at 30 and 100 kPa on 100 cells of tests/loose_tubes.py; C holds as it is."""
+    """0.264193 and 1.119730 times Eq. 2.20 at 30 and 100 kPa on 100 cells of support/loose_tubes.py; C holds as it is."""
     ratio = {
         name: line("2-12-physical", f"{name} physical").get_ydata()
         / line("2-12-physical", f"{name} Eq. 2.20").get_ydata()

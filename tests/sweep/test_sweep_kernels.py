@@ -17,7 +17,7 @@ from freesweep.sweep.spec import parse, read_file
 
 AXES = {"alpha": [30.0, 40.0], "beta": [-50.0, -20.0], "pressure": [5e4, 1e5]}
 FREE = spec(AXES)
-QUICK = Path(__file__).parents[1] / "sweeps" / "quick.toml"
+QUICK = Path(__file__).parents[2] / "sweeps" / "quick.toml"
 VECTORS = {"carry_lanes", "solve_lanes"}
 
 

@@ -18,7 +18,7 @@ from freesweep import interpret, jit
 from freesweep.solver import batch
 from freesweep.solver.lanes import free as lanes
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 
 
 def first_states():
@@ -56,7 +56,7 @@ def entry(monkeypatch, tmp_path):
 def test_first_states_of_a_fresh_installation_need_no_compiler(tmp_path):
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
     script = (
-        "import json, sys; sys.path.insert(0, 'tests'); import test_interpret;"
+        "import json, sys; sys.path[:0] = ['tests/solver', 'tests/support']; import test_interpret;"
         " print(json.dumps(test_interpret.first_states()))"
     )
     done = subprocess.run(

@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_docs import BLOCK
+from blocks import BLOCK
 
 import freesweep as fs
 from freesweep.plot import curve, map, motion, section, style, tubes, validity
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "freesweep"
 UNSEEN = (
     "numba matplotlib scipy pandas sympy dask distributed netCDF4 h5py llvmlite PIL tqdm"  # not looked into: seconds

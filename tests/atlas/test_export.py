@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from blocks import BLOCK
 from commands import refused, run
-from test_docs import BLOCK
 
 import freesweep as fs
 from freesweep.export.table import ExportError
 from freesweep.query.faults import QueryError
 
-PAGE = (Path(__file__).parent.parent / "docs" / "export.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
 C_PROGRAM = re.search(r"^```c\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)[1]
 FORCE = "blocked_force"
 
