@@ -18,6 +18,14 @@ def cell_at(cells, j):
 
 
 @kernel
+def point_of(cell):
+    """The point of the tube that a cell stands for."""
+    if len(cell) > 5:
+        return cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]
+    return cell[0], cell[1], cell[2]
+
+
+@kernel
 def of_length(cell, h):
     """The cell, with its length behind."""
     if len(cell) == 3:
@@ -53,6 +61,36 @@ def behind(cell, h, near):
 def nothing_yet(zero):
     """What is handed on to a first cell: what the numbers mean is the density's own affair, the first is not negative."""
     return zero - 1.0, zero, zero, zero, zero, zero, zero, zero, zero
+
+
+@kernel
+def expecting(y, cell):
+    """A cell with its length behind, to which nothing may have been handed on, as one to which something was."""
+    if len(cell) == 4:
+        return (*cell, nothing_yet(0.0 * y))
+    if len(cell) == 7:
+        return (*cell, nothing_yet(0.0 * y))
+    return cell
+
+
+@kernel
+def as_expected(cell, answer):
+    """An answer whose last entry is handed on, as ``cell`` expects it: with that entry or without."""
+    if len(cell) == 4:
+        return answer[:-1]
+    if len(cell) == 7:
+        return answer[:-1]
+    return answer
+
+
+@kernel
+def passed_on(cell, answer):
+    """An answer with nothing of its own to hand on, as ``cell`` expects it: what was handed to it goes on."""
+    if len(cell) == 5:
+        return (*answer, cell[4])
+    if len(cell) == 8:
+        return (*answer, cell[7])
+    return answer
 
 
 @kernel

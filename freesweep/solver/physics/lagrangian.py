@@ -4,14 +4,14 @@
 
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
 wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
-``wall`` is (k,), or (k, inner, loose). ``cell`` = (H, D, a) is a point of a tube, six numbers are one of a body of
-revolution (:mod:`body`); with the length h of a cell of a mesh behind, the density is that of the cell (:mod:`over_cell`);
-with what the cell before handed on behind that, what the next one may have is answered, too. The length of a tuple is known
-when code is made: none is for the others.
+``wall`` is (k,), or (k, inner, loose). ``cell`` is a point, three numbers (H, D, a), six of a body of revolution, which is a
+change of variables (:mod:`body`); or it is a cell of a mesh (:mod:`..cells`), whose density, where fibers are loose, is its
+mean along the cell (:mod:`over_cell`). The length of a tuple is known when code is made: no kind of tube or cell costs
+another one anything.
 """
 
 from ...jit import kernel
-from ..cells import nothing_yet
+from ..cells import as_expected, expecting, passed_on, point_of
 from . import body, membrane, over_cell, physical
 from .membrane import (  # noqa: F401
     DRAWN_IN,
@@ -31,88 +31,57 @@ from .membrane import (  # noqa: F401
 
 
 @kernel
-def alone(y, cell):
-    """A cell with its length behind, to which nothing was handed on."""
-    return (*cell, nothing_yet(0.0 * y))
-
-
-@kernel
 def density(y, v, cell, load):
-    """``(room, L_y, L_v, L_yy, L_yv, L_vv)``; a state is admissible where ``room`` is positive."""
+    """``(room, L_y, L_v, L_yy, L_yv, L_vv)``; a state is admissible where ``room`` is positive. Behind them, what is handed
+    on, where something was handed to the cell.
+    """
     return _density(y, v, cell, load, load[2])
 
 
 @kernel
 def _density(y, v, cell, load, wall):
     if len(wall) == 1:
-        return _thin_density(y, v, cell, load)
+        return passed_on(cell, _density_at(y, v, point_of(cell), load, wall))
     if len(cell) == 3:
-        return physical.density(y, v, cell, load)
+        return _density_at(y, v, cell, load, wall)
     if len(cell) == 6:
-        return body.density(y, v, cell, load)
-    if len(cell) == 4:
-        return over_cell.density(y, v, alone(y, cell), load)[:6]
-    if len(cell) == 7:
-        return over_cell.density(y, v, alone(y, cell), load)[:6]
-    return over_cell.density(y, v, cell, load)
+        return _density_at(y, v, cell, load, wall)
+    return as_expected(cell, over_cell.density(y, v, expecting(y, cell), load))
 
 
 @kernel
-def _thin_density(y, v, cell, load):
-    if len(cell) == 8:
-        return (*body.density(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load), cell[7])
-    if len(cell) > 5:
-        return body.density(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load)
-    if len(cell) == 5:
-        return (*membrane.density(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
-    return membrane.density(y, v, (cell[0], cell[1], cell[2]), load)
-
-
-@kernel
-def uniform_tube(y, cell, load):
-    """``(sqrt(G), T sqrt(G), L)`` at slope 0: meridional stretch and resultant, and the density itself."""
-    return _uniform_tube(y, cell, load, load[2])
-
-
-@kernel
-def _uniform_tube(y, cell, load, wall):
-    if len(cell) > 3:
-        return body.uniform_tube(y, cell, load)
+def _density_at(y, v, point, load, wall):
+    tube, w, own = body.as_tube(y, v, point, load)
     if len(wall) == 1:
-        return membrane.uniform_tube(y, cell, load)
-    return physical.uniform_tube(y, cell, load)
+        return body.of_partials(point, membrane.density(y, w, tube, own))
+    return body.of_partials(point, physical.density(y, w, tube, own))
 
 
 @kernel
 def integrands(y, v, cell, load):
-    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w; and the kind of state."""
+    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w; and the kind of state. Behind
+    them, what is handed on, where something was handed to the cell.
+    """
     return _integrands(y, v, cell, load, load[2])
 
 
 @kernel
 def _integrands(y, v, cell, load, wall):
     if len(wall) == 1:
-        return _thin_integrands(y, v, cell, load)
+        return passed_on(cell, _integrands_at(y, v, point_of(cell), load, wall))
     if len(cell) == 3:
-        return physical.integrands(y, v, cell, load)
+        return _integrands_at(y, v, cell, load, wall)
     if len(cell) == 6:
-        return body.integrands(y, v, cell, load)
-    if len(cell) == 4:
-        return over_cell.integrands(y, v, alone(y, cell), load)[:5]
-    if len(cell) == 7:
-        return over_cell.integrands(y, v, alone(y, cell), load)[:5]
-    return over_cell.integrands(y, v, cell, load)
+        return _integrands_at(y, v, cell, load, wall)
+    return as_expected(cell, over_cell.integrands(y, v, expecting(y, cell), load))
 
 
 @kernel
-def _thin_integrands(y, v, cell, load):
-    if len(cell) == 8:
-        return (*body.integrands(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load), cell[7])
-    if len(cell) > 5:
-        return body.integrands(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load)
-    if len(cell) == 5:
-        return (*membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load), cell[4])
-    return membrane.integrands(y, v, (cell[0], cell[1], cell[2]), load)
+def _integrands_at(y, v, point, load, wall):
+    tube, w, own = body.as_tube(y, v, point, load)
+    if len(wall) == 1:
+        return body.of_integrals(point, membrane.integrands(y, w, tube, own))
+    return body.of_integrals(point, physical.integrands(y, w, tube, own))
 
 
 @kernel
@@ -124,46 +93,64 @@ def conjugate(y, v, cell, load, direction):
 @kernel
 def _conjugate(y, v, cell, load, direction, wall):
     if len(wall) == 1:
-        return _thin_conjugate(y, v, cell, load, direction)
+        return _conjugate_at(y, v, point_of(cell), load, direction, wall)
     if len(cell) == 3:
-        return physical.conjugate(y, v, cell, load, direction)
+        return _conjugate_at(y, v, cell, load, direction, wall)
     if len(cell) == 6:
-        return body.conjugate(y, v, cell, load, direction)
-    return over_cell.conjugate(y, v, alone(y, cell), load, direction)
+        return _conjugate_at(y, v, cell, load, direction, wall)
+    return over_cell.conjugate(y, v, expecting(y, cell), load, direction)
 
 
 @kernel
-def _thin_conjugate(y, v, cell, load, direction):
-    if len(cell) > 4:
-        return body.conjugate(y, v, (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), load, direction)
-    return membrane.conjugate(y, v, (cell[0], cell[1], cell[2]), load, direction)
+def _conjugate_at(y, v, point, load, direction, wall):
+    tube, w, own = body.as_tube(y, v, point, load)
+    change = body.own_direction(point, direction)
+    if len(wall) == 1:
+        return body.of_conjugate(point, membrane.conjugate(y, w, tube, own, change))
+    return body.of_conjugate(point, physical.conjugate(y, w, tube, own, change))
 
 
 @kernel
-def at_slope(y, v, cell, load):
+def uniform_tube(y, point, load):
+    """``(sqrt(G), T sqrt(G), L)`` at slope 0: meridional stretch and resultant, and the density itself."""
+    return _uniform_tube(y, point, load, load[2])
+
+
+@kernel
+def _uniform_tube(y, point, load, wall):
+    tube, _, own = body.as_tube(y, 0.0, point, load)
+    if len(wall) == 1:
+        return body.of_uniform(point, membrane.uniform_tube(y, tube, own))
+    return body.of_uniform(point, physical.uniform_tube(y, tube, own))
+
+
+@kernel
+def at_slope(y, v, point, load):
     """``(room of the slope, tau alpha, tau beta)``, the multipliers of both families."""
-    return _at_slope(y, v, cell, load, load[2])
+    return _at_slope(y, v, point, load, load[2])
 
 
 @kernel
-def _at_slope(y, v, cell, load, wall):
-    if len(cell) > 3:
-        return body.at_slope(y, v, cell, load)
+def _at_slope(y, v, point, load, wall):
+    tube, w, own = body.as_tube(y, v, point, load)
     if len(wall) == 1:
-        return membrane.at_slope(y, v, cell, load)
-    return physical.at_slope(y, v, cell, load)
+        return body.of_multipliers(point, *membrane.at_slope(y, w, tube, own))
+    return body.of_multipliers(point, *physical.at_slope(y, w, tube, own))
 
 
 @kernel
-def at_flux(y, flux, cell, load):
+def at_flux(y, flux, point, load):
     """``(psi, G - 1, tau alpha, tau beta)`` where the flux T v/s is known, and not the slope."""
-    return _at_flux(y, flux, cell, load, load[2])
+    return _at_flux(y, flux, point, load, load[2])
 
 
 @kernel
-def _at_flux(y, flux, cell, load, wall):
-    if len(cell) > 3:
-        return body.at_flux(y, flux, cell, load)
+def _at_flux(y, flux, point, load, wall):
+    tube, _, own = body.as_tube(y, 0.0, point, load)
+    along = body.own_flux(point, flux)
     if len(wall) == 1:
-        return membrane.at_flux(y, flux, cell, load)
-    return physical.at_flux(y, flux, cell, load)
+        psi, G_1, alpha, beta = membrane.at_flux(y, along, tube, own)
+    else:
+        psi, G_1, alpha, beta = physical.at_flux(y, along, tube, own)
+    G_1, alpha, beta = body.of_multipliers(point, G_1, alpha, beta)
+    return psi, G_1, alpha, beta

@@ -15,8 +15,10 @@ the cell's middle.
 """
 
 from ...jit import kernel
+from ..cells import point_of
 from ..either import select, some
 from . import body, physical
+from .wall import is_loose
 
 EIGHTHS = 8  # of a cell lie between the points of the finer rule
 MIXED = 4.0  # beside the kinds of :mod:`relaxed`
@@ -59,8 +61,8 @@ def mean(changes, ends, middle, between):
 def parts_of(cell):
     """``(the cell as a point, its length, what the cell before handed on)``."""
     if len(cell) == 5:
-        return (cell[0], cell[1], cell[2]), cell[3], cell[4]
-    return (cell[0], cell[1], cell[2], cell[3], cell[4], cell[5]), cell[6], cell[7]
+        return point_of(cell), cell[3], cell[4]
+    return point_of(cell), cell[6], cell[7]
 
 
 @kernel
@@ -72,42 +74,22 @@ def look(y, v, point, load, near):
 
 
 @kernel
-def slopes_at(at, y, r, v, point, load):
-    """``(room, (L_y, L_v, L_yy, L_yv, L_vv))`` of the place r from the middle, as what the cell is differentiated by."""
-    _, w, own = body.as_tube(y, v, point, load)
-    room, by_y, by_v, by_yy, by_yv, by_vv = body.of_partials(point, physical.partials(at, y, w, own))
-    return room, (by_y, by_v + r * by_y, by_yy, by_yv + r * by_yy, by_vv + 2.0 * r * by_yv + r * r * by_yy)
+def along_the_cell(part, y, v, cell, load, direction):
+    """``(least room, the mean of part's five numbers, its kind, which is MIXED where it changes, what is handed on)``.
 
-
-@kernel
-def integrals(at, y, v, point, load):
-    """Axial length, volume, twist, strain energy, and the kind."""
-    tube, _, own = body.as_tube(y, v, point, load)
-    return body.of_integrals(point, physical.integrals(at, y, tube, own))
-
-
-@kernel
-def along(at, y, v, point, load, direction):
-    """``(c, c_y, c_v, c_mu)`` as of :func:`physical.conjugate`."""
-    _, w, _ = body.as_tube(y, v, point, load)
-    return body.of_conjugate(point, physical.along(at, y, w, body.own_direction(point, direction)))
-
-
-@kernel
-def density(y, v, cell, load):
-    """``(room, L_y, L_v, L_yy, L_yv, L_vv, what is handed on)``: room is the least along the cell."""
+    ``part(State, y, v, r, point, load, direction)`` is of the place r from the middle, as the cell has it.
+    """
     point, h, before = parts_of(cell)
     at, near = look(y, v, point, load, before)
-    room, middle = slopes_at(at, y, 0.0, v, point, load)
-    if not load[2][2] > 0.0:
-        return room, middle[0], middle[1], middle[2], middle[3], middle[4], near
-    zero = 0.0 * y
-    ends, between, changes = (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
+    middle, zero = part(at, y, v, 0.0, point, load, direction), 0.0 * y
+    if not is_loose(load[2]):
+        return at.room, middle, at.kind, near
+    room, ends, between, changes = at.room, (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
     for k in range(0, EIGHTHS + 1, EIGHTHS):
         r, _ = along_cell(k, h)
         here, _ = look(y + r * v, v, point, load, near)
-        space, part = slopes_at(here, y + r * v, r, v, point, load)
-        room, ends, changes = min(room, space), plus(ends, 1.0, part), changes | (abs(here.kind - at.kind) > 0.5)
+        ends = plus(ends, 1.0, part(here, y + r * v, v, r, point, load, direction))
+        room, changes = min(room, here.room), changes | (abs(here.kind - at.kind) > 0.5)
     if some(changes):
         last, least = near, room
         for k in range(1, EIGHTHS):
@@ -115,64 +97,51 @@ def density(y, v, cell, load):
                 continue
             r, weight = along_cell(k, h)
             here, last = look(y + r * v, v, point, load, last)
-            space, part = slopes_at(here, y + r * v, r, v, point, load)
-            least, between = min(least, space), plus(between, weight, part)
+            between = plus(between, weight, part(here, y + r * v, v, r, point, load, direction))
+            least = min(least, here.room)
         room = select(changes, least, room)
-    by_y, by_v, by_yy, by_yv, by_vv = mean(changes, ends, middle, between)
-    return room, by_y, by_v, by_yy, by_yv, by_vv, near
+    return room, mean(changes, ends, middle, between), select(changes, MIXED, at.kind), near
+
+
+@kernel
+def partials_at(at, y, v, r, point, load, direction):
+    """``(L_y, L_v, L_yy, L_yv, L_vv)`` of the place r from the middle, as what the cell is differentiated by."""
+    _, w, own = body.as_tube(y, v, point, load)
+    _, by_y, by_v, by_yy, by_yv, by_vv = body.of_partials(point, physical.partials(at, y, w, own))
+    return by_y, by_v + r * by_y, by_yy, by_yv + r * by_yy, by_vv + 2.0 * r * by_yv + r * r * by_yy
+
+
+@kernel
+def integrands_at(at, y, v, r, point, load, direction):
+    """Axial length, volume, twist, strain energy, and the kind."""
+    tube, _, own = body.as_tube(y, v, point, load)
+    return body.of_integrals(point, physical.integrals(at, y, tube, own))
+
+
+@kernel
+def conjugate_at(at, y, v, r, point, load, direction):
+    """``(c, c_y, c_v, c_mu)`` as of :func:`physical.conjugate`, as what the cell is differentiated by; and a place kept."""
+    _, w, _ = body.as_tube(y, v, point, load)
+    c, c_y, c_v, c_mu = body.of_conjugate(point, physical.along(at, y, w, body.own_direction(point, direction)))
+    return c, c_y, c_v + r * c_y, c_mu, 0.0 * c
+
+
+@kernel
+def density(y, v, cell, load):
+    """``(room, L_y, L_v, L_yy, L_yv, L_vv, what is handed on)``: room is the least along the cell."""
+    room, partials, _, near = along_the_cell(partials_at, y, v, cell, load, load)
+    return (room, *partials, near)
 
 
 @kernel
 def integrands(y, v, cell, load):
-    """Axial length, volume, twist, strain energy; the kind of the cell, which is MIXED where it changes in it; and what is
-    handed on.
-    """
-    point, h, before = parts_of(cell)
-    at, near = look(y, v, point, load, before)
-    middle = integrals(at, y, v, point, load)
-    if not load[2][2] > 0.0:
-        return middle[0], middle[1], middle[2], middle[3], middle[4], near
-    zero = 0.0 * y
-    ends, between, changes = (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
-    for k in range(0, EIGHTHS + 1, EIGHTHS):
-        r, _ = along_cell(k, h)
-        here, _ = look(y + r * v, v, point, load, near)
-        ends = plus(ends, 1.0, integrals(here, y + r * v, v, point, load))
-        changes = changes | (abs(here.kind - at.kind) > 0.5)
-    if some(changes):
-        last = near
-        for k in range(1, EIGHTHS):
-            if 2 * k == EIGHTHS:
-                continue
-            r, weight = along_cell(k, h)
-            here, last = look(y + r * v, v, point, load, last)
-            between = plus(between, weight, integrals(here, y + r * v, v, point, load))
-    s, volume, twist, energy, _ = mean(changes, ends, middle, between)
-    return s, volume, twist, energy, select(changes, MIXED, at.kind), near
+    """Axial length, volume, twist, strain energy; the kind of the cell; and what is handed on."""
+    _, (s, volume, twist, energy, _), kind, near = along_the_cell(integrands_at, y, v, cell, load, load)
+    return s, volume, twist, energy, kind, near
 
 
 @kernel
 def conjugate(y, v, cell, load, direction):
     """``(c, c_y, c_v, c_mu)`` of :func:`physical.conjugate`."""
-    point, h, before = parts_of(cell)
-    at, near = look(y, v, point, load, before)
-    middle = along(at, y, v, point, load, direction)
-    if not load[2][2] > 0.0:
-        return middle
-    ends, between, changes = (0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0), False
-    for k in range(0, EIGHTHS + 1, EIGHTHS):
-        r, _ = along_cell(k, h)
-        here, _ = look(y + r * v, v, point, load, near)
-        c, c_y, c_v, c_mu = along(here, y + r * v, v, point, load, direction)
-        ends, changes = plus(ends, 1.0, (c, c_y, c_v + r * c_y, c_mu, 0.0)), changes or here.kind != at.kind
-    if changes:
-        last = near
-        for k in range(1, EIGHTHS):
-            if 2 * k == EIGHTHS:
-                continue
-            r, weight = along_cell(k, h)
-            here, last = look(y + r * v, v, point, load, last)
-            c, c_y, c_v, c_mu = along(here, y + r * v, v, point, load, direction)
-            between = plus(between, weight, (c, c_y, c_v + r * c_y, c_mu, 0.0))
-    c, c_y, c_v, c_mu, _ = mean(changes, ends, (*middle, 0.0), between)
+    _, (c, c_y, c_v, c_mu, _), _, _ = along_the_cell(conjugate_at, y, v, cell, load, direction)
     return c, c_y, c_v, c_mu
