@@ -21,6 +21,7 @@ from freesweep.solver.numerics.bordered import FOLLOWED
 from freesweep.solver.numerics.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike
 from freesweep.solver.numerics.path import NOTHING
 from freesweep.solver.numerics.path import Path as Loads
+from freesweep.solver.numerics.properties_along import Tube
 from freesweep.solver.physics import lagrangian
 from freesweep.solver.problem import SOURCE, rubber_of, wall_of
 
@@ -41,7 +42,7 @@ def branch():
     course, half = np.zeros((1, 1, 3, 4)), 0.5 * TUBE.length / TUBE.fiber_surface
     course[0, 0, :, 0] = problem[:3]
     cells, edges, places = problem[None, :3].copy(), np.array([0, CELLS]), np.array([0.0, half])
-    tube = course, edges, cells, True, CELLS, places
+    tube = Tube(course, edges, cells, True, CELLS, places)
     rest = 1.0, rubber_of(problem), wall_of(problem, SOURCE), 0.0, 0.0, 0.0, 1.0
     path = Loads(rest, (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0), 0.0, False, NOTHING)
     space, track = make_space(CELLS, 1), make_track(CELLS, True, False)

@@ -18,7 +18,7 @@ FAR_FROM = 0.25  # share of 1 - u by which the middle of a tube drawn in may mis
 @kernel
 def cell_along(tube, share):
     """What varies along the tube at a ``share`` (0 to 1) of its length; of a body, as the cylinder of the radius there."""
-    course, _, _, _, _, places = tube
+    course, places = tube.course, tube.places
     at = share * places[len(places) - 1]
     segment = 0
     while segment < len(places) - 2 and places[segment + 1] <= at:
@@ -37,8 +37,8 @@ def upright(cell):
 @kernel
 def follow(tube, u, before, load, ahead):
     """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached."""
-    places = tube[5]
-    reached, half = 1.0, (1.0 if tube[3] else 0.5) * places[len(places) - 1]
+    places = tube.places
+    reached, half = 1.0, (1.0 if tube.half else 0.5) * places[len(places) - 1]
     for k in range(len(u)):
         cell = cell_along(tube, k / max(len(u) - 1, 1))
         drawn = lagrangian.drawn_in(cell, load)

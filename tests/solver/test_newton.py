@@ -20,6 +20,7 @@ from freesweep.solver.numerics import held, mesh, nested, newton
 from freesweep.solver.numerics.bordered import FOLLOWED, correct
 from freesweep.solver.numerics.continuation import advance, is_stable, last_alike, make_unit
 from freesweep.solver.numerics.path import Held, Path
+from freesweep.solver.numerics.properties_along import Tube
 
 X = 0.5
 FILM, BRATU = 0.0, 1.0
@@ -117,7 +118,7 @@ def on_nested_meshes(x, y, cell, load=REST, goal=nested.PLAIN, direction=REST, t
     out, table = np.zeros((4, nested.OUTPUTS)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
     course, last = np.zeros((1, 1, 3, 4)), len(x) - 1
     course[0, 0, 0, 0] = cell
-    tube = (course, np.array([0, last]), np.zeros((1, 3)), True, last, np.array([0.0, X]))
+    tube = Tube(course, np.array([0, last]), np.zeros((1, 3)), True, last, np.array([0.0, X]))
     status, unstable, doublings, _ = nested.solve(
         density, conjugate, integrands, scales, x, y, tube, load, goal, direction, target, mu, 2, accuracy,
         np.zeros((5, size)), np.zeros((13, size)), table, out,

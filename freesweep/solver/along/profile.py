@@ -129,7 +129,7 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
     Returns the largest bound, scaled, rounding left out: stretch as it is, positions by the length, twist by itself or a
     radian, angles by a radian, multipliers by the largest along the tube.
     """
-    course, edges, _, _, _, _ = tube
+    course, edges = tube.course, tube.edges
     n = base << (doublings - 1)
     order = 1.0 if extrapolate_nodes(base, n, tube, load, fine, nodes) else 15.0  # as in nested.extrapolate
     x, behind, alike = nodes[0], n + 1, is_alike(course)

@@ -24,7 +24,7 @@ FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 @kernel
 def is_upright(track, tube, load):
     """Whether a clamped end of a tube that is the same all along stands so upright that node values run out there."""
-    return tube[3] and quadrature.end_cosine(track.x, track.y, tube, load) < RUN_OUT
+    return tube.half and quadrature.end_cosine(track.x, track.y, tube, load) < RUN_OUT
 
 
 @kernel
@@ -33,7 +33,7 @@ def retrace(space, tube, origin, before, load, accuracy):
     :func:`..numerics.nested.solve`
     leaves it: ``(status, doublings, share of the way at a fold, its bound)``.
     """
-    return _retrace(tube[0], space, tube, origin, before, load, accuracy)
+    return _retrace(tube.course, space, tube, origin, before, load, accuracy)
 
 
 @kernel
@@ -41,7 +41,7 @@ def _retrace(course, space, tube, origin, before, load, accuracy):
     if course.ndim > 4:  # a body has no first integral
         return NOT_CONVERGED, 0, np.nan, np.nan
     x, y, out = space.x, space.y, space.out
-    cell, half = cell_along(tube, 0.0), tube[5][1]
+    cell, half = cell_along(tube, 0.0), tube.places[1]
     nodes, turned, doubt = meridian.NODES, np.nan, np.inf
     while nodes <= MOST_NODES:
         what, share, middle = branch_trace.trail(tube, before, load, origin, nodes, x, y, space.curve, space.work)

@@ -221,11 +221,11 @@ def trail(tube, before, load, origin, nodes, x, y, curve, work):
     """
     cell = cell_along(tube, 0.0)
     n = len(x) - 1
-    what, part, count = follow(cell, before, load, origin, tube[5][1], nodes, curve)
+    what, part, count = follow(cell, before, load, origin, tube.places[1], nodes, curve)
     middle = origin
     if what != LOST:
         middle, now = curve[1, count], between(before, load, part)
-        own = fill(tube[0], tube[1], x, n, n, tube[2])
+        own = fill(tube.course, tube.edges, x, n, n, tube.cells)
         meridian.spread(curve, count, cell, now, n, x, y, work)
         mesh.ease(lagrangian.integrands, x, y, n, work[0], own, now)
     return what, part, middle

@@ -187,10 +187,10 @@ def start(tube, u, load, x, y, curve, work):
     n = len(x) - 1
     if not abs(u[0] - 1.0) > 1e-12:
         return False
-    count = fit(cell, load, u[0], tube[5][1], NODES, curve)
+    count = fit(cell, load, u[0], tube.places[1], NODES, curve)
     if count == 0:
         return False
-    own = fill(tube[0], tube[1], x, n, n, tube[2])
+    own = fill(tube.course, tube.edges, x, n, n, tube.cells)
     spread(curve, count, cell, load, n, x, y, work)
     mesh.ease(lagrangian.integrands, x, y, n, work[0], own, load)
     return newton.admissible(lagrangian.density, x, y, n, own, load)

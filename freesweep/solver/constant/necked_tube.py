@@ -109,7 +109,7 @@ def solve(cell, tube, x, y, mu, path, t, scale, accuracy, base, fine, curve, tab
     """
     if len(cell) > 3:  # a body has no first integral
         return NOT_CONVERGED, 0, loaded(path.origin, path.direction, 1.0)
-    half, now, spare = tube[5][1], np.empty(5), table[quadrature.ROWS]
+    half, now, spare = tube.places[1], np.empty(5), table[quadrature.ROWS]
     end, direction, target = (
         loaded(path.origin, path.direction, 1.0),
         path.held.unit,

@@ -59,14 +59,14 @@ def solve(tube, near, load, base, accuracy, space):
     of ``base``
     cells. NOT_CONVERGED where there is none.
     """
-    return _solve(tube[0], tube, near, load, base, accuracy, space)
+    return _solve(tube.course, tube, near, load, base, accuracy, space)
 
 
 @kernel
 def _solve(course, tube, near, load, base, accuracy, space):
     if course.ndim > 4:  # a body has no first integral
         return NOT_CONVERGED, 0
-    cell, half, curve, table, out = cell_along(tube, 0.0), tube[5][1], space.curve, space.table, space.out
+    cell, half, curve, table, out = cell_along(tube, 0.0), tube.places[1], space.curve, space.table, space.out
     u, top, rate = shape_beside.stationary(cell, load, near), near, 0.0
     layered = u == u
     if layered:

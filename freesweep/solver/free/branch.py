@@ -65,9 +65,9 @@ def answer(track, space, tube, path, first, here, ahead, rows, accuracy):
         p = rows.pressures[i]
         if rows.status[i] == PENDING and low <= p <= high:
             guess(track, space, here, ahead, p)
-            load, middle = loaded(path.origin, path.direction, p), space.y[tube[4]]
+            load, middle = loaded(path.origin, path.direction, p), space.y[tube.middle]
             status, doublings = plain(space, tube, load, accuracy)
-            if status == NOT_CONVERGED and tube[3]:
+            if status == NOT_CONVERGED and tube.half:
                 status, doublings = quadrature.solve(tube, middle, load, len(space.x) - 1, accuracy, space)
             record(space, tube, load, status, doublings, accuracy, rows, i)
 

@@ -16,7 +16,7 @@ from ..numerics import nested
 from ..numerics.bordered import FOLLOWED
 from ..numerics.held import loaded
 from ..numerics.path import NOTHING, Path
-from ..numerics.properties_along import make_cells, of_problems, seat, volume
+from ..numerics.properties_along import Tube, make_cells, of_problems, seat, volume
 from ..numerics.shapes import differ, extremes
 from ..physics import lagrangian
 from ..physics.wall import is_loose
@@ -35,7 +35,7 @@ FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for wh
 def settle(problem, tube, rows):
     """Write the rows that need no solving."""
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
-    clamped, half = 1.0, (1.0 if tube[3] else 0.5) * tube[5][len(tube[5]) - 1]
+    clamped, half = 1.0, (1.0 if tube.half else 0.5) * tube.places[len(tube.places) - 1]
     for end in range(2):
         cell = guide.cell_along(tube, 1.0 * end)
         clamped = min(clamped, 1.0 + lagrangian.kinematics(1.0, cell, (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3])
@@ -51,7 +51,7 @@ def settle(problem, tube, rows):
             for k in range(5):
                 rows.values[i, k], rows.bounds[i, k] = 0.0, 0.0
             rows.values[i, 0], rows.values[i, 4] = half, 1.0
-            rows.values[i, 1] = (1.0 if tube[3] else 0.5) * volume(tube[0], tube[5])
+            rows.values[i, 1] = (1.0 if tube.half else 0.5) * volume(tube.course, tube.places)
         elif not p + f > 0.0:
             rows.status[i] = COMPRESSED
 
@@ -94,14 +94,14 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
         )  # fmt: skip
         status, here, ahead = follow(track, roomy, space, tube, path, mu, tangent_mu, 1.0, none, limit, accuracy)
         if status != OK:
-            return status, here[0], track.y[tube[4]]
+            return status, here[0], track.y[tube.middle]
         guess(track, space, here, ahead, 1.0)
         for i in range(len(space.y)):
             track.y[i] = space.y[i]
         status, negative, _ = stand(track, tube, path, 1.0, 1.0, 0, space.work)
-        if status != FOLLOWED or negative > 0 or differ(extremes(space.y, tube[4]), extremes(track.y, tube[4])):
-            return NOT_CONVERGED, here[0], track.y[tube[4]]
-    return OK, 1.0, track.y[tube[4]]
+        if status != FOLLOWED or negative > 0 or differ(extremes(space.y, tube.middle), extremes(track.y, tube.middle)):
+            return NOT_CONVERGED, here[0], track.y[tube.middle]
+    return OK, 1.0, track.y[tube.middle]
 
 
 @kernel
@@ -123,7 +123,7 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
                     for k in range(len(space.x)):
                         space.x[k], space.y[k] = track.x[k], track.y[k]
                     status, doublings = plain(space, tube, load, accuracy)
-                    if status == NOT_CONVERGED and tube[3]:
+                    if status == NOT_CONVERGED and tube.half:
                         status, doublings = quadrature.solve(tube, middle, load, len(space.x) - 1, accuracy, space)
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
@@ -155,11 +155,11 @@ def along_pressure(
     mu = start
     if status == FOLLOWED:
         status, here, _ = follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, accuracy)
-        mu, middle = here[0], track.y[tube[4]]
+        mu, middle = here[0], track.y[tube.middle]
     else:
         status = NOT_CONVERGED
     low, high = (start, np.inf) if sense > 0.0 else (0.0, start)
-    if status == NOT_CONVERGED and tube[3]:
+    if status == NOT_CONVERGED and tube.half:
         go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy)
     leave(rows, status if status != OK else NOT_CONVERGED, low, high)
 
@@ -200,7 +200,7 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
     )
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
-    if status == NOT_CONVERGED and tube[3]:
+    if status == NOT_CONVERGED and tube.half:
         status, _, _, _ = retrace(space, tube, middle, before, load, accuracy)
         if status == OK or status == INACCURATE:
             go_on(space, tube, path, settled, space.out[0, nested.MIDDLE], 0.0, most, rows, limit, accuracy)
@@ -261,7 +261,7 @@ def follow_many(
             space = make_space(base, 1 if same else guide.PLACES)
             track, roomy = make_track(base, same, False), make_track(FINEST * base, same, False)
             cells = make_cells(course, 1 if same else len(space.fine[0]))
-            tube = (own_course, factor * edges, cells, same, factor * middle, own_places)
+            tube = Tube(own_course, factor * edges, cells, same, factor * middle, own_places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
             walk(problems[k], walls, settled[k], tube, track, roomy, space, rows, limits[k], accuracy)
             again = False

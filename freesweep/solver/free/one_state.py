@@ -41,7 +41,7 @@ def solve(space, tube, load, goal, direction, target, regrades, accuracy):
 def free(space, tube, load, regrades, accuracy):
     """The state at ``load``, from a guess."""
     status, doublings = solve(space, tube, load, PLAIN, FLAT, 0.0, regrades, accuracy)
-    if status != NOT_CONVERGED and tube[3]:
+    if status != NOT_CONVERGED and tube.half:
         status, doublings = quadrature.sharpen(tube, load, accuracy, space, status, doublings)
     return status, doublings
 
@@ -55,9 +55,9 @@ def cold(space, tube, load, accuracy):
 @kernel
 def plain(space, tube, load, accuracy):
     """The state at ``load`` that the guess all but is."""
-    guess = extremes(space.y, tube[4])
+    guess = extremes(space.y, tube.middle)
     status, doublings = free(space, tube, load, REGRADES, accuracy)
-    return (NOT_CONVERGED if differ(guess, extremes(space.y, tube[4])) else status), doublings
+    return (NOT_CONVERGED if differ(guess, extremes(space.y, tube.middle)) else status), doublings
 
 
 @kernel
@@ -82,9 +82,9 @@ def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
         share = (target - start) / whole
         for i in range(n + 1):
             space.x[i], space.y[i] = track.x[i], track.y[i] + share * (track.next_y[i] - track.y[i])
-        guess = extremes(space.y, tube[4])
+        guess = extremes(space.y, tube.middle)
         status, doublings = solve(space, tube, path.origin, HELD, direction, target, REGRADES, accuracy)
-        if status == NOT_CONVERGED or differ(guess, extremes(space.y, tube[4])):
+        if status == NOT_CONVERGED or differ(guess, extremes(space.y, tube.middle)):
             return NOT_CONVERGED, doublings
         gap = space.out[0, nested.MULTIPLIER] - 1.0
         for k in range(nested.OUTPUTS):
@@ -115,7 +115,7 @@ def record(space, tube, load, status, doublings, accuracy, rows, i):
         return
     base = len(space.x) - 1
     for k in range(5):
-        share = 1.0 if tube[3] or k == nested.MIDDLE else 0.5  # of half the tube
+        share = 1.0 if tube.half or k == nested.MIDDLE else 0.5  # of half the tube
         rows.values[i, k], rows.bounds[i, k] = share * space.out[0, k], share * space.out[1, k]
     rows.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << doublings, base, tube, load)
     if len(rows.stations) > 0:

@@ -5,7 +5,7 @@ import numpy as np
 from ...jit import entry_point
 from .. import guide
 from ..numerics import nested
-from ..numerics.properties_along import of_problems, seat, turns
+from ..numerics.properties_along import Tube, of_problems, seat, turns
 from ..physics import lagrangian
 from ..problem import FORCE, GAMMA, LENGTH, TORQUE
 from ..status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
@@ -37,7 +37,7 @@ def block_many(
         if not varying:
             own_places[1] = 0.5 * problems[k, LENGTH]
             seat(own_course, problems[k])
-        tube = (own_course, edges, cells, not varying, middle, own_places)
+        tube = Tube(own_course, edges, cells, not varying, middle, own_places)
         rest = (problems[k, GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         clamped = 1.0
         for end in range(2):

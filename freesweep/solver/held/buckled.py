@@ -169,7 +169,7 @@ def find_buckled(problem, walls, p, force, target, tube, accuracy, room, out, le
     """The stable buckled state at pressure ``p``; arguments and what is returned as of :func:`.held_state.find`, but for
     ``least`` (2,): the least pressure at which the branch has a state, and its bound.
     """
-    return _find_buckled(tube[0], problem, walls, p, force, target, tube, accuracy, room, out, least)
+    return _find_buckled(tube.course, problem, walls, p, force, target, tube, accuracy, room, out, least)
 
 
 @kernel
@@ -177,7 +177,7 @@ def _find_buckled(course, problem, walls, p, force, target, tube, accuracy, room
     load = load_of(problem, walls, p, force, HELD_ROTATION)
     if course.ndim > 4:  # nothing straight to buckle from
         return failed(HELD_IMPOSSIBLE, load)
-    cell, places = at_point(course, 0, 0.0), tube[5]
+    cell, places = at_point(course, 0, 0.0), tube.places
     least[0], least[1] = np.nan, np.nan
     p_c = critical(cell, load, places[len(places) - 1])
     if not p_c > 0.0 or not p_c + force > 0.0:

@@ -85,7 +85,7 @@ def first_way(room, tube, sought):
 @kernel
 def from_cylinder(room, tube, sought):
     """From the straight cylinder to what is wanted, through stable states, under a pressure that is lowered at last."""
-    track, x, load, unit = room.track, tube[5], sought.raised, sought.unit
+    track, x, load, unit = room.track, tube.places, sought.raised, sought.unit
     multiplier = cylinder_multiplier(sought.cell, load, unit)
     ways.make_straight(track, tube, multiplier)
     first = lagrangian.conjugate(1.0, 0.0, sought.cell, load, unit)[0] * x[len(x) - 1]

@@ -11,7 +11,7 @@ from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import slack_fibers
 from ..numerics import held, nested
-from ..numerics.properties_along import make_cells, volume
+from ..numerics.properties_along import Tube, make_cells, volume
 from ..numerics.shapes import MESH_CHANGE
 from ..physics import lagrangian
 from ..problem import LENGTH, D, H
@@ -29,7 +29,7 @@ THINNEST_LAYER = 100.0  # times it fits into a cell of an even base mesh; thinne
 @kernel
 def layers(problem, walls, p, other, kind, tube):
     """How many times the thinnest end layer of a cylinder under the load fits into the length that is solved."""
-    course, places, load, unit = tube[0], tube[5], load_of(problem, walls, p, other, kind), unit_of(kind, 1.0)
+    course, places, load, unit = tube.course, tube.places, load_of(problem, walls, p, other, kind), unit_of(kind, 1.0)
     largest = 0.0
     for k in range(1 if course.shape[0] == 1 and course.shape[1] == 1 else guide.PLACES):
         cell = guide.cell_along(tube, k / (guide.PLACES - 1))
@@ -51,7 +51,7 @@ def cells_for(base, varies, course):
 def made_finer(tube, factor):
     """The tube on a base mesh of so many times the cells."""
     course, edges, cells, free, middle, places = tube
-    return (
+    return Tube(
         course,
         factor * edges,
         cells_for(factor * edges[len(edges) - 1], len(cells) > 1, course),
@@ -64,7 +64,7 @@ def made_finer(tube, factor):
 @kernel
 def first_factor(problem, walls, p, other, kind, tube):
     """Times the cells of the base mesh that its thinnest layer needs."""
-    base, factor = tube[1][len(tube[1]) - 1], 1
+    base, factor = tube.edges[len(tube.edges) - 1], 1
     most = layers(problem, walls, p, other, kind, tube) / THINNEST_LAYER
     while factor * base <= FINEST and most > factor * base:
         factor *= FINER
@@ -79,7 +79,7 @@ def find_on_some_mesh(problem, walls, p, other, target, kind, tube, accuracy, ro
     Where the accuracy is missed on all of them, the first mesh's state stands. Among unstable states branches lie close to
     each other, and a mesh that sees too little of them leads astray: such a state is given where two meshes lead to it.
     """
-    base, half, varies = tube[1][len(tube[1]) - 1], tube[3], len(tube[2]) > 1
+    base, half, varies = tube.edges[len(tube.edges) - 1], tube.half, len(tube.cells) > 1
     factor = first_factor(problem, walls, p, other, kind, tube)
     if factor > 1:
         tube, room = made_finer(tube, factor), make_room(factor * base, half, varies)
@@ -164,7 +164,7 @@ def leave_at_rest(states, i, problem, tube):
     for k in range(6):
         states.values[i, k], states.bounds[i, k] = 0.0, 0.0
     states.values[i, 0], states.values[i, 4] = rest, 1.0
-    states.values[i, 1] = (1.0 if tube[3] else 0.5) * volume(tube[0], tube[5])
+    states.values[i, 1] = (1.0 if tube.half else 0.5) * volume(tube.course, tube.places)
     for j in range(len(states.stations)):
         for k in range(FIELDS):
             fields[k, j] = 0.0
@@ -178,9 +178,9 @@ def record(states, i, found, tube, space, accuracy, out):
     states.status[i], states.paths[i] = found.status, found.path
     if not valued(found.status):
         return
-    base = tube[1][len(tube[1]) - 1]
+    base = tube.edges[len(tube.edges) - 1]
     for k in range(6):
-        share = 0.5 if not tube[3] and k < 4 else 1.0
+        share = 0.5 if not tube.half and k < 4 else 1.0
         states.values[i, k], states.bounds[i, k] = share * out[0, k], share * out[1, k]
     states.stable[i] = 1 if found.unstable == 0 else 0
     states.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << found.doublings, base, tube, found.load)
@@ -209,7 +209,7 @@ def hold_many(
     middle = base if half else edges[np.argmin(np.abs(places - 0.5 * whole))]
     varying = not half or course.shape[1] > 1
     first_room, out = make_room(base, half, varying), np.zeros((4, nested.OUTPUTS))
-    first_tube = course, edges, cells_for(base, varying, course), half, middle, places
+    first_tube = Tube(course, edges, cells_for(base, varying, course), half, middle, places)
     states = States(values, bounds, status, stable, slack, paths, least, stations, profiles)
     for i in range(len(pressures)):
         blank(states, i)

@@ -82,10 +82,10 @@ def on_meshes(track, space, tube, end, sought, path, accuracy, out):
         nested.HELD, unit, sought.wanted, track.y[n + 1], 1, accuracy, space.fine, space.work, space.table, out,
     )  # fmt: skip
     if status == newton.CONVERGED or status == nested.UNREACHED:
-        if not differ(extremes(track.y[: n + 1], tube[4]), extremes(space.y, tube[4])):
+        if not differ(extremes(track.y[: n + 1], tube.middle), extremes(space.y, tube.middle)):
             now = loaded(load, unit, out[0, nested.MULTIPLIER])
             return Found(OK if status == newton.CONVERGED else INACCURATE, unstable, doublings, now, 1.0, False, path)
-    own = fill(tube[0], tube[1], track.x, n, n, tube[2])
+    own = fill(tube.course, tube.edges, track.x, n, n, tube.cells)
     gone = pushed(track.y[: n + 1], own, load_at(end.path, track.y, n, 1.0))
     return Found(COMPRESSED if gone else NOT_CONVERGED, 0, 0, load, 1.0, False, path)
 
@@ -107,9 +107,9 @@ def with_neck(room, tube, end, sought, accuracy, out):
 @kernel
 def finish(room, tube, sought, found, out):
     """The unstable directions of a state on the whole tube, and the load that holds it without its unit."""
-    space, edges = room.space, tube[1]
+    space, edges = room.space, tube.edges
     base = edges[len(edges) - 1]
-    size = (2.0 if tube[3] else 1.0) * max(abs(sought.wanted), abs(sought.natural))
+    size = (2.0 if tube.half else 1.0) * max(abs(sought.wanted), abs(sought.natural))
     unstable, rounding = unstable_directions(
         space.fine[0], space.fine[1], base << found.doublings, base, tube, found.load, sought.unit, size, space.work
     )

@@ -84,7 +84,7 @@ def failed(status, load):
 @kernel
 def refused(load, target, kind, tube):
     """COMPRESSED or HELD_IMPOSSIBLE where nothing has to be solved to know it, else PENDING."""
-    cell, course, places = guide.cell_along(tube, 0.5), tube[0], tube[5]
+    cell, course, places = guide.cell_along(tube, 0.5), tube.course, tube.places
     varies = course.shape[0] > 1 or course.shape[1] > 1
     # a straight fiber cannot stretch: whatever the force, the length stays (the pole of Eq. 2.16)
     if course.shape[0] == 1 and lagrangian.conjugate(1.0, 0.0, cell, load, unit_of(kind, 1.0))[1] == 0.0:
@@ -100,7 +100,7 @@ def refused(load, target, kind, tube):
 @kernel
 def describe(load, target, kind, tube):
     """What is sought. A place is chosen whose cylinder can carry the load, at a higher pressure if it must be."""
-    course, places = tube[0], tube[5]
+    course, places = tube.course, tube.places
     varies = course.shape[0] > 1 or course.shape[1] > 1
     cell, unit = guide.cell_along(tube, 0.5), unit_of(kind, 1.0)
     there = at_pressure(load, load[3] if load[3] > 0.0 or kind == HELD_ROTATION else WITHOUT_PRESSURE * cell[2])

@@ -108,7 +108,7 @@ def even_mesh(x, places, edges):
 def make_straight(track, tube, multiplier):
     """The straight cylinder, on equal cells."""
     n = len(track.x) - 1
-    even_mesh(track.x, tube[5], tube[1])
+    even_mesh(track.x, tube.places, tube.edges)
     for i in range(n + 1):
         track.y[i] = 1.0
     track.y[n + 1] = multiplier
@@ -129,7 +129,7 @@ def land(room, tube, path, here, ahead, until):
     for i in range(len(track.y)):
         track.y[i] = guess[i]
     status, _, tangent_mu = stand(track, tube, path, until, 1.0, 0, room.space.work)
-    if status != FOLLOWED or differ(extremes(guess[: n + 1], tube[4]), extremes(track.y[: n + 1], tube[4])):
+    if status != FOLLOWED or differ(extremes(guess[: n + 1], tube.middle), extremes(track.y[: n + 1], tube.middle)):
         return stopped(NOT_CONVERGED, path, here[0], here[1])
     return stopped(OK, path, until, tangent_mu)
 

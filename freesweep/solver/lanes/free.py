@@ -8,6 +8,7 @@ long tube, so none needs another one. No lane's numbers depend on its neighbours
 import numpy as np
 
 from ...jit import entry_point, kernel
+from ..numerics.properties_along import Tube
 from ..physics import lagrangian
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
 from . import first_guess, layer, nested
@@ -105,7 +106,7 @@ def solve(
         kept = None
     else:
         kept, nodes = np.zeros((WIDTH, 5, size)), np.zeros((5, size))
-        tube = (np.zeros((1, 1, 3, 4)), np.array([0, base]), np.zeros((1, 3)), True, base, np.zeros(2))
+        tube = Tube(np.zeros((1, 1, 3, 4)), np.array([0, base]), np.zeros((1, 3)), True, base, np.zeros(2))
     rows = np.zeros(WIDTH, np.int64)
     for group in range(0, len(order), WIDTH):
         count = min(WIDTH, len(order) - group)

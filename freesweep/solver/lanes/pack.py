@@ -97,7 +97,7 @@ def lock(lane, columns):
 @kernel
 def seat(lane, columns, tube):
     """One lane as the scalar kernels take it: its load; ``tube`` is changed to it."""
-    course, _, _, _, _, places = tube
+    course, places = tube.course, tube.places
     for k in range(3):
         course[0, 0, k, 0] = columns[k, lane]
     places[1] = columns[LENGTH, lane]

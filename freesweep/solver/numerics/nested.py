@@ -180,11 +180,10 @@ def solve(
 ):  # fmt: skip
     """Solve on nested meshes until every bound meets ``accuracy``.
 
-    ``tube`` is (course, edges, cells, free, middle, places): what varies along the tube and a buffer for it, whether the
-    last node is a plane of symmetry, the node of the base mesh that lies in the middle, and where segments begin and end.
-    ``x`` and ``y`` are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next
-    call's warm start. ``fine`` is scratch for the finer meshes, left as :mod:`finest` describes. ``out`` is
-    (values, bounds, scales, floors), shape (4, OUTPUTS).
+    ``tube`` is a :class:`.properties_along.Tube`; of one that is solved by half the last node is free. ``x`` and ``y``
+    are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next call's warm
+    start. ``fine`` is scratch for the finer meshes, left as :mod:`finest` describes. ``out`` is (values, bounds,
+    scales, floors), shape (4, OUTPUTS).
 
     Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
     """

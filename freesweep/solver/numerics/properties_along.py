@@ -8,12 +8,28 @@ A body of revolution (:mod:`..physics.body`) has two rows of three numbers, its 
 2, 3, 4), as have its cells. How many axes an array has is known when code is made: none is for the other kind.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...jit import kernel
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)  # exact for the square of a cubic
 GAUSS_POINTS, GAUSS_WEIGHTS = 0.5 + 0.5 * _POINTS, 0.5 * _WEIGHTS
+
+
+class Tube(NamedTuple):
+    """What varies along a tube, and where: its course and the nodes of the base mesh at its edges; room for the cells of a
+    mesh; whether only half of it is solved, whose last node is a plane of symmetry; the node of the base mesh in the
+    middle of the whole tube; and where segments begin and end along what is solved.
+    """
+
+    course: np.ndarray
+    edges: np.ndarray
+    cells: np.ndarray
+    half: bool
+    middle: int
+    places: np.ndarray
 
 
 @kernel
