@@ -5,7 +5,9 @@ import pytest
 from loose_tubes import Tube
 from scipy.optimize import brentq, minimize_scalar
 
-from freesweep import Actuator, MooneyRivlin, NeoHookean, inflate
+from freesweep import Actuator, ActuatorError, MooneyRivlin, NeoHookean, blocked_force, blocked_torque, inflate, lock
+from freesweep.description.tube_model import THREADS
+from freesweep.solver.physics import wall as kernels_of_walls
 from freesweep.status import BEYOND_LIMIT, OK
 
 RUBBER = MooneyRivlin(c10=0.17e6, c01=0.08e6)
@@ -100,7 +102,8 @@ def test_one_family_answers_a_small_pressure_as_linear_elasticity_does(alpha, wa
     """In the middle of a long tube; the fibers outside a thick wall, inside a membrane."""
     pressure, inside = 2.0, wall_model == "membrane"
     one = tube(alpha, length=0.3, fibers="loose", wall_model=wall_model, fiber_radius="inner" if inside else "outer")
-    found = inflate(one, pressure, x=[0.14, 0.15, 0.16], accuracy=1e-10)
+    with pytest.warns(UserWarning, match="hardly deforms"):
+        found = inflate(one, pressure, x=[0.14, 0.15, 0.16], accuracy=1e-10)
     r = one.fiber_surface
     t = np.tan(np.radians(alpha))
     e, b, psi = response(t, RADIUS / r, (RADIUS + WALL) / r, RUBBER)
@@ -165,8 +168,10 @@ def test_states_are_those_of_brute_force(more, pressure, tolerance):
 
 
 def test_a_word_says_none_and_numbers_of_the_solver_are_those_of_the_description():
-    assert tube("none", " None ") == tube() and hash(tube("none")) == hash(tube())
-    assert tube(30) != tube(None, 30) and hash(tube(30)) != hash(tube(None, 30))
+    assert tube("none", " None ") == tube()
+    assert hash(tube("none")) == hash(tube())
+    assert tube(30) != tube(None, 30)
+    assert hash(tube(30)) != hash(tube(None, 30))
     known = kernels_of_walls.BONDED, kernels_of_walls.LOOSE, kernels_of_walls.ONE_LOOSE, kernels_of_walls.ONE_BONDED
     assert [THREADS[key] for key in ((2, "bonded"), (2, "loose"), (1, "loose"), (1, "bonded"))] == list(known)
     assert THREADS[0, "loose"] == THREADS[0, "bonded"] == kernels_of_walls.NONE
@@ -181,7 +186,8 @@ def test_a_family_that_is_not_there_has_no_angle_and_no_tension_and_is_not_slack
     )
     for found, there, missing in ((alone, "alpha", "beta"), (mirrored, "beta", "alpha")):
         assert np.all(np.isnan(found[f"{missing}_deformed"]))
-        assert np.all(found[f"fiber_tension_{missing}"] == 0.0) and found[f"slack_{missing}"] == 0.0
+        assert np.all(found[f"fiber_tension_{missing}"] == 0.0)
+        assert found[f"slack_{missing}"] == 0.0
         assert found["slack_fiber"] == 0
         assert np.all(found[f"fiber_tension_{there}"] > 0.0)
     for name in ("deformed_length", "mid_radius", "largest_stretch", "outer_radius", "fiber_tension_alpha"):
@@ -198,7 +204,8 @@ def test_straight_fibers_alone_go_slack_where_the_tube_shortens():
     """A push shortens the tube: the straight threads let go, and it is the balloon that is left."""
     straight, balloon = tube(0, fibers="loose"), tube()
     found, other = (inflate(one, 5e4, -2.0, x=[0.01, 0.025]) for one in (straight, balloon))
-    assert found["slack_fiber"] == 1 and found["slack_alpha"].item() > 0.9
+    assert found["slack_fiber"] == 1
+    assert found["slack_alpha"].item() > 0.9
     assert found["mid_radius"].item() == pytest.approx(other["mid_radius"].item(), rel=1e-6)
 
 
@@ -220,7 +227,7 @@ def test_fewer_than_two_angles_have_no_locked_shape(angles):
 def test_what_is_not_there_for_such_tubes_is_refused_with_a_reason():
     with pytest.raises(ActuatorError, match="fewer than two families would leave it open"):
         tube(30, energy="principal")
-    with pytest.raises(ActuatorError, match="one fiber family leaves.*or beta=None, or loose"):
+    with pytest.raises(ActuatorError, match=r"one fiber family leaves.*or beta=None, or loose"):
         tube(30, 30)
     with pytest.raises(ActuatorError, match="derivatives: found fibers of fewer than two angles"):
         inflate(tube(30), 1e4, derivatives="all")
