@@ -69,7 +69,7 @@ def _wall(tube):
     """The middle of the unrolled wall as SVG; the axis lies across, the longer side of the picture."""
     lines = []
     for angle, colour in zip(tube.angles(0.5), FAMILIES):
-        if math.isnan(angle):
+        if math.isnan(angle.item()):
             continue
         steep = math.radians(max(min(angle.item(), STEEPEST), -STEEPEST))
         slope, across = math.tan(steep), PITCH / math.cos(steep)

@@ -298,7 +298,7 @@ class Actuator:
         if not np.all((share >= 0.0) & (share <= 1.0)):
             raise ActuatorError(["share: a place x/l lies beyond the tube; give numbers from 0 to 1"])
         return tuple(
-            np.full(share.shape, np.nan) if getattr(self, name) is None else self.profile(name).at(share)
+            np.full(np.atleast_1d(share).shape, np.nan) if getattr(self, name) is None else self.profile(name).at(share)
             for name in FAMILIES
         )
 

@@ -3,12 +3,26 @@
 import numpy as np
 import pytest
 from loose_tubes import Tube
+from matplotlib.figure import Figure
 from scipy.optimize import brentq, minimize_scalar
 
-from freesweep import Actuator, ActuatorError, MooneyRivlin, NeoHookean, blocked_force, blocked_torque, inflate, lock
+from freesweep import (
+    Actuator,
+    ActuatorError,
+    MooneyRivlin,
+    NeoHookean,
+    blocked_force,
+    blocked_torque,
+    inflate,
+    lock,
+)
+from freesweep.cli import parser
+from freesweep.cli.single import tube_of
 from freesweep.description.tube_model import THREADS
+from freesweep.plot.shape import draw_shape, shape_of
 from freesweep.solver.physics import wall as kernels_of_walls
 from freesweep.status import BEYOND_LIMIT, OK
+from freesweep.sweep.spec import SpecificationError, parse
 
 RUBBER = MooneyRivlin(c10=0.17e6, c01=0.08e6)
 RADIUS, WALL = 5e-3, 0.8e-3
@@ -260,3 +274,79 @@ def test_a_held_rotation_of_one_family_is_that_of_brute_force():
     expected = brute(actuator, pressure, held="rotation", target=0.0)
     agree(found, expected, actuator, 2e-5)
     assert found["torque"].item() / (np.pi * r**3 * RUBBER.c10) == pytest.approx(expected[5], rel=2e-5)
+
+
+# --- what else such tubes are made of, and shown by
+
+
+def test_a_single_family_that_varies_by_nothing_is_the_constant_one():
+    one, other = tube(30, fibers="loose"), tube(lambda share: 30.0 + 0.0 * share, fibers="loose")
+    found, again = (inflate(each, 4e4, x=[0.01, 0.025]) for each in (one, other))
+    for name in ("deformed_length", "rotation", "mid_radius", "largest_stretch", "outer_radius"):
+        assert again[name].item() == pytest.approx(found[name].item(), rel=1e-9), name
+
+
+def test_what_threads_are_made_of_is_nothing_to_a_balloon():
+    found, other = (inflate(one, 4e4, x=0.0) for one in (tube(), tube(fiber_extension=1.02)))
+    for name in ("deformed_length", "mid_radius", "strain_energy"):
+        assert other[name].item() == pytest.approx(found[name].item(), rel=1e-7), name
+
+
+def test_one_family_alone_keeps_a_neo_hookean_tube_from_bulging():
+    """Where the balloon has long reached its limit; a steep pair of stretches from the energy of a uniform tube itself."""
+    rubber = NeoHookean(c10=0.2e6)
+    pressure = 1.2 * textbook_limit(rubber, False)
+    one = tube(45, length=0.3, material=rubber, fibers="loose")
+    found = inflate(one, pressure, x=[0.149, 0.15, 0.151])
+    assert found["status"] == OK
+    assert np.isnan(found["limit_pressure"])
+    y = found["deformed_radius"].values[1] / RADIUS
+    s = np.diff(found["axial_position"].values)[0] / 1e-3
+    psi = np.diff(np.radians(found["twist"].values))[0] / 1e-3 * RADIUS
+    section = ((RADIUS + WALL) / RADIUS) ** 2 - 1.0
+
+    def energy(y, psi):
+        """Of the uniform tube whose 45 degree fibers keep their length, per pi r^2 c10 and length."""
+        square = 2.0 - y * y * (1.0 + psi) ** 2
+        wall = section * (square + y * y * (1.0 + psi * psi) + 1.0 / (square * y * y) - 3.0)
+        return pressure / rubber.c10 * y * y * np.sqrt(square) - wall
+
+    assert s**2 == pytest.approx(2.0 - y * y * (1.0 + psi) ** 2, rel=1e-5)
+    h = 1e-5
+    assert energy(y + h, psi) - energy(y - h, psi) == pytest.approx(0.0, abs=2e-6 * h)
+    assert energy(y, psi + h) - energy(y, psi - h) == pytest.approx(0.0, abs=2e-6 * h)
+
+
+def test_a_shell_and_a_sweep_know_the_word():
+    sizes = ["--length", "50 mm", "--radius", "5 mm", "--wall", "0.8 mm", "--c10", "0.17 MPa", "--c01", "0.08 MPa"]
+    words = ["inflate", "--alpha", "none", "--beta", "none", *sizes, "--pressure", "1 kPa"]
+    assert tube_of(parser().parse_args(words)) == tube()
+    text = '[actuator]\nalpha = "none"\nbeta = 30\nlength = 0.1\nradius = 5e-3\nwall = 1e-3\nc10 = 1e5\n[load]\npressure = 1'
+    with pytest.raises(SpecificationError, match=r"actuator\.alpha: is none, but a sweep's tubes have two families"):
+        parse(text)
+
+
+def test_a_balloon_is_drawn_without_fibers():
+    state = inflate(tube(), 4e4)
+    shape = shape_of(tube(), state)
+    assert shape.counts == (0, 0)
+    assert shape.radius.max() == pytest.approx(1e3 * state["mid_radius"].item(), rel=1e-6)
+    assert shape_of(tube(30)).counts[1] == 0
+    shown = tube(30)._repr_html_()
+    assert "none" in shown
+    assert "nan" not in shown
+    draw_shape(Figure().add_subplot(), shape)
+
+
+def test_the_thin_wall_of_a_balloon_is_told_as_linear_elasticity_has_it():
+    """What a thick wall deforms more than a thin one at small pressure, without threads and with one family."""
+    for angle in (None, 50):
+        thin, thick = (
+            inflate(tube(angle, length=0.3, wall_model=word), 50.0, x=[0.15], accuracy=1e-9)
+            for word in ("membrane", "thick")
+        )
+        growth = []
+        for one in (thin, thick):
+            y, z = one["deformed_radius"].item() / RADIUS, one["deformed_length"].item() / 0.3
+            growth.append(y * y * z - 1.0)
+        assert thin.attrs["thin_wall_ratio"] == pytest.approx(growth[1] / growth[0], rel=0.02)
