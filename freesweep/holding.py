@@ -110,11 +110,15 @@ def blocked_torque(
         raise ActuatorError(faults)
     if isinstance(tube, Actuator):
         alpha, beta = tube.angles(np.linspace(0.0, 1.0, 257))
-        if np.all(alpha == -beta):
+        single = np.where(np.isnan(alpha), beta, alpha)  # not a number where there is none
+        if np.all(alpha == -beta) or not (tube.has_two_families or np.any(np.abs(single) > 0.0)):
             raise ActuatorError(
-                ["rotation: a tube with alpha = -beta does not rotate, so no torque holds it; use blocked_force"]
+                [
+                    "rotation: a tube with alpha = -beta does not rotate, nor does one of straight fibers alone or without"
+                    " any, so no torque holds it; use blocked_force"
+                ]
             )
-        if buckled and (tube.is_loose or tube.is_thick):
+        if buckled and (tube.threads > 0.0 or tube.is_thick):
             raise ActuatorError(
                 ["buckled: solved for membranes with bonded fibers only; others leave the cylinder without"]
             )
@@ -150,7 +154,7 @@ def _hold(
     r, c10 = tube.fiber_surface, tube.material.c10
     design = {name: np.full(1, value) for name, value in tube.design().items()}
     row = problem_rows(
-        design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy, tube.is_thick, tube.is_loose
+        design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy, tube.is_thick, tube.threads
     )[0]
     whole, error = is_solved_whole(tube) or buckled, 0.0
     if tube.varies:
@@ -249,7 +253,7 @@ def corrected_torque(tube: Actuator, pressure: Quantities) -> Any:
     """
     from scipy.interpolate import CubicSpline
 
-    if not isinstance(tube, Actuator) or tube.varies or tube.alpha != 0.0:
+    if not isinstance(tube, Actuator) or tube.varies or tube.alpha != 0.0 or not tube.has_two_families:
         raise ActuatorError(["tube: the source's correction is for alpha = 0 and a constant beta"])
     muscle = Actuator(
         alpha=tube.beta, beta=-tube.beta, length=tube.length, radius=tube.radius, wall=tube.wall,

@@ -42,7 +42,9 @@ def of_actuator(tube) -> str:
     rows = []
     for name, units in (("alpha", "degree"), ("beta", "degree"), ("length", "m"), ("radius", "m"), ("wall", "m")):
         value = getattr(tube, name)
-        if name != "length":
+        if value is None:
+            text = "none"
+        elif name != "length":
             samples = tube.profile(name).samples()
             text = quantity(samples[0], units)
             if samples.min() < samples.max():
@@ -53,6 +55,8 @@ def of_actuator(tube) -> str:
     if tube.fiber_extension != 1.0:
         rows.append(("fiber extension", f"{tube.fiber_extension:g}"))
     threads = "loose threads" if tube.is_loose else "bonded fibers"
+    if tube.alpha is None and tube.beta is None:
+        threads = "no fibers, measured"
     wall = "thick wall" if tube.is_thick else "membrane"
     rows.append(
         ("model", f"{wall}, {threads} at {quantity(tube.fiber_surface, 'm')}{', at x = 0' if tube.is_body else ''}")
@@ -65,6 +69,8 @@ def _wall(tube):
     """The middle of the unrolled wall as SVG; the axis lies across, the longer side of the picture."""
     lines = []
     for angle, colour in zip(tube.angles(0.5), FAMILIES):
+        if math.isnan(angle.item()):
+            continue
         steep = math.radians(max(min(angle.item(), STEEPEST), -STEEPEST))
         slope, across = math.tan(steep), PITCH / math.cos(steep)
         for k in range(-int(WIDE * abs(slope) / across) - 2, int((HIGH + WIDE * abs(slope)) / across) + 2):

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import status
 from .atlas.schema import PROFILES, attributes
+from .description.families import told, told_slack
 from .description.revolution import wall_volume_inside as wall_volume_of_body
 from .description.strain import warn_beyond_range
 from .scaling import OUTPUTS, output_scales, wall_volume_inside
@@ -23,7 +24,7 @@ def dataset(tube, axes, stations, found, without=()):
     import xarray as xr
 
     names = tuple(axes)
-    data = {name: (names, found[name].astype(np.int8)) for name in ("status", "slack_fiber", "stable")}
+    data = {name: (names, found[name].astype(np.int8)) for name in ("status", "stable")}
     scale, inside = output_scales(tube.design()), wall_volume_inside(tube.design())
     if tube.is_body:
         scale["mid_radius"], inside = tube.fiber_surface_at(0.5).item(), wall_volume_of_body(tube)
@@ -36,7 +37,10 @@ def dataset(tube, axes, stations, found, without=()):
     data |= found.get("extra", {})
     every = with_own(tube, stations)
     along = profiles(tube, found["fields"], found["values"], found["bounds"], every)
-    data |= {name: (names, array) for name, array in worst_places(tube, along, every, found["slack_fiber"]).items()}
+    worst = told(tube, worst_places(tube, along, every, found["slack_fiber"]))
+    along = told(tube, along)
+    data["slack_fiber"] = (names, told_slack(tube, found["slack_fiber"]).astype(np.int8))
+    data |= {name: (names, array) for name, array in worst.items()}
     data |= {name: ((*names, "x"), array[..., np.searchsorted(every, stations)]) for name, array in along.items()}
     coordinates = {name: ((name,), np.atleast_1d(value)) for name, value in axes.items()} | {"x": (("x",), stations)}
     single = {name for name, value in axes.items() if np.ndim(value) == 0}
@@ -73,7 +77,7 @@ def profiles(tube, fields, values, bounds, stations):
     half mirrors.
     """
     share = stations / tube.length
-    alpha, beta = tube.angles(share)
+    alpha, beta = tube.lines(share)
     r = tube.fiber_surface
     fields, whole = fields
     mirrored = (share > 0.5) & (not whole)

@@ -2,7 +2,7 @@
 
 Lengths by the fiber surface's radius r0, pressure by C10, force by pi r0^2 C10, torque by pi r0^3 C10. A problem is a row of
 ``solver.problem.PROBLEM_SIZE`` numbers: H, D, a, gamma, C01/C10, shear, f, m, Lambda, C20/C10, C30/C10; of a
-physical tube also the inner radius squared, 0 for a membrane, and whether fibers are loose.
+physical tube also the inner radius squared, 0 for a membrane, and which fibers there are and whether they may push.
 """
 
 import numpy as np
@@ -11,14 +11,14 @@ ACCURACIES = (1e-10, 1e-2)  # error bounds that may be asked for, scaled: below 
 OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius")  # order of the kernels' columns
 
 
-def problem_rows(design, energy, thick=False, loose=False) -> np.ndarray:
-    """Dimensionless problems (n, 11), or (n, 13) where the wall is ``thick`` or the fibers are ``loose``, of a ``design``:
-    name -> array (n,), in SI units and degrees, loads among them.
+def problem_rows(design, energy, thick=False, threads=0.0) -> np.ndarray:
+    """Dimensionless problems (n, 11), or (n, 13) where the wall is ``thick`` or the ``threads`` are not two bonded families
+    (:data:`.tube_model.THREADS`), of a ``design``: name -> array (n,), in SI units and degrees, loads among them.
     """
-    return np.column_stack(problem_columns(design, energy, thick, loose))
+    return np.column_stack(problem_columns(design, energy, thick, threads))
 
 
-def problem_columns(design, energy, thick=False, loose=False) -> tuple:
+def problem_columns(design, energy, thick=False, threads=0.0) -> tuple:
     """The columns of :func:`problem_rows`, in plain arithmetic: of arrays, or of dual numbers."""
     ta, tb = np.tan(np.radians(design["alpha"])), np.tan(np.radians(design["beta"]))
     r, c10 = design["fiber_radius"], design["c10"]
@@ -37,8 +37,8 @@ def problem_columns(design, energy, thick=False, loose=False) -> tuple:
         design.get("c20", 0.0) / c10,
         design.get("c30", 0.0) / c10,
     )
-    if thick or loose:
-        columns += ((inner / r) ** 2 * float(thick), 0.0 * area + float(loose))
+    if thick or threads:
+        columns += ((inner / r) ** 2 * float(thick), 0.0 * area + float(threads))
     return columns
 
 

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 
 BASE_CELLS = 96  # four times a sweep's: profiles are wanted as exact as scalars
 LOADS = ("force", "torque", "pressure")
+UNLOCKED = (
+    "tube: fibers of fewer than two angles leave the shape free, which grows with the pressure without end (line DF of"
+    " Figure 1-2): there is no locked shape; use inflate"
+)
 
 
 def lock(
@@ -45,6 +49,8 @@ def lock(
     """
     faults = []
     names = asked_of(tube, derivatives, faults)
+    if isinstance(tube, Actuator) and not tube.has_two_families:
+        faults.append(UNLOCKED)
     stations, accuracy = read_stations(tube, x, accuracy, faults)
     loads = {"force": 0.0, "torque": 0.0, "pressure": np.inf}
     result = _differentiated(_solve(tube, loads, stations, accuracy), tube, names, loads, accuracy)
@@ -120,7 +126,7 @@ def _solve(tube, loads, stations, accuracy):
     order = np.argsort(pressure)
     count, steps = len(force), len(pressure)
     design = {name: np.full(count, value) for name, value in tube.design().items()}
-    rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy, tube.is_thick, tube.is_loose)
+    rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy, tube.is_thick, tube.threads)
     whole, error = is_solved_whole(tube), 0.0
     if tube.varies:
         course, error = read_course(tube, accuracy)
@@ -168,12 +174,12 @@ def _solve(tube, loads, stations, accuracy):
 
 def is_solved_whole(tube):
     """Whether all of a tube is solved, and not its half up to a plane of symmetry: first integrals are the source's."""
-    return tube.varies or tube.is_thick or tube.is_loose
+    return tube.varies or tube.is_thick or tube.threads > 0.0
 
 
 def undeformed(tube, stations, whole):
     """Fields of the undeformed tube: stretch 1, the stations themselves, no twist, no tension, no error."""
-    alpha, beta = tube.angles(stations / tube.length)
+    alpha, beta = tube.lines(stations / tube.length)
     # half of a tube was solved: the far half's position is mirrored back later
     far = (stations > 0.5 * tube.length) & (not whole)
     near = np.where(far, tube.length - stations, stations) / tube.fiber_surface

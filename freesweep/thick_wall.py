@@ -1,13 +1,15 @@
 """What the thin wall leaves out: its effect on small deformations of the uniform tube.
 
 The model charges all of the wall with the strain at the fibers. Of a thick wall, which keeps its volume, the layer of the
-undeformed radius rho (in units of the fibers' radius) has at small strains, with L = tan(alpha) tan(beta) the axial strain
-per hoop strain at the fibers and H = (tan(alpha) + tan(beta))/2::
+undeformed radius rho (in units of the fibers' radius) has at small strains, with the axial strain e, the growth A of the
+cavity, half of its volume's strain, and the twist rate psi::
 
-    w(rho^2) ~ 4 A^2/rho^4 + 3 L^2 + 4 H^2 rho^2,   A = 1 + L/2     (the last term: shear of the twist, energy "full")
+    w(rho^2) ~ 4 A^2/rho^4 + 3 e^2 + psi^2 rho^2     (the last term: shear of the twist, energy "full")
 
-A pressure deforms the tube in inverse proportion to the sum of w over the wall; near the locked shape, which no wall
-changes, less is wrong.
+Each family of fibers holds ``e + t^2 (A - e/2) + t psi = 0``, t = tan(angle). Two leave one way to deform: with L =
+tan(alpha) tan(beta) and H = (tan(alpha) + tan(beta))/2 it is A = 1 + L/2, e = L, psi = 2 H per hoop strain at the fibers,
+and a pressure deforms the tube in inverse proportion to the sum of w over the wall. Fewer leave more: the pressure makes
+``2 p A - W`` largest. Near the locked shape, which no wall changes, less is wrong.
 """
 
 import numpy as np
@@ -23,12 +25,28 @@ THIN = 0.1  # of wall over radius: up to here the effect is that of other things
 
 
 def softer(alpha, beta, radius, wall, fiber_radius, energy):
-    """How much more a thick wall deforms at small pressure than a thin one, as a ratio [-]; angles [degree], lengths [m]."""
+    """How much more a thick wall deforms at small pressure than a thin one, as a ratio [-]; angles [degree], lengths [m].
+    NaN for a family that there is not, beta first.
+    """
     ta, tb = np.tan(np.radians(alpha)), np.tan(np.radians(beta))
     hoop, axial, shear = 4.0 * (1.0 + 0.5 * ta * tb) ** 2, 3.0 * (ta * tb) ** 2, (ta + tb) ** 2 * (energy == "full")
     inner, outer = (radius / fiber_radius) ** 2, ((radius + wall) / fiber_radius) ** 2
+    if np.all(np.isnan(beta)):
+        area = outer - inner
+        thin = growth(ta, area, area, area)
+        return growth(ta, 1.0 / inner - 1.0 / outer, area, 0.5 * (outer**2 - inner**2)) / thin
     thick = hoop * (1.0 / inner - 1.0 / outer) + axial * (outer - inner) + 0.5 * shear * (outer**2 - inner**2)
     return (outer - inner) * (hoop + axial + shear) / thick
+
+
+def growth(tangent, hoop, axial, shear):
+    """A per pressure of one family of fibers, or none (NaN): where ``2 p A - 4 A^2 hoop - 3 e^2 axial - psi^2 shear`` is
+    largest with ``e (1 - t^2/2) + A t^2 + psi t = 0``.
+    """
+    free = 1.0 / (4.0 * hoop)
+    coupled = tangent**2 / (4.0 * hoop)
+    held = tangent**4 / (4.0 * hoop) + (1.0 - 0.5 * tangent**2) ** 2 / (3.0 * axial) + tangent**2 / shear
+    return free - np.where(np.isnan(tangent), 0.0, coupled**2 / held)
 
 
 def thin_wall_attributes(tube) -> dict:
@@ -36,6 +54,8 @@ def thin_wall_attributes(tube) -> dict:
     if tube.is_thick:
         return {}
     alpha, beta = tube.angles(SHARE)
+    if not tube.has_two_families:  # the single one first
+        alpha, beta = np.where(np.isnan(alpha), beta, alpha), np.full(len(SHARE), np.nan)
     radius = tube.profile("radius").at(SHARE) if tube.is_body else tube.radius
     return attributes_of(alpha, beta, radius, tube.profile("wall").at(SHARE), tube.fiber_surface_at(SHARE), tube.energy)
 

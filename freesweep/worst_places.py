@@ -44,7 +44,7 @@ def worst_places(tube, profiles, stations, slack_fiber) -> dict:
 
 def _kinematics(tube, deformed_radius, alpha_deformed, beta_deformed, share):
     """``(meridional stretch, twist rate [1/m])`` from profiles [m, degree]."""
-    (ta, tb), (a, b) = np.tan(np.radians(tube.angles(share))), np.tan(np.radians([alpha_deformed, beta_deformed]))
+    (ta, tb), (a, b) = np.tan(np.radians(tube.lines(share))), np.tan(np.radians([alpha_deformed, beta_deformed]))
     surface = tube.fiber_surface_at(share)
     y = deformed_radius / surface
     meridional = y * (ta - tb) / (a - b)

@@ -96,6 +96,8 @@ class Measurement:
         faults = [] if isinstance(self.tube, Actuator) else [f"tube: found {described(self.tube)}; give an Actuator"]
         if isinstance(self.tube, Actuator) and self.tube.is_body:
             faults.append("tube: its radius varies; measurements are judged of tubes of one radius only")
+        elif isinstance(self.tube, Actuator) and not self.tube.has_two_families:
+            faults.append("tube: it has fewer than two families of fibers; measurements are judged of tubes with two")
         arrays = {"pressure": read_column("pressure", self.pressure, "Pa", faults, **DOMAINS["pressure"])}
         for name, units in COLUMNS.items():
             if getattr(self, name) is not None:

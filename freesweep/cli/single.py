@@ -39,7 +39,10 @@ def add_actuator(commands, name, text, run, rubber=True):
     command = commands.add_parser(name, help=text)
     for angle in ("alpha", "beta"):
         command.add_argument(
-            f"--{angle}", required=True, metavar="A", help="fiber angle from the axis, or 'geodesic 30 deg' of a body"
+            f"--{angle}",
+            required=True,
+            metavar="A",
+            help="fiber angle from the axis, 'none' without such a family, or 'geodesic 30 deg' of a body",
         )
     profile = ", or along x/l as '0:8mm,1:5mm' ('smooth 0:...': a spline)"
     for size, more in (("length", ""), ("radius", profile), ("wall", ", or 'constant volume 1.5 mm' of a body")):
@@ -99,14 +102,15 @@ def tube_of(options):
 
 
 def _along(name, text, faults):
-    """What a text says that varies along the tube: pairs "0:8mm,1:5mm", smooth if that is said before, or a rule as it is
-    given; None of a number. Faults are noted.
+    """What a text says that varies along the tube: pairs "0:8mm,1:5mm", smooth if that is said before, a rule or that there
+    is no such family as it is given; None of a number. Faults are noted.
     """
     from ..atlas.schema import PARAMETERS
     from ..description.along import Profile, rule_of
+    from ..description.families import FAMILIES, is_none
     from ..description.units import quantity
 
-    if rule_of(name, text):
+    if rule_of(name, text) or (name in FAMILIES and is_none(text)):
         return text
     if ":" not in text:
         return None

@@ -57,6 +57,12 @@ def asked_of(tube, value, faults, loads=(), held=None):
             "derivatives: found a radius that varies; they are known of tubes of one radius only, leave them out"
         )
         return ()
+    if not tube.has_two_families:
+        faults.append(
+            "derivatives: found fibers of fewer than two angles; they are known of tubes with two families only, leave them"
+            " out"
+        )
+        return ()
     return read_derivatives(value, parameters(tube, loads, held), faults)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from .along import Profile as Given
 from .along import rule_of, written
 from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
+from .families import FAMILIES, followed, given_by, is_none, is_one, threads
 from .faults import ActuatorError
 from .given import numbers, read_number
 from .options import read_choice
@@ -16,7 +17,7 @@ from .profiles import Along as AlongTube
 from .profiles import ProfileError, as_profile, is_profile, together
 from .quantities import Along, Quantities, Quantity
 from .revolution import resolved
-from .tube_model import DEFAULT, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
+from .tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
 from .unit_warnings import doubts, warn_of
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
@@ -35,6 +36,8 @@ def _read_along(name, value, unit, faults):
     if text := rule_of(name, value):
         number = read_number(name, text, unit, faults, positive=positive)
         return None if number is None else written(name, number, unit)
+    if name in FAMILIES and is_none(value):
+        return None
     if not is_profile(value):
         return read_number(name, value, unit, faults, positive=positive)
     try:
@@ -65,7 +68,8 @@ class Actuator:
     alpha, beta : fiber angles from the axis [degree], between -90 and 90, at least 0.5 apart; a number, or a profile
         along the tube: pairs ``[(x/l, angle), ...]`` (a repeated x/l is a jump), a callable of x/l (array in, array out), or
         ``Profile(pairs, smooth=True)``, a spline through pairs. On a body of revolution also "geodesic 30 deg": the winding
-        of that angle at x = 0 that does not slip (Clairaut)
+        of that angle at x = 0 that does not slip (Clairaut). None, or "none": there is no such family; a tube without both
+        is a balloon. Loose fibers may also have one angle: two families that are one
     length, radius : undeformed length, inner radius [m]; numbers, texts with units ("4.76 mm") or what carries units. The
         radius may be a profile over x/l along the axis, which may bend but not jump: a body of revolution
     wall : wall thickness [m], number or profile; of a body also "constant volume 1.5 mm": the section stays that at x = 0
@@ -77,8 +81,9 @@ class Actuator:
     fiber_radius : "inner", "middle", "outer" (of a wall that varies, where it is thinnest), or the radius at which the
         fibers lie [m], from the inner to the outer one; None: as the model has it
     wall_model : "thick": each layer of the wall is strained by itself; "membrane": all of it as at the fibers; or None
-    fibers : "loose": threads, which cannot push; "bonded": fibers that push where they have to; or None
-    energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed, for bonded fibers only
+    fibers : "loose": threads, which cannot push; "bonded": fibers that push where they have to; or None. A single family,
+        too, is one or the other
+    energy : "full": the wall is sheared by the twist; "principal": Eq. 2.5 as printed, for two bonded families only
 
     Raises :class:`ActuatorError`, which lists every fault. Warns of what looks like a slip of units, and where the wall is
     thicker than the radius. Equal actuators have equal hashes; callables are equal if they are the same.
@@ -102,8 +107,8 @@ class Actuator:
         def __init__(
             self,
             *,
-            alpha: Along,
-            beta: Along,
+            alpha: Along | None,
+            beta: Along | None,
             length: Quantity,
             radius: Along,
             wall: Along,
@@ -152,8 +157,9 @@ class Actuator:
                 faults = [f"alpha, beta, wall, radius: {error}"]
         if faults:
             raise ActuatorError(faults)
-        varying = VARYING if self.is_body else ("alpha", "beta", "wall")
-        numbers = self.design() | {name: self.profile(name).samples() for name in varying}
+        varying = [name for name in VARYING if getattr(self, name) is not None and (self.is_body or name != "radius")]
+        without = dict.fromkeys((name for name in FAMILIES if getattr(self, name) is None), 0.0)
+        numbers = self.design() | without | {name: self.profile(name).samples() for name in varying}
         own = {name: numbers[name] for name in (*VARYING, "length", "c10")}
         if self.is_body:
             own["thickness"] = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY)
@@ -207,7 +213,8 @@ class Actuator:
             self.length, self.material, self.fiber_extension, self.fiber_radius, self.energy, self.model, self.wall_model,
             self.fibers,
         )  # fmt: skip
-        varying = tuple(tuple(self.profile(name).at(HASHED).tolist()) for name in VARYING)
+        profiles = [self.profile(name) for name in VARYING if getattr(self, name) is not None]
+        varying = (given_by(self), *(tuple(profile.at(HASHED).tolist()) for profile in profiles))
         return hash((*fields, varying))
 
     def _repr_html_(self):
@@ -217,24 +224,15 @@ class Actuator:
 
     def _impossible(self):
         """Faults of numbers that are each fine alone."""
-        alpha, beta = together(self.profile("alpha"), self.profile("beta"))
         faults = [
             f"{name}: found {angle[np.argmax(np.abs(angle))]:g} degree; it has to lie between -90 and 90, both excluded"
-            for name, angle in (("alpha", alpha), ("beta", beta))
+            for name, angle in ((name, self.profile(name).samples()) for name in given_by(self))
             if not np.all(np.abs(angle) < LARGEST_ANGLE)
         ]
-        closest = np.argmin(np.abs(alpha - beta))
-        if alpha[closest] == beta[closest]:
-            faults.append(
-                f"alpha, beta: both are {alpha[closest]:g} degree (line DF of Figure 1-2): one fiber family leaves the shape"
-                f" free; choose angles at least {SMALLEST_DIFFERENCE:g} degree apart"
-            )
-        elif abs(alpha[closest] - beta[closest]) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
-            faults.append(
-                f"alpha, beta: {alpha[closest]:g} and {beta[closest]:g} degree are less than {SMALLEST_DIFFERENCE:g} degree"
-                " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"
-                " keep alpha above beta all along, or below"
-            )
+        if len(followed(self)) < 2:
+            faults += [FEW_PRINCIPAL] * (self.energy == "principal")
+        if len(given_by(self)) == 2 and not (self.is_loose and is_one(self)):
+            faults += self._too_close()
         if self.is_body:
             if isinstance(self.fiber_radius, float):
                 faults.append(
@@ -248,12 +246,30 @@ class Actuator:
                 f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
                 f" {self.radius:g} to {outer:g} m"
             )
-        if not faults and not self.clamped_stretch() > 0.0:
+        if not faults and len(followed(self)) == 2 and not self.clamped_stretch() > 0.0:
             faults.append(
                 f"fiber_extension: with {self.fiber_extension:g} these fibers cannot meet the clamped ends, whose radius"
                 " stays; reduce it or the angles"
             )
         return faults
+
+    def _too_close(self):
+        """Faults of two families that are nearly one somewhere."""
+        alpha, beta = together(self.profile("alpha"), self.profile("beta"))
+        closest = np.argmin(np.abs(alpha - beta))
+        if alpha[closest] == beta[closest]:
+            return [
+                f"alpha, beta: both are {alpha[closest]:g} degree (line DF of Figure 1-2): one fiber family leaves the"
+                f" locked shape free; choose angles at least {SMALLEST_DIFFERENCE:g} degree apart, or beta=None, or loose"
+                " fibers that share the angle all along"
+            ]
+        if abs(alpha[closest] - beta[closest]) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
+            return [
+                f"alpha, beta: {alpha[closest]:g} and {beta[closest]:g} degree are less than {SMALLEST_DIFFERENCE:g} degree"
+                " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"
+                " keep alpha above beta all along, or below"
+            ]
+        return []
 
     def clamped_stretch(self) -> float:
         """Squared meridional stretch at the clamped ends [-] (G at y = 1): positive if the fibers can meet them."""
@@ -270,7 +286,8 @@ class Actuator:
         return is_profile(self.radius)
 
     def angles(self, share: Quantities) -> tuple[Any, Any]:
-        """Both fiber angles [degree] at shares x/l of the length, 0 to 1; on a jump the left ones.
+        """Both fiber angles [degree] at shares x/l of the length, 0 to 1; on a jump the left ones. NaN where there is no
+        such family.
 
         Raises :class:`ActuatorError`.
         """
@@ -280,19 +297,31 @@ class Actuator:
             raise ActuatorError([f"share: {error}"]) from None
         if not np.all((share >= 0.0) & (share <= 1.0)):
             raise ActuatorError(["share: a place x/l lies beyond the tube; give numbers from 0 to 1"])
-        return self.profile("alpha").at(share), self.profile("beta").at(share)
+        return tuple(
+            np.full(np.atleast_1d(share).shape, np.nan) if getattr(self, name) is None else self.profile(name).at(share)
+            for name in FAMILIES
+        )
+
+    def lines(self, share: Quantities) -> tuple[Any, Any]:
+        """Angles [degree] of the lines that the solver follows: the fibers, where there are two families of them
+        (:mod:`freesweep.description.families`).
+        """
+        own = resolved(self)
+        return own.first.at(share), own.second.at(share)
 
     def profile(self, name: str) -> AlongTube:
         """Fiber angle [degree], wall or inner radius [m] along the tube, as
         :class:`freesweep.description.profiles.Along`, numbers too.
 
-        ``name`` is "alpha", "beta", "wall" or "radius". Raises :class:`ActuatorError`.
+        ``name`` is "alpha", "beta", "wall" or "radius". Raises :class:`ActuatorError`, also of a family that there is not.
         """
         faults = []
         if read_choice("name", name, VARYING, faults) is None:
             raise ActuatorError(faults)
         value = getattr(self, name)
-        return getattr(resolved(self), name) if rule_of(name, value) else as_profile(value, VARYING[name])
+        if value is None:
+            raise ActuatorError([f"name: this tube has no fibers of the family {name}"])
+        return resolved(self).named(name) if rule_of(name, value) else as_profile(value, VARYING[name])
 
     @property
     def fiber_surface(self) -> float:
@@ -323,9 +352,21 @@ class Actuator:
         """Whether the fibers are threads, which cannot push."""
         return (self.fibers or MODELS[self.model].fibers) == "loose"
 
+    @property
+    def threads(self) -> float:
+        """What families of fibers there are and whether they may push, as the solver takes it."""
+        return threads(self)
+
+    @property
+    def has_two_families(self) -> bool:
+        """Whether fibers of two angles hold the wall; fewer leave the locked shape free."""
+        return len(followed(self)) == 2
+
     def design(self) -> dict[str, float]:
-        """The numbers that a sweep would vary: name -> value in SI units and degrees; of a profile, the middle's."""
-        alpha, beta = self.angles(0.5)
+        """The numbers that a sweep would vary: name -> value in SI units and degrees; of a profile, the middle's; with fewer
+        than two families the angles of :meth:`lines`.
+        """
+        alpha, beta = self.lines(0.5)
         return {
             "alpha": alpha.item(),
             "beta": beta.item(),

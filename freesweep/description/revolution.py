@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .along import rule_of
+from .families import followed, other_line
 from .given import numbers
 from .profiles import Along, ProfileError, as_profile, is_profile
 
@@ -32,10 +33,13 @@ class Derived(Along):
 
 
 class Resolved(NamedTuple):
-    """All that varies along a tube, [degree] and [m]; ``fibers`` is the radius at which they lie, None of a tube."""
+    """All that varies along a tube, [degree] and [m]: the lines that the solver follows, of which some are ``families``,
+    wall and inner radius; ``fibers`` is the radius at which they lie, None of a tube.
+    """
 
-    alpha: Along
-    beta: Along
+    families: tuple
+    first: Along
+    second: Along
     wall: Along
     radius: Along
     fibers: Along | None
@@ -44,11 +48,17 @@ class Resolved(NamedTuple):
     @property
     def profiles(self):
         """Those whose bends and jumps count."""
-        return (self.alpha, self.beta, self.wall) + ((self.radius,) if self.fibers else ())
+        return (self.first, self.second, self.wall) + ((self.radius,) if self.fibers else ())
+
+    def named(self, name) -> Along:
+        """That of the parameter ``name``; the second of two families of one angle is the first."""
+        if name in ("wall", "radius"):
+            return getattr(self, name)
+        return self.second if self.families[1:] == (name,) else self.first
 
     def numbers(self, low, high, share):
         """H, D, the section over the squared fiber radius, (3, n); of a body R, dR/dx and the inner radius squared, too."""
-        ta, tb = (np.tan(np.radians(angle.within(low, high, share))) for angle in (self.alpha, self.beta))
+        ta, tb = (np.tan(np.radians(angle.within(low, high, share))) for angle in (self.first, self.second))
         length, reference, thick = self.scale
         inner, wall = self.radius.within(low, high, share), self.wall.within(low, high, share)
         surface = reference if self.fibers is None else self.fibers.within(low, high, share)
@@ -74,9 +84,12 @@ def resolved(tube) -> Resolved:
         else:
             inside = part * float(np.min(wall.samples())) if part else 0.0
             fibers = Derived(lambda low, high, share: radius.within(low, high, share) + inside, [radius], radius.slope)
-    alpha, beta = (_angle(name, getattr(tube, name), fibers) for name in ("alpha", "beta"))
+    families = followed(tube)
+    lines = [_angle(name, getattr(tube, name), fibers) for name in families] or [as_profile(0.0, "degree")]
+    if len(lines) == 1:
+        lines.append(_beside(lines[0]))
     reference = float(fibers.at(0.0)[0]) if body else tube.fiber_surface
-    return Resolved(alpha, beta, wall, radius, fibers, (tube.length, reference, body and tube.is_thick))
+    return Resolved(families, *lines, wall, radius, fibers, (tube.length, reference, body and tube.is_thick))
 
 
 def _wall(value, radius):
@@ -116,6 +129,15 @@ def _angle(name, value, fibers):
         return np.degrees(np.arcsin(sine))
 
     return Derived(angle, [fibers])
+
+
+def _beside(line):
+    """The second line of a tube with fewer than two families."""
+
+    def angle(low, high, share):
+        return np.degrees(np.arctan(other_line(np.tan(np.radians(line.within(low, high, share))))))
+
+    return Derived(angle, [line])
 
 
 def wall_volume_inside(tube) -> float:

@@ -43,7 +43,7 @@ def warn_beyond_range(tube, result, stacklevel):
     """
     rubber = tube.material
     known = np.inf if rubber.largest_stretch is None else rubber.largest_stretch
-    convex = float(convex_to(rubber.c10, rubber.c20, rubber.c30))
+    convex = float(convex_to(rubber.c10, rubber.c20, rubber.c30)) if tube.has_two_families else np.inf
     if known < np.inf and (reached := _reached(tube, result, largest_stretch)) > known:
         warnings.warn(
             f"the wall is stretched {reached:.3g} times, but the constants of its material are known to hold to {known:.3g}",
@@ -58,7 +58,12 @@ def warn_beyond_range(tube, result, stacklevel):
 
 
 def _reached(tube, result, measure):
-    """The largest ``measure`` of the strain of any state of a Dataset, at half length or a station."""
+    """The largest ``measure`` of the strain of any state of a Dataset, at half length or a station; of a tube whose fibers
+    do not decide it alone the largest stretch of its layers.
+    """
+    if not tube.has_two_families:
+        stretch = result["largest_stretch"].values
+        return float(np.max(stretch, initial=0.0, where=np.isfinite(stretch)))
     reached = 0.0
     at_middle, share = [angle.item() for angle in tube.angles(0.5)], result["x"].values / tube.length
     for name, angles, place in (("mid_radius", at_middle, 0.5), ("deformed_radius", tube.angles(share), share)):

@@ -38,10 +38,23 @@ MODELS = {
     "source": TubeModel("inner", "membrane", "bonded"),
 }
 DEFAULT = "source"
+# by how many families there are, and what they are: as the solver takes it (:mod:`freesweep.solver.physics.wall`)
+THREADS = {
+    (2, "bonded"): 0.0,
+    (2, "loose"): 1.0,
+    (1, "loose"): 2.0,
+    (1, "bonded"): 3.0,
+    (0, "loose"): 4.0,
+    (0, "bonded"): 4.0,
+}
 ATTRIBUTES = dict(zip(TubeModel._fields, ("fiber_place", "wall_model", "fibers")))  # by which atlases tell the parts
 LOOSE_PRINCIPAL = (
     "energy, fibers: 'principal' charges a twist nothing, so loose fibers would leave it open; choose energy='full', or"
     " fibers='bonded'"
+)
+FEW_PRINCIPAL = (
+    "energy, alpha, beta: 'principal' charges a twist nothing, so fewer than two families would leave it open; choose"
+    " energy='full'"
 )
 
 

@@ -54,7 +54,7 @@ def _of_design(alpha, beta, length, radius, wall, c10, thickness):
     if thickness.max() < THINNEST:
         found.append(f"the wall is only {wall.max():g} m for a radius of {radius.min():g} m; {HINT}")
     steepest = max(np.abs(alpha).max(), np.abs(beta).max())
-    if steepest < RADIANS:
+    if 0.0 < steepest < RADIANS:
         found.append(f"no fiber angle exceeds {steepest:g} degree, as if they were radians; {HINT}")
     if c10.max() < SOFTEST or c10.min() > HARDEST:
         found.append(f"no rubber has a c10 of {c10.max():g} Pa; {HINT}")

@@ -127,6 +127,9 @@ def read(template, free, faults):
     if template.is_body:
         faults.append("template: its radius varies; designs are looked for among tubes of one radius")
         return None
+    if not template.has_two_families:
+        faults.append("template: it has fewer than two families of fibers; designs are looked for among tubes with two")
+        return None
     if not isinstance(free, dict) or not free:
         faults.append(
             f"free: found {described(free)}; give a dict such as {{'alpha': (0, 85), 'radius': (3e-3, 12e-3)}}"

@@ -15,6 +15,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from ..description.actuator import Actuator
+from ..description.families import FAMILIES
 from . import style
 
 SLANT = 0.34  # half width of an ellipse over its half height
@@ -47,10 +48,14 @@ def shape_of(tube: Actuator, state=None) -> Shape:
     share = np.linspace(0.0, 1.0, FINE)
     turns, surface = [], tube.fiber_surface_at(share)
     along = np.hypot(tube.length, np.gradient(surface, share)) if tube.is_body else tube.length
-    for angles in tube.angles(share):
+    drawn = [np.nan_to_num(angles) for angles in tube.angles(share)]
+    for angles in drawn:
         slope = np.tan(np.radians(angles)) * along / surface
         turns.append(np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * np.diff(share))]))
-    counts = tuple(max(2, round(FIBERS * np.cos(np.radians(np.abs(angles)).mean()))) for angles in tube.angles(share))
+    counts = tuple(
+        max(2, round(FIBERS * np.cos(np.radians(np.abs(angles)).mean()))) if getattr(tube, family) is not None else 0
+        for family, angles in zip(FAMILIES, drawn)
+    )
     if state is None:
         return Shape(
             np.broadcast_to(surface * MM, FINE), share * tube.length * MM, np.zeros(FINE), tuple(turns), counts

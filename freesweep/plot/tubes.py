@@ -84,6 +84,9 @@ def _name_families(ax, tube, right, height):
     """The angles of both families in their colours, at the right."""
     words = []
     for name, angles in zip((r"$\alpha$", r"$\beta$"), tube.angles(np.linspace(0.0, 1.0, 257))):
+        if np.all(np.isnan(angles)):
+            words.append("")
+            continue
         first, last = (f"{round(angle, 1) + 0.0:g}°".replace("-", "\N{MINUS SIGN}") for angle in angles[[0, -1]])
         words.append(f"{name} = {first}" if np.ptp(angles) == 0.0 else f"{name} from {first} to {last}")
     beta = ax.text(right, height, words[1], color=style.BEFORE[1], ha="right", gid="family")

@@ -10,7 +10,7 @@ from .along.profile import FIELDS
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
-from .problem import LOOSE, MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, YEOH, wall_columns
+from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
 from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
@@ -147,7 +147,7 @@ def _kinds(problems):
     if wall_columns(problems) == PHYSICAL:
         count = np.empty(len(problems), np.int64)
         count_layers(problems, PHYSICAL, count)
-        kinds = np.column_stack([kinds, count, problems[:, LOOSE] > 0.0])
+        kinds = np.column_stack([kinds, count, problems[:, THREADS]])
     for kind in np.unique(kinds, axis=0):
         some, constants = np.all(kinds == kind, axis=1), (YEOH if kind[0] else MOONEY_RIVLIN)
         if len(kind) == 1:

@@ -4,8 +4,8 @@ from ..jit import kernel
 
 PROBLEM_SIZE = 11
 H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH, SECOND, THIRD = range(PROBLEM_SIZE)
-INNER, LOOSE = PROBLEM_SIZE, PROBLEM_SIZE + 1  # of physical tubes only
-SOURCE, PHYSICAL = (SHEAR,), (SHEAR, INNER, LOOSE)  # columns of a wall
+INNER, THREADS = PROBLEM_SIZE, PROBLEM_SIZE + 1  # of physical tubes only; the threads as in :mod:`wall`
+SOURCE, PHYSICAL = (SHEAR,), (SHEAR, INNER, THREADS)  # columns of a wall
 MOONEY_RIVLIN, YEOH = (RATIO,), (RATIO, SECOND, THIRD)  # columns of a rubber's constants, over C10
 
 
@@ -22,7 +22,7 @@ def wall_columns(problems):
 
 @kernel
 def wall_of(problem, columns):
-    """What :mod:`.physics.lagrangian` takes as a wall: (k,), or (k, inner, loose)."""
+    """What :mod:`.physics.lagrangian` takes as a wall: (k,), or (k, inner, threads)."""
     if len(columns) == 1:
         return (problem[columns[0]],)
     return problem[columns[0]], problem[columns[1]], problem[columns[2]]

@@ -1,6 +1,7 @@
 """Status of one equilibrium as the kernels write it; ``freesweep.status`` holds the sentences for people."""
 
 OK = 0
+DEGENERATE = 1
 BEYOND_LIMIT = 2
 COMPRESSED = 3
 HELD_IMPOSSIBLE = 4

@@ -35,6 +35,7 @@ import numpy as np
 
 from ..atlas.schema import HELD, PARAMETERS, YEOH
 from ..description.actuator import ENERGIES, SMALLEST_DIFFERENCE
+from ..description.families import FAMILIES, is_none
 from ..description.profiles import as_profile, together
 from ..description.tube_model import DEFAULT, FIBER_PLACES, MODELS, TubeModel, word_faults
 from ..description.units import shown
@@ -48,6 +49,10 @@ __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
 VARYING = ("alpha", "beta", "wall", "radius")  # may be profiles along the tube
 WORDS = ("energy", "model", "wall_model", "fibers")  # of [actuator]
+ONLY_TWO = (
+    "is none, but a sweep's tubes have two families of fibers: their angles are what an atlas is asked by; freesweep inflate"
+    " and fs.inflate solve tubes with one family, or none"
+)
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
 
 
@@ -204,7 +209,9 @@ def _fixed(faults, tables, given):
         for name in own:
             if name in table and not (name == "fiber_radius" and _is_place(table[name])):
                 given[name] = f"{section}.{name}"
-                if name in VARYING and isinstance(table[name], list):
+                if name in FAMILIES and is_none(table[name]):
+                    faults.add(given[name], ONLY_TWO)
+                elif name in VARYING and isinstance(table[name], list):
                     profiles[name] = axis.profile(faults, given[name], name, table[name])
                 else:
                     fixed[name] = axis.value(faults, given[name], name, table[name])

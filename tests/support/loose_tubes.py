@@ -59,14 +59,16 @@ def _symbolic():
 
 class Tube:
     """A tube of fiber angles [degree], ``length`` and the wall ``inner`` to ``outer`` (rho_i, rho_o) in radii of the fiber
-    surface; a membrane of area ``area`` where that is given. ``rubber`` is C01, C20, C30 over C10.
+    surface; a membrane of area ``area`` where that is given. ``rubber`` is C01, C20, C30 over C10. Of a family that is not
+    ``there``, (alpha, beta), the constraint is left out: its multiplier is 0.
     """
 
     def __init__(
-        self, alpha, beta, length, *, inner=None, outer=None, area=None, rubber=(0, 0, 0), gamma=1.0, loose=True
-    ):
+        self, alpha, beta, length, *, inner=None, outer=None, area=None, rubber=(0, 0, 0), gamma=1.0, loose=True,
+        there=(True, True),
+    ):  # fmt: skip
         self.ta, self.tb = np.tan(np.radians([alpha, beta]))
-        self.length, self.rubber, self.gamma, self.loose = length, rubber, gamma, loose
+        self.length, self.rubber, self.gamma, self.loose, self.there = length, rubber, gamma, loose, there
         if area is not None:
             self.layers = [(area, 1.0)]
         else:
@@ -142,7 +144,10 @@ class Tube:
                         add(index[k], index[j], value)
                 for family, (mu, gap) in enumerate(zip((a, b), gaps)):
                     row, g = where[4 + family], gap[0]
-                    if self.loose:
+                    if not self.there[family]:
+                        R[row], slope = mu, np.zeros(n)
+                        add(row, row, np.ones(n))
+                    elif self.loose:
                         root = np.sqrt((mu / unit) ** 2 + g**2) + 1e-300
                         R[row] = root - mu / unit + g
                         add(row, row, (mu / (unit * root) - 1) / unit)

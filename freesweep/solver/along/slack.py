@@ -4,7 +4,7 @@ from ...jit import kernel
 from ..cells import cell_at
 from ..numerics.properties_along import at_point, fill
 from ..physics import lagrangian
-from ..physics.wall import is_loose
+from ..physics.wall import has_any_family, has_two_families, may_go_slack
 from .axial import axial_stretch, flux_at, is_alike
 
 NOTHING = 1e-300  # the multiplier of a slack family is 0
@@ -14,9 +14,12 @@ TENSIONLESS_END = 1e-4  # at the clamped end of a tube that varies, whose flux i
 
 @kernel
 def pushing(alpha, beta, share, load):
-    """Bit 1: the alpha family, of this multiplier, would have to push at a place, or is slack; bit 2: the beta family."""
-    least = NOTHING if is_loose(load[2]) else -share * (load[3] + abs(load[4]))
-    return (1 if alpha < least else 0) | (2 if beta < least else 0)
+    """Bit 1: the alpha family, of this multiplier, would have to push at a place, or is slack; bit 2: the beta family. What
+    is not there is not slack.
+    """
+    wall = load[2]
+    least = NOTHING if may_go_slack(wall) else -share * (load[3] + abs(load[4]))
+    return (1 if has_any_family(wall) and alpha < least else 0) | (2 if has_two_families(wall) and beta < least else 0)
 
 
 @kernel

@@ -13,7 +13,7 @@ from ..numerics.continuation import CHANGE, FIRST_STEP, advance, is_flat, is_sta
 from ..numerics.path import Track, load_at, size_of
 from ..numerics.properties_along import fill
 from ..physics import lagrangian
-from ..physics.wall import is_loose
+from ..physics.wall import may_go_slack
 
 COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
 FALLING, SMALL = 0.5, 1e-7  # of the change from mesh to mesh, and of the load: else no order is seen
@@ -136,7 +136,8 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     least = SMALL * abs(third)  # where rounding counts, nothing need fall
     estimate = max(abs(third - second), abs(second - first))
     if changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least:
-        order, before = (1.0, 4.0) if is_loose(path.origin[2]) else (15.0, 225.0)  # as in nested.extrapolate
+        smooth = not may_go_slack(path.origin[2])
+        order, before = (15.0, 225.0) if smooth else (1.0, 4.0)  # as in nested.extrapolate
         estimate = max(abs(third - second) / order, abs(second - first) / before)
     if not estimate < AGREED * abs(third):
         return np.nan, 0.0

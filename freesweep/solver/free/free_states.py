@@ -19,9 +19,9 @@ from ..numerics.path import NOTHING, Path
 from ..numerics.properties_along import Tube, make_cells, of_problems, seat, volume
 from ..numerics.shapes import differ, extremes
 from ..physics import lagrangian
-from ..physics.wall import is_loose
+from ..physics.wall import has_two_families, may_go_slack
 from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
-from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
+from ..status import BEYOND_LIMIT, COMPRESSED, DEGENERATE, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from .branch import begin, follow, guess
 from .fold import FINEST
 from .meshes import stand
@@ -32,13 +32,13 @@ FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for wh
 
 
 @kernel
-def settle(problem, tube, rows):
+def settle(problem, wall, tube, rows):
     """Write the rows that need no solving."""
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
     clamped, half = 1.0, (1.0 if tube.half else 0.5) * tube.places[len(tube.places) - 1]
     for end in range(2):
         cell = guide.cell_along(tube, 1.0 * end)
-        clamped = min(clamped, 1.0 + lagrangian.kinematics(1.0, cell, (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3])
+        clamped = min(clamped, lagrangian.clamped(cell, gamma, wall))
     for i in range(len(rows.pressures)):
         p = rows.pressures[i]
         if rows.status[i] != PENDING:
@@ -46,6 +46,8 @@ def settle(problem, tube, rows):
         blank(rows, i)
         if not (p >= 0.0 and clamped > 0.0):
             rows.status[i] = INVALID
+        elif p == np.inf and not has_two_families(wall):
+            rows.status[i] = DEGENERATE
         elif p == 0.0 and f == 0.0 and m == 0.0:
             rows.status[i] = OK
             for k in range(5):
@@ -117,7 +119,7 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
             status, doublings = cold(space, tube, load, accuracy)
             if status == NOT_CONVERGED:
                 rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0, is_loose(load[2]), NOTHING)
+                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0, may_go_slack(load[2]), NOTHING)
                 found, _, middle = settle_loads(way, track, roomy, space, tube, rows, limit, accuracy)
                 if found == OK:
                     for k in range(len(space.x)):
@@ -169,7 +171,7 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
     """All states of one design; rows whose status is not PENDING are passed over. ``settled`` is its settling pressure,
     ``limit`` (2,) takes the limit pressure and its bound, if one is met. Rows: see :func:`follow_many`.
     """
-    settle(problem, tube, rows)
+    settle(problem, wall_of(problem, walls), tube, rows)
     lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy)
     least, most = np.inf, -1.0
     for i in range(len(rows.pressures)):
@@ -181,7 +183,7 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
     rubber, wall = rubber_of(problem), wall_of(problem, walls)
     rest, pressure = (1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     if f == 0.0 and m == 0.0 and gamma == 1.0:
-        path = Path(rest, pressure, 0.0, is_loose(wall), NOTHING)
+        path = Path(rest, pressure, 0.0, may_go_slack(wall), NOTHING)
         status, mu, tangent_mu = begin(track, space, tube, path)
         if status == FOLLOWED:
             first_states(path, mu, tube, space, rows, accuracy)
@@ -193,9 +195,9 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
             )
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
-    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0, is_loose(wall), NOTHING)
+    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0, may_go_slack(wall), NOTHING)
     path, n = (
-        Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0), is_loose(wall), NOTHING),
+        Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0), may_go_slack(wall), NOTHING),
         len(track.x) - 1,
     )
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)

@@ -7,7 +7,7 @@ from .. import guide
 from ..numerics import nested
 from ..numerics.properties_along import Tube, of_problems, seat, turns
 from ..physics import lagrangian
-from ..problem import FORCE, GAMMA, LENGTH, TORQUE
+from ..problem import FORCE, GAMMA, LENGTH, TORQUE, wall_of
 from ..status import HELD_IMPOSSIBLE, INACCURATE, INVALID, OK, PENDING
 from .held_states import cells_for, find_on_some_mesh
 from .sought import HELD_LENGTH
@@ -38,11 +38,10 @@ def block_many(
             own_places[1] = 0.5 * problems[k, LENGTH]
             seat(own_course, problems[k])
         tube = Tube(own_course, edges, cells, not varying, middle, own_places)
-        rest = (problems[k, GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         clamped = 1.0
         for end in range(2):
-            stretch = lagrangian.kinematics(1.0, guide.cell_along(tube, 1.0 * end), rest)[3]
-            clamped = min(clamped, 1.0 + stretch)
+            cell = guide.cell_along(tube, 1.0 * end)
+            clamped = min(clamped, lagrangian.clamped(cell, problems[k, GAMMA], wall_of(problems[k], walls)))
         rotates = kind == HELD_LENGTH or turns(own_course)
         other = problems[k, TORQUE] if kind == HELD_LENGTH else problems[k, FORCE]
         undeformed = targets[k] == (problems[k, LENGTH] if kind == HELD_LENGTH else 0.0)

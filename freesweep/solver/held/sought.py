@@ -90,7 +90,7 @@ def refused(load, target, kind, tube):
     if course.shape[0] == 1 and lagrangian.conjugate(1.0, 0.0, cell, load, unit_of(kind, 1.0))[1] == 0.0:
         return HELD_IMPOSSIBLE
     if kind == HELD_LENGTH and not varies:
-        if target > (1.0 + LONGER) * places[len(places) - 1] * lagrangian.longest(cell, load[0]):
+        if target > (1.0 + LONGER) * places[len(places) - 1] * lagrangian.longest(cell, load[0], load[2]):
             return HELD_IMPOSSIBLE
     if kind == HELD_ROTATION and not load[3] + load[4] > 0.0:  # at the clamped ends
         return COMPRESSED

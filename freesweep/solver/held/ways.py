@@ -19,7 +19,7 @@ from ..numerics.path import NOTHING, Held, Path, Track, load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
 from ..physics import lagrangian
-from ..physics.wall import is_loose
+from ..physics.wall import may_go_slack
 from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
@@ -73,20 +73,20 @@ def held_at(unit, first, last, allowed):
 def rising(load, what):
     """Pressure, the other load and fiber extension - 1 rise in proportion."""
     direction = (load[0] - 1.0, 0.0, 0.0, load[3], load[4], load[5], 0.0)
-    return Path(at_rest(load), direction, 0.0, is_loose(load[2]), what)
+    return Path(at_rest(load), direction, 0.0, may_go_slack(load[2]), what)
 
 
 @kernel
 def moving(load, what):
     """What is held moves to its target."""
-    return Path(load, NO_LOAD, 1.0, is_loose(load[2]), what)
+    return Path(load, NO_LOAD, 1.0, may_go_slack(load[2]), what)
 
 
 @kernel
 def falling(start, load, what):
     """The pressure falls."""
     direction = (0.0, 0.0, 0.0, load[3] - start[3], 0.0, 0.0, 0.0)
-    return Path(start, direction, 1.0, is_loose(load[2]), what)
+    return Path(start, direction, 1.0, may_go_slack(load[2]), what)
 
 
 @kernel

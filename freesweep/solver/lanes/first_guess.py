@@ -8,7 +8,7 @@ from ...jit import kernel
 from ..guide import FAR_FROM, STRAY
 from ..physics import lagrangian
 from ..physics.uniform_tube import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
-from ..physics.wall import is_loose
+from ..physics.wall import leaves_choice, may_go_slack
 from .vector import HUGE, get, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
@@ -44,7 +44,7 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
     risen, least, most = asked, spread(HUGE), spread(0.0)
     first, second = spread(0.0), spread(0.0)
     drawn, before, after = lagrangian.drawn_in(cell, end), between(start, end, low), between(start, end, high)
-    bent = asked if is_loose(end[2]) else asked & (abs(end[0] - start[0]) > 0.0)
+    bent = asked if leaves_choice(end[2]) else asked & (abs(end[0] - start[0]) > 0.0)
     i = 0
     while True:
         within = asked & (samples + 1.0 > i)
@@ -61,7 +61,7 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
         far = L_yy * half * half < FAR * FAR * L_vv
         slope = -L_yy
         risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
-        if i >= 2 and not is_loose(end[2]):
+        if i >= 2 and not may_go_slack(end[2]):
             dips = within & (second < first) & (second < slope)
             bend = first - 2.0 * second + slope
             lowest = second - (slope - first) * (slope - first) / (8.0 * bend)

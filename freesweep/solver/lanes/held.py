@@ -204,7 +204,7 @@ def seek_lanes(
         todo = mask_of(valid) & (abs(c_y) > POLE * (cell[0] * cell[0] + cell[1] * cell[1]))
         too_long = mask_of(0)
         if length_held:
-            too_long = todo & (target > (1.0 + LONGER) * half * lagrangian.longest(cell, load[0]))
+            too_long = todo & (target > (1.0 + LONGER) * half * lagrangian.longest(cell, load[0], load[2]))
             todo = todo & ~too_long
         start, fits = straight_start(cell, load, length_held, todo)
         pushed, origin = mask_of(0), one

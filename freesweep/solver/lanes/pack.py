@@ -12,11 +12,11 @@ from ..problem import (
     GAMMA,
     INNER,
     LENGTH,
-    LOOSE,
     RATIO,
     SECOND,
     SHEAR,
     THIRD,
+    THREADS,
     TORQUE,
     D,
     H,
@@ -27,9 +27,9 @@ from ..status import COMPRESSED, INVALID, OK
 from .nested import OUTPUTS
 from .vector import WIDTH, get
 
-# H, D, area, gamma, c, shear, f, m, half length, c2, c3, inner, loose; pressure, pressure before, weight of the energy
-COLUMNS = LOOSE + 4
-PRESSURE, BEFORE, WEIGHT = range(LOOSE + 1, COLUMNS)
+# H, D, area, gamma, c, shear, f, m, half length, c2, c3, inner, threads; pressure, pressure before, weight of the energy
+COLUMNS = THREADS + 4
+PRESSURE, BEFORE, WEIGHT = range(THREADS + 1, COLUMNS)
 LINE = 64  # bytes: arrays of lanes begin on a cache line
 
 
@@ -58,7 +58,7 @@ def wall_in(columns, walls, count):
     if len(walls) == 1:
         return (get(columns, SHEAR),)
     inner = get(columns, INNER)
-    return get(columns, SHEAR), inner, columns[LOOSE, 0], count, reciprocal(get(columns, AREA), inner, count)
+    return get(columns, SHEAR), inner, columns[THREADS, 0], count, reciprocal(get(columns, AREA), inner, count)
 
 
 @entry_point

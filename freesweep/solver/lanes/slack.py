@@ -5,7 +5,7 @@ from ..along.axial import axial_stretch
 from ..along.slack import NOTHING, TENSIONLESS, TENSIONLESS_END
 from ..cells import nothing_yet, of_length
 from ..physics import lagrangian, physical
-from ..physics.wall import is_loose
+from ..physics.wall import has_any_family, has_two_families, may_go_slack
 from .vector import get, mask_of
 
 
@@ -34,7 +34,7 @@ def _pushing(x, y, n, cell, load, wall):
 def of_physical(x, y, n, cell, load):
     """:func:`pushing` of physical tubes: in each cell, and at the clamped end."""
     least, at_end = -TENSIONLESS * (load[3] + abs(load[4])), -TENSIONLESS_END * (load[3] + abs(load[4]))
-    if is_loose(load[2]):
+    if may_go_slack(load[2]):
         least = at_end = NOTHING + 0.0 * least
     alpha, beta, near = mask_of(0), mask_of(0), nothing_yet(0.0 * least)
     for j in range(n):
@@ -46,4 +46,8 @@ def of_physical(x, y, n, cell, load):
             _, L_y, L_v, _, _, _ = lagrangian.density(middle, v, of_length(cell, h), load)
             _, _, tension_alpha, tension_beta = lagrangian.at_flux(get(y, 0), 0.5 * h * L_y - L_v, cell, load)
             alpha, beta = alpha | (tension_alpha < at_end), beta | (tension_beta < at_end)
+    if not has_two_families(load[2]):  # what is not there is not slack
+        beta = mask_of(0)
+    if not has_any_family(load[2]):
+        alpha = mask_of(0)
     return alpha, beta

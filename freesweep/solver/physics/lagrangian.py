@@ -1,14 +1,16 @@
-"""The physics that the solver sees: one density of a pressurised tube with two fiber families, at one point.
+"""The physics that the solver sees: one density of a pressurised tube and its fibers, at one point.
 
     L(y, v) = (p y^2 + f) s - e a w + m psi
 
 of the source's tube (:mod:`membrane`, where everything is written down) or of the physical one (:mod:`physical`: a thick
 wall, threads that cannot push). Which it is, is told by what ``load`` = (gamma, rubber, wall, p, f, m, e) carries:
-``wall`` is (k,), or (k, inner, loose). ``cell`` is a point, three numbers (H, D, a), six of a body of revolution, which is a
-change of variables (:mod:`body`); or it is a cell of a mesh (:mod:`..cells`), whose density, where fibers are loose, is its
-mean along the cell (:mod:`over_cell`). The length of a tuple is known when code is made: no kind of tube or cell costs
+``wall`` is (k,), or (k, inner, threads). ``cell`` is a point, three numbers (H, D, a), six of a body of revolution, which is
+a change of variables (:mod:`body`); or it is a cell of a mesh (:mod:`..cells`), whose density, where fibers may go slack, is
+its mean along the cell (:mod:`over_cell`). The length of a tuple is known when code is made: no kind of tube or cell costs
 another one anything.
 """
+
+from math import sqrt
 
 from ...jit import kernel
 from ..cells import as_expected, expecting, passed_on, point_of
@@ -20,14 +22,39 @@ from .membrane import (  # noqa: F401
     NO_ROOM,
     ROUNDING,
     WORK_STEP,
-    drawn_in,
     fiber_multipliers,
     kinematics,
     locked_stretch,
-    longest,
     scales,
     strain_energy,
 )
+from .relaxed import spares
+from .wall import has_two_families
+
+
+@kernel
+def clamped(cell, gamma, wall):
+    """G at the clamped ends, positive where fibers can meet them; fewer families than two always can."""
+    if has_two_families(wall):
+        return 1.0 + kinematics(1.0, cell, (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3]
+    return 1.0 + 0.0 * cell[0]
+
+
+@kernel
+def drawn_in(cell, load):
+    """The stretch below 1 from which a tube counts as drawn in."""
+    if has_two_families(load[2]):
+        return membrane.drawn_in(cell, load)
+    return 1.0 - DRAWN_IN + 0.0 * cell[0]
+
+
+@kernel
+def longest(cell, gamma, wall):
+    """The largest meridional stretch that the fibers allow, whatever pulls."""
+    if has_two_families(wall):
+        return membrane.longest(cell, gamma)
+    t = cell[0] + cell[1]
+    return gamma * sqrt(1.0 + t * t) + spares(wall)[0]
 
 
 @kernel

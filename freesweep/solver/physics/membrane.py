@@ -185,7 +185,7 @@ def drawn_in(cell, load):
     size = abs(load[4]) + abs(load[5])
     loaded = size / (size + NO_ROOM)  # 1, or 0
     _, _, _, G_1, G_y, _ = kinematics(1.0, cell, load)
-    return 1.0 - DRAWN_IN * (1.0 + loaded * (min(2.0 * (1.0 + G_1) / abs(G_y), 1.0) - 1.0))
+    return 1.0 - DRAWN_IN * (1.0 + loaded * (min(2.0 * (1.0 + G_1) / max(abs(G_y), NO_ROOM), 1.0) - 1.0))
 
 
 @kernel

@@ -18,7 +18,7 @@ from ...jit import kernel
 from ..cells import point_of
 from ..either import select, some
 from . import body, physical
-from .wall import is_loose
+from .wall import may_go_slack
 
 EIGHTHS = 8  # of a cell lie between the points of the finer rule
 MIXED = 4.0  # beside the kinds of :mod:`relaxed`
@@ -82,7 +82,7 @@ def along_the_cell(part, y, v, cell, load, direction):
     point, h, before = parts_of(cell)
     at, near = look(y, v, point, load, before)
     middle, zero = part(at, y, v, 0.0, point, load, direction), 0.0 * y
-    if not is_loose(load[2]):
+    if not may_go_slack(load[2]):
         return at.room, middle, at.kind, near
     room, ends, between, changes = at.room, (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
     for k in range(0, EIGHTHS + 1, EIGHTHS):

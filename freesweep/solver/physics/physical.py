@@ -7,7 +7,7 @@ have no derivatives along the tube, so they are eliminated point by point: first
 of ``T s - e W + m psi - sum mu_i g_i``, whose second ones (``K``) give those of L along ``(1, dG/dy, dpsi/dy)``, from the
 stationarity system of the families that are taut. L is C1 and piecewise C2.
 
-Functions and arguments as in :mod:`membrane`; ``wall`` = load[2] is (k, inner, loose); ``near`` is what the neighbouring
+Functions and arguments as in :mod:`membrane`; ``wall`` = load[2] is (k, inner, threads); ``near`` is what the neighbouring
 cell handed on, see :func:`relaxed.beside`.
 """
 
@@ -30,7 +30,7 @@ from .relaxed import (
     spread_of,
     taut_twist,
 )
-from .wall import is_loose, least_square, lies_inside, slopes, stored
+from .wall import least_square, leaves_choice, lies_inside, slopes, stored
 
 NO_ROOM = 1e-30  # as in :mod:`membrane`
 LEAST = 1e-6  # of G: where a state is refused, its numbers stay finite
@@ -171,7 +171,7 @@ def state(y, v, cell, load, near):
 @kernel
 def handed_on(at, y, v, load):
     """What the next cell may start from; bonded fibers leave it no choice."""
-    if not is_loose(load[2]):
+    if not leaves_choice(load[2]):
         return nothing_yet(0.0 * y)
     kind = select(at.room > 0.0, at.kind, -1.0)
     return kind, y, v, at.psi, at.psi_y, at.psi_v, at.G_1, at.G_y, at.G_v

@@ -14,6 +14,10 @@ other. So the signs of the two slopes there tell which side to go to, if any, an
 falls all along: Newton's method between bounds finds its root. Where ``mu`` is 0 the family is slack, too, and G is where
 ``T/(2 s) = W_G``.
 
+A family that is not there is one whose threads are longer than their winding without end (:func:`spares`): it never
+carries. One family alone is called alpha, whatever its name; one that is bonded is taut everywhere, pushed or not. A tube
+without threads is a balloon.
+
 Along a tube neighbours are alike: what is known of one point is the first guess of the next (:func:`beside`). As there is
 one maximum, a place where no taut family is pushed and no slack one overreached is the one, however it was come to.
 """
@@ -22,7 +26,7 @@ from math import sqrt
 
 from ...jit import kernel
 from ..either import isnt, select, some
-from .wall import narrowest, slopes
+from .wall import LOOSE, NONE, ONE_BONDED, has_two_families, narrowest, slopes
 
 ITERATIONS = 60  # five do nearly always
 CLOSE = 1e-8  # of the unit of what is sought: the next step of Newton's method is its square
@@ -32,6 +36,7 @@ CRAMPED = 0.2  # share of the largest room below which both-taut is no place to 
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
 NEARBY = 8  # looks from a neighbour's place; two do nearly always, four where a family goes slack
 NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
+ENDLESS = 1e300  # longer than anything
 
 
 @kernel
@@ -50,6 +55,22 @@ def reach(y, psi, t, stretch):
 def both_reach(y, H, D, gg, stretch):
     """G - 1 of both families taut."""
     return stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * gg / (y * y) - D * D)
+
+
+@kernel
+def spares(wall):
+    """By how much G - 1 may be more than the winding of each family allows, (alpha, beta): without end of one that is not
+    there.
+    """
+    if len(wall) == 1:
+        return 0.0, 0.0
+    return (0.0 if wall[2] < NONE else ENDLESS), (0.0 if wall[2] <= LOOSE else ENDLESS)
+
+
+@kernel
+def most_taut(wall):
+    """All families that there are, as one number."""
+    return BOTH_TAUT if wall[2] <= LOOSE else ALPHA_TAUT if wall[2] < NONE else NONE_TAUT
 
 
 @kernel
@@ -105,10 +126,16 @@ def is_between(at, near, far, side):
 
 @kernel
 def spread_of(y, v, H, D, gg, wall):
-    """``(low, widest, psi, best)``: bounds of G - 1, the twist of both taut and that at which G may be widest."""
+    """``(low, widest, psi, best)``: bounds of G - 1, the twist of both taut and that at which G may be widest; of fewer
+    families than two one where there is much room.
+    """
     stretch = gg - 1.0
-    psi = taut_twist(y, H, gg)
     low = max(v * v, narrowest(y, wall)) - 1.0
+    if not has_two_families(wall):
+        best, still = -(H + D) + 0.0 * y, 0.0 * y
+        widest = reach(y, best, H + D, stretch) + spares(wall)[0]
+        return low, widest, select(reach(y, still, H + D, stretch) - low > CRAMPED * (widest - low), still, best), best
+    psi = taut_twist(y, H, gg)
     # beyond the twist of both taut (to the right) alpha is the nearer if D > 0; its reach is widest at psi = -t
     right, left = H + abs(D), H - abs(D)
     best = min(max(psi, -right), -left)
@@ -133,14 +160,15 @@ def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
     look once more, is not yet made.
     """
     stretch, low, still = gg - 1.0, max(v * v, narrowest(y, wall)) - 1.0, 0.0 * y
-    kind = select(near[0] >= 0.0, near[0], BOTH_TAUT)
+    spare_alpha, spare_beta = spares(wall)
+    kind = select(near[0] >= 0.0, near[0], most_taut(wall))
     on, steeper = y - near[1], v - near[2]
     both_psi, both_G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, stretch)
     psi, G_1 = near[3] + on * near[4] + steeper * near[5], near[6] + on * near[7] + steeper * near[8]
     both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
     G_1 = select(both, both_G_1, select(kind == NONE_TAUT, G_1, reach(y, psi, t, stretch)))
     psi = select(both, both_psi, psi)
-    known = y > 0.0
+    known, bonded = y > 0.0, y == y if wall[2] == ONE_BONDED else y < y
     dpsi, dG, going, W = still, still, known, (still, still, still, still, still, still, still, still, still)
     for _ in range(NEARBY):
         known = known & (isnt(going) | (G_1 > low))
@@ -155,7 +183,7 @@ def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
         kind = select(
             both,
             select(a >= 0.0, ALPHA_TAUT, NONE_TAUT) + select(b >= 0.0, BETA_TAUT, NONE_TAUT),
-            select(total >= 0.0, kind, NONE_TAUT),
+            select((total >= 0.0) | bonded, kind, NONE_TAUT),
         )
         both, none = kind == BOTH_TAUT, kind == NONE_TAUT
         one, t = isnt(both | none), H + select(kind == ALPHA_TAUT, D, -D)
@@ -169,7 +197,8 @@ def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
             dpsi = select(none, (bend * twist - W_Gp * total) / det, dpsi)
             dG = select(none, (W_pp * total - W_Gp * twist) / det, dG)
         to_psi, to_G_1 = psi + dpsi, G_1 + dG
-        slack_alpha, slack_beta = reach(y, to_psi, H + D, stretch) - to_G_1, reach(y, to_psi, H - D, stretch) - to_G_1
+        slack_alpha = reach(y, to_psi, H + D, stretch) + spare_alpha - to_G_1
+        slack_beta = reach(y, to_psi, H - D, stretch) + spare_beta - to_G_1
         nearer = select(slack_alpha < slack_beta, ALPHA_TAUT, BETA_TAUT)
         over = select(
             kind == ALPHA_TAUT, slack_beta, select(kind == BETA_TAUT, slack_alpha, min(slack_alpha, slack_beta))
@@ -192,9 +221,17 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
     ``room`` is that of the widest G beyond v^2, or beyond where the innermost layer would reach the axis.
     """
     stretch, right, left = gg - 1.0, H + abs(D), H - abs(D)
+    always, never = y == y, y < y
+    single, bonded = never if has_two_families(wall) else always, always if wall[2] == ONE_BONDED else never
     low, widest, psi, best = spread_of(y, v, H, D, gg, wall)
     G_1, room = both_reach(y, H, D, gg, stretch), widest - low
     inside = (room > 0.0) & (y > 0.0)
+    if wall[2] == NONE:
+        free_1, free_psi = free_point(y, low + 1.0, psi, low, v, T, m, area, rubber, wall, inside)
+        return room, free_1, free_psi, never, never
+    if not has_two_families(wall):
+        right = left = H + D
+        G_1 = reach(y, psi, right, stretch)
     if not some(inside):
         return room, G_1, psi, isnt(inside), isnt(inside)
 
@@ -203,11 +240,11 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
     _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, here, psi, area, rubber, wall)
     s = axial(1.0 + here, v)
     mu = 0.5 * T / s - W_G
-    held = reached & (mu >= 0.0)
+    held = reached & ((mu >= 0.0) | bonded)
     twice = 2.0 * y * y * mu
     beyond, short = m - W_p - twice * (right + psi) > 0.0, m - W_p - twice * (left + psi) < 0.0
     side = select(held, select(beyond, 1.0, -1.0), select(best > psi, 1.0, -1.0))
-    both = isnt(inside & (isnt(held) | beyond | short))
+    both = isnt(inside & (isnt(held) | beyond | short | single))
     free_1, free_psi, known = here, psi, inside & reached & isnt(held)
     none = known & both
     if some(known):
@@ -231,6 +268,7 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
     at = select(is_between(at, near, far, side), at, 0.5 * (near + far))
     for _ in range(ITERATIONS):
         F, F_p, taut = along_twist(y, at, t, stretch, v, T, m, area, rubber, wall)
+        taut = taut | bonded
         limp = going & isnt(taut)
         fresh = limp & isnt(known)
         if some(fresh):
@@ -249,7 +287,7 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
             break
     one = isnt(both | none)
     G_1 = select(one, reach(y, at, t, stretch), select(none, free_1, G_1))
-    first = (side > 0.0) & (D > 0.0) | (side < 0.0) & isnt(D > 0.0)
+    first = (side > 0.0) & (D > 0.0) | (side < 0.0) & isnt(D > 0.0) | single
     return room, G_1, select(one, at, select(none, free_psi, psi)), both | one & first, both | one & isnt(first)
 
 

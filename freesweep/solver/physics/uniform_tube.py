@@ -5,7 +5,7 @@ the tube with clamped ends, and its stretch lies between 1 and the uniform one. 
 """
 
 from ...jit import kernel
-from .wall import is_loose
+from .wall import may_go_slack
 
 FIRST_STEP = 0.25  # of the way from one load to the other
 SMALLEST_STEP = 1e-7  # below it the path is taken to end in a turning point
@@ -85,7 +85,7 @@ def dips(density, u, trial, cell, start, end, low, high, half, drawn):
         slope = -L_yy
         if not slope > 0.0 or may_let_go(here, L_yy, L_vv, half, drawn):
             return True
-        if i >= 2 and second < first and second < slope and not is_loose(end[2]):
+        if i >= 2 and second < first and second < slope and not may_go_slack(end[2]):
             bend = first - 2.0 * second + slope
             if second - (slope - first) * (slope - first) / (8.0 * bend) <= 0.0:
                 return True

@@ -12,8 +12,9 @@ has, exactly in a uniform tube and as a layered membrane elsewhere (theory, sect
 A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick wall is summed at Gauss points in rho^2, as
 many as its integrand, a rational function of rho^2 with poles at 0 and where q vanishes, asks for.
 
-``wall`` is (k, inner, loose): ``inner`` = rho_i^2, or 0 for a membrane; ``loose`` is :mod:`relaxed`'s. In vectors of designs
-it is (k, inner, loose, layers, mean of 1/rho^2 over the layers), the third and fourth the same for all of them.
+``wall`` is (k, inner, threads): ``inner`` = rho_i^2, or 0 for a membrane; ``threads`` says which families of fibers there
+are, and whether they may push (:mod:`relaxed`). In vectors of designs it is (k, inner, threads, layers, mean of 1/rho^2 over
+the layers), the third and fourth the same for all of them.
 """
 
 from math import sqrt
@@ -25,6 +26,7 @@ from ..either import select, some
 from . import mooney_wall
 from .membrane import excess, yeoh_slope
 
+BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
 MISSED = 1e-8  # of the energy: what a pole at the axis may leave
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
@@ -33,11 +35,35 @@ WEIGHTS = np.concatenate([0.5 * rule[1] for rule in _RULES])
 
 
 @kernel
-def is_loose(wall):
-    """Whether fibers cannot push: then the density is no linear function of the loads."""
+def leaves_choice(wall):
+    """Whether fibers leave the wall a choice of stretch and twist: then the density is no linear function of the loads."""
     if len(wall) == 1:
         return False
-    return wall[2] > 0.0
+    return wall[2] > BONDED
+
+
+@kernel
+def has_two_families(wall):
+    """Whether there are two families of fibers."""
+    if len(wall) == 1:
+        return True
+    return wall[2] <= LOOSE
+
+
+@kernel
+def has_any_family(wall):
+    """Whether there are fibers."""
+    if len(wall) == 1:
+        return True
+    return wall[2] < NONE
+
+
+@kernel
+def may_go_slack(wall):
+    """Whether some family of fibers is there and cannot push: then the density has corners."""
+    if len(wall) == 1:
+        return False
+    return (wall[2] == LOOSE) | (wall[2] == ONE_LOOSE)
 
 
 @kernel

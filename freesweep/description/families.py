@@ -1,0 +1,75 @@
+"""Which families of fibers a tube has: two, one or none, and what its results say of those it has not.
+
+The solver follows two lines of the wall. They are the fibers of two families; of one family they are its fibers and a line
+that carries nothing, whose tangent is less by OFFSET; of a tube without threads the axis takes the family's place. Stretch
+and twist follow from the deformed angles of both lines. Two loose families of one angle are one that both share.
+
+A family that is not there has no angle (NaN) and no tension (0), and is not slack.
+"""
+
+import numpy as np
+
+from .tube_model import THREADS
+
+FAMILIES = ("alpha", "beta")
+OFFSET = 1.0  # of the tangent: a line at 45 degree to the axis of a balloon
+BITS = {"alpha": 1, "beta": 2}  # of ``slack_fiber``
+
+
+def is_none(value) -> bool:
+    """Whether a fiber angle is that of no family: None, or the word."""
+    return value is None or (isinstance(value, str) and value.strip().lower() == "none")
+
+
+def followed(tube) -> tuple:
+    """Names of the families whose fibers the solver follows: both, one or none."""
+    given = given_by(tube)
+    return given[:1] if len(given) == 2 and is_one(tube) else given
+
+
+def given_by(tube) -> tuple:
+    """Names of the families that a tube has."""
+    return tuple(name for name in FAMILIES if getattr(tube, name) is not None)
+
+
+def is_one(tube) -> bool:
+    """Whether both families have one angle all along."""
+    return tube.alpha == tube.beta
+
+
+def threads(tube) -> float:
+    """What the solver takes for the families that there are, and whether they may push."""
+    return THREADS[len(followed(tube)), "loose" if tube.is_loose else "bonded"]
+
+
+def other_line(tangent):
+    """Tangent of the line beside one family."""
+    return tangent - OFFSET
+
+
+def told(tube, found) -> dict:
+    """Variables by name, ``<name>_alpha`` and the like, of the lines that the solver follows, as those of the families: name
+    -> array.
+    """
+    first, given = followed(tube), given_by(tube)
+    if len(first) == 2:
+        return found
+    result = dict(found)
+    for name in found:
+        family = next((family for family in FAMILIES if family in name), None)
+        if family is None:
+            continue
+        line = name.replace(family, "alpha")
+        if family not in given:
+            result[name] = found[line] * (np.nan if "deformed" in name else 0.0)
+        else:
+            result[name] = found[line] * (1.0 / len(given) if "tension" in name else 1.0)
+    return result
+
+
+def told_slack(tube, slack_fiber):
+    """The flag of slack families, from that of the lines."""
+    first = followed(tube)
+    if len(first) == 2:
+        return slack_fiber
+    return np.where((slack_fiber & BITS["alpha"]) > 0, sum(BITS[name] for name in given_by(tube)), 0)
