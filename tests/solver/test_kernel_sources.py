@@ -68,3 +68,29 @@ def test_no_kernel_copies_an_array_by_slices():
 def test_copies_by_slices_are_found():
     (kernel,) = kernels(ast.parse("@kernel\ndef f(a, b):\n a[:] = b\n a[1:], n = b, 1\n a[:] = 0.0\n a[0] = b[0]\n"))
     assert len(list(copies(kernel))) == 2
+
+
+def given_by_name(tree):
+    """Kernels of a module that one of them hands to another one by their bare names."""
+    own = {kernel.name for kernel in kernels(tree)}
+    for kernel in kernels(tree):
+        names = [node for node in ast.walk(kernel) if isinstance(node, ast.Name)]
+        local = {one.arg for one in kernel.args.args} | {name.id for name in names if isinstance(name.ctx, ast.Store)}
+        for call in (node for node in ast.walk(kernel) if isinstance(node, ast.Call)):
+            for given in call.args:
+                if isinstance(given, ast.Name) and given.id in own - local:
+                    yield f"{call.lineno}: {ast.unparse(call)}"
+
+
+def test_kernels_are_given_to_kernels_by_their_modules():
+    """Given by its bare name one is an address of this process: all that uses it would be compiled in each process anew."""
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
+    wrong = [
+        f"{path.relative_to(PACKAGE)}, line {fault}" for path, tree in trees.items() for fault in given_by_name(tree)
+    ]
+    assert not wrong, "\n".join(["by their modules, as lagrangian.density, instead:", *wrong])
+
+
+def test_kernels_given_by_bare_names_are_found():
+    tree = ast.parse("@kernel\ndef f(g, a):\n return g(a)\n@kernel\ndef h(a):\n b = f(h, a)\n return f(o.h, b)\n")
+    assert len(list(given_by_name(tree))) == 1

@@ -17,7 +17,7 @@ the cell's middle.
 from ...jit import kernel
 from ..cells import point_of
 from ..either import select, some
-from . import body, physical
+from . import body, in_a_cell, physical
 from .wall import may_go_slack
 
 EIGHTHS = 8  # of a cell lie between the points of the finer rule
@@ -104,44 +104,21 @@ def along_the_cell(part, y, v, cell, load, direction):
 
 
 @kernel
-def partials_at(at, y, v, r, point, load, direction):
-    """``(L_y, L_v, L_yy, L_yv, L_vv)`` of the place r from the middle, as what the cell is differentiated by."""
-    _, w, own = body.as_tube(y, v, point, load)
-    _, by_y, by_v, by_yy, by_yv, by_vv = body.of_partials(point, physical.partials(at, y, w, own))
-    return by_y, by_v + r * by_y, by_yy, by_yv + r * by_yy, by_vv + 2.0 * r * by_yv + r * r * by_yy
-
-
-@kernel
-def integrands_at(at, y, v, r, point, load, direction):
-    """Axial length, volume, twist, strain energy, and the kind."""
-    tube, _, own = body.as_tube(y, v, point, load)
-    return body.of_integrals(point, physical.integrals(at, y, tube, own))
-
-
-@kernel
-def conjugate_at(at, y, v, r, point, load, direction):
-    """``(c, c_y, c_v, c_mu)`` as of :func:`physical.conjugate`, as what the cell is differentiated by; and a place kept."""
-    _, w, _ = body.as_tube(y, v, point, load)
-    c, c_y, c_v, c_mu = body.of_conjugate(point, physical.along(at, y, w, body.own_direction(point, direction)))
-    return c, c_y, c_v + r * c_y, c_mu, 0.0 * c
-
-
-@kernel
 def density(y, v, cell, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv, what is handed on)``: room is the least along the cell."""
-    room, partials, _, near = along_the_cell(partials_at, y, v, cell, load, load)
+    room, partials, _, near = along_the_cell(in_a_cell.partials_at, y, v, cell, load, load)
     return (room, *partials, near)
 
 
 @kernel
 def integrands(y, v, cell, load):
     """Axial length, volume, twist, strain energy; the kind of the cell; and what is handed on."""
-    _, (s, volume, twist, energy, _), kind, near = along_the_cell(integrands_at, y, v, cell, load, load)
+    _, (s, volume, twist, energy, _), kind, near = along_the_cell(in_a_cell.integrands_at, y, v, cell, load, load)
     return s, volume, twist, energy, kind, near
 
 
 @kernel
 def conjugate(y, v, cell, load, direction):
     """``(c, c_y, c_v, c_mu)`` of :func:`physical.conjugate`."""
-    _, (c, c_y, c_v, c_mu, _), _, _ = along_the_cell(conjugate_at, y, v, cell, load, direction)
+    _, (c, c_y, c_v, c_mu, _), _, _ = along_the_cell(in_a_cell.conjugate_at, y, v, cell, load, direction)
     return c, c_y, c_v, c_mu
