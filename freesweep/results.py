@@ -9,8 +9,8 @@ from .atlas.schema import PROFILES, attributes
 from .description.families import told, told_slack
 from .description.revolution import wall_volume_inside as wall_volume_of_body
 from .description.strain import warn_beyond_range
-from .scaling import OUTPUTS, output_scales, wall_volume_inside
-from .worst_places import with_own, worst_places
+from .scaling import ALONG, OUTPUTS, output_scales, wall_volume_inside
+from .worst_places import strained_layers, with_own, worst_places
 
 
 def dataset(tube, axes, stations, found, without=()):
@@ -37,8 +37,11 @@ def dataset(tube, axes, stations, found, without=()):
     data |= found.get("extra", {})
     every = with_own(tube, stations)
     along = profiles(tube, found["fields"], found["values"], found["bounds"], every)
-    worst = told(tube, worst_places(tube, along, every, found["slack_fiber"]))
-    along = told(tube, along)
+    layers, worst = strained_layers(tube, along, every), worst_places(tube, along, every, found["slack_fiber"])
+    if found["values"].shape[-1] > len(OUTPUTS):  # the kernels looked at every cell
+        for k, name in enumerate(ALONG if tube.is_thick else ALONG[:2], len(OUTPUTS)):
+            worst[name], worst[f"{name}_error"] = (found[of][..., k] * scale[name] for of in ("values", "bounds"))
+    worst, along = told(tube, worst), told(tube, along)
     data["slack_fiber"] = (names, told_slack(tube, found["slack_fiber"]).astype(np.int8))
     data |= {name: (names, array) for name, array in worst.items()}
     data |= {name: ((*names, "x"), array[..., np.searchsorted(every, stations)]) for name, array in along.items()}
@@ -51,7 +54,7 @@ def dataset(tube, axes, stations, found, without=()):
     if np.any(result["status"] == status.NOT_CONVERGED):
         warnings.warn(status.STATUSES[status.NOT_CONVERGED].sentence, stacklevel=4)
     if not np.any(np.isinf(axes["pressure"])):  # the locked shape is that of any material
-        warn_beyond_range(tube, result, stacklevel=5)
+        warn_beyond_range(tube.material, layers, stacklevel=5)
     return result
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 ACCURACIES = (1e-10, 1e-2)  # error bounds that may be asked for, scaled: below lies rounding
 OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius")  # order of the kernels' columns
+ALONG = ("slack_alpha", "slack_beta", "outer_radius")  # and behind them those of physical tubes
 
 
 def problem_rows(design, energy, thick=False, threads=0.0) -> np.ndarray:
@@ -51,6 +52,9 @@ def output_scales(design) -> dict:
         "rotation": 0.0 * r + np.degrees(2.0),
         "strain_energy": 2.0 * np.pi * r**3 * c10,
         "mid_radius": r,
+        "slack_alpha": 1.0,
+        "slack_beta": 1.0,
+        "outer_radius": r,
     }
 
 

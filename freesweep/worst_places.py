@@ -13,6 +13,7 @@ undeformed length, and how hard they would push.
 import numpy as np
 
 from .description.loads import STATIONS
+from .description.strain import largest_principal
 
 FAMILIES = ("alpha", "beta")
 CURVED = 1.0 / 8.0  # of a second difference: by how much a smooth curve passes the largest of its samples
@@ -68,16 +69,31 @@ def _outer_radius(tube, y, alpha, beta, share):
 
 
 def _largest_stretch(tube, y, alpha, beta, share):
+    inner = _inner(tube, share)
+    surfaces = inner, inner + tube.profile("wall").at(share)
+    return np.maximum(*(largest_principal(*_strained(tube, y, alpha, beta, share, rho)) for rho in surfaces))
+
+
+def _strained(tube, y, alpha, beta, share, rho):
+    """``(meridional, hoop, shear)`` of the layer of the undeformed radius ``rho``."""
     meridional, twist = _kinematics(tube, y, alpha, beta, share)
-    largest, inner, fibers = np.zeros(np.shape(y)), _inner(tube, share), tube.fiber_surface_at(share)
-    for rho in (inner, inner + tube.profile("wall").at(share)):
-        r = _layer(fibers, y, meridional, rho)
-        hoop, shear = r / rho, r * twist
-        # the larger singular value of [[hoop, shear], [0, meridional]]
-        square, area = hoop**2 + shear**2 + meridional**2, hoop * meridional
-        surface = np.sqrt(0.5 * (square + np.sqrt(np.maximum(square**2 - 4.0 * area**2, 0.0))))
-        largest = np.maximum(largest, np.maximum(surface, 1.0 / area))
-    return largest
+    r = _layer(tube.fiber_surface_at(share), y, meridional, rho)
+    return meridional, r / rho, r * twist
+
+
+def strained_layers(tube, profiles, stations) -> list:
+    """``(meridional, hoop, shear)`` of the layers that a tube's model strains, of a thick wall the first and the last, along
+    ``profiles`` (name -> array over loads and ``stations``); a twist that has no energy strains nothing.
+    """
+    share = stations / tube.length
+    inner = _inner(tube, share)
+    thick = inner, inner + tube.profile("wall").at(share)
+    at = [profiles[name] for name in ("deformed_radius", "alpha_deformed", "beta_deformed")]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        layers = [
+            _strained(tube, *at, share, rho) for rho in (thick if tube.is_thick else (tube.fiber_surface_at(share),))
+        ]
+    return [(meridional, hoop, shear * (tube.energy == "full")) for meridional, hoop, shear in layers]
 
 
 def _with_error(function, tube, part, share):

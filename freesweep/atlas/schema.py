@@ -57,15 +57,30 @@ _SHAPE = {
     "volume": ("m3", "volume of the cavity"),
 }
 
+_ALONG = {  # of physical tubes
+    "outer_radius": ("m", "largest outer radius along the tube"),
+    "slack_alpha": ("1", "share of the length without a pull in the first family"),
+    "slack_beta": ("1", "share of the length without a pull in the second family"),
+}
+
 VARIABLES = {
     **{name: Variable(units, f"{long_name} under pressure", HELD) for name, (units, long_name) in _SHAPE.items()},
     "strain_energy": Variable("J", "strain energy of the wall", HELD),
+    **{name: Variable(units, long_name, HELD) for name, (units, long_name) in _ALONG.items()},
     "limit_pressure": Variable("Pa", "pressure at which the branch ends", (*HELD, "pressure")),
     **{
         f"locked_{name}": Variable(units, f"{long_name}, locked", (*LOADS, *HELD, *MATERIAL))
         for name, (units, long_name) in _SHAPE.items()
     },
     "locked_strain_energy": Variable("J", "strain energy of the wall, locked", (*LOADS, *HELD)),
+    **{
+        f"locked_{name}": Variable(
+            units,
+            f"{long_name}, locked",
+            (*LOADS, *HELD, *(each for each in MATERIAL if units == "1" or each != "wall")),
+        )
+        for name, (units, long_name) in _ALONG.items()
+    },
     "blocked_force": Variable("N", "force that holds the length, free to rotate", ("force", "held_rotation")),
     "blocked_torque": Variable("N m", "torque that holds the rotation, length free", ("torque", *HELD_LENGTHS)),
     "ideal_blocked_force": Variable(
@@ -74,6 +89,12 @@ VARIABLES = {
     "ideal_blocked_torque": Variable(
         "N m", "blocked torque of inextensible fibers (Eq. 2.19)", ("length", *MATERIAL, "force", "torque", *HELD)
     ),
+}
+
+EXCHANGED = {  # what becomes what where the fiber families change places
+    f"{state}slack_{one}": f"{state}slack_{other}"
+    for state in ("", "locked_")
+    for one, other in (("alpha", "beta"), ("beta", "alpha"))
 }
 
 STATUS_OF = {
@@ -103,10 +124,7 @@ FLAG_OF = {
 
 # of single actuators alone, which no atlas stores: along the whole tube, and of held ones
 WHOLE = {
-    "outer_radius": Variable("m", "largest outer radius along the tube"),
     "largest_stretch": Variable("1", "largest stretch of the wall"),
-    "slack_alpha": Variable("1", "share of the length without a pull in the first family"),
-    "slack_beta": Variable("1", "share of the length without a pull in the second family"),
     "least_tension_alpha": Variable(
         "N", "least tension of the whole first family, negative where it would have to push"
     ),
@@ -142,6 +160,8 @@ SHORT = {
     **{"locked_deformed_length": "locked length", "locked_rotation": "locked rotation"},
     **{"locked_mid_radius": "locked radius", "locked_volume": "locked volume"},
     "locked_strain_energy": "locked strain energy",
+    "locked_outer_radius": "locked outer radius",
+    **{"locked_slack_alpha": "locked slack share, alpha", "locked_slack_beta": "locked slack share, beta"},
     **{"blocked_force": "blocked force", "blocked_torque": "blocked torque"},
     **{"ideal_blocked_force": "ideal blocked force", "ideal_blocked_torque": "ideal blocked torque"},
     **{"outer_radius": "outer radius", "largest_stretch": "stretch of the wall"},

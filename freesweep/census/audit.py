@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..description.tube_model import MODELS
-from ..scaling import OUTPUTS
+from ..scaling import ALONG, OUTPUTS
 from ..status import VALUED
 from .designs import COLUMNS, quadrature, quadrature_held, words
 
@@ -17,9 +17,9 @@ class Audit:
     """Bounds that hold and others: ``ratios`` maps output -> bound/difference, arrays; ``breaches`` are broken bounds."""
 
     def __init__(self, model=MODELS["source"]):
-        self.model = model
+        self.model, self.outputs = model, (*OUTPUTS, *(ALONG if model.is_physical else ()))
         self.states, self.bounds, self.differing, self.acquitted = 0, 0, 0, 0
-        self.ratios = {name: [] for name in (*OUTPUTS, *HELD)}  # where the two differ by more than rounding
+        self.ratios = {name: [] for name in (*self.outputs, *HELD)}  # where the two differ by more than rounding
         self.compared = dict.fromkeys(self.ratios, 0)
         self.breaches = []  # (output, difference/bound, design)
 
@@ -30,11 +30,13 @@ class Audit:
 
         def judge(rows):
             if self.model.is_physical:
-                return np.full((2, len(rows), len(OUTPUTS)), np.nan)  # the second method knows the source's tubes only
+                return np.full(
+                    (2, len(rows), len(self.outputs)), np.nan
+                )  # the second method knows the source's tubes only
             return quadrature(designs[rows], values[rows, -1])
 
         self._compare(
-            OUTPUTS, designs, values, others, states["bounds"], finer["bounds"], _measures(designs, others), judge
+            self.outputs, designs, values, others, states["bounds"], finer["bounds"], _measures(designs, others), judge
         )
 
     def held(self, kind, designs, states, finer):
@@ -80,6 +82,22 @@ class Audit:
                 else:
                     self.breaches.append((names[k], missed[row, k] / bounds[rows[row], k], designs[rows[row]]))
 
+    def figures(self) -> dict:
+        """All this in numbers, as JSON takes them."""
+        ratios = {}
+        for name, compared in self.compared.items():
+            every = np.concatenate(self.ratios[name]) if self.ratios[name] else np.empty(0)
+            told = {"median": float(np.median(every)), "least": float(np.min(every))} if len(every) else {}
+            ratios[name] = {"compared": compared, "differing": len(every), **told}
+        broken = [
+            {"output": name, "ratio": float(ratio), "design": dict(zip(COLUMNS, row.tolist()))}
+            for name, ratio, row in self.breaches
+        ]
+        return {
+            "finer": FINER, "states": self.states, "bounds": self.bounds, "broken": broken, "acquitted": self.acquitted,
+            "on_one_mesh_only": self.differing, "bound_over_difference": ratios,
+        }  # fmt: skip
+
     def report(self) -> list[str]:
         """All this in words, line by line."""
         if not self.states:
@@ -109,9 +127,9 @@ class Audit:
 
 
 def _measures(designs, values):
-    """By what a difference of each output of half a tube counts, (n, 5): undeformed length, the volume itself, half a radian
-    or the rotation itself, the energy itself, and the undeformed radius.
+    """By what a difference of each output of half a tube counts, (n, k): undeformed length, the volume itself, half a radian
+    or the rotation itself, the energy itself, and the undeformed radius; shares of the length by all of it.
     """
-    length, volume, turn, energy, _ = np.abs(values).T
+    _, volume, turn, energy, *rest = np.abs(values).T
     half = 0.5 * designs[:, COLUMNS.index("length/radius")]
-    return np.column_stack([half, volume, np.maximum(0.5, turn), energy, np.ones(len(length))])
+    return np.column_stack([half, volume, np.maximum(0.5, turn), energy, *(np.ones(len(half)) for _ in rest)])

@@ -31,6 +31,18 @@ class Census:
                 if sum(map(len, kept)) < KEPT:
                     kept.append(designs[status == value])
 
+    def figures(self) -> dict:
+        """What was counted and audited, as JSON takes it; of each kind the designs that failed for no physical reason."""
+        counts = {
+            kind: {STATUSES[value].meaning: number for value, number in own.items()}
+            for kind, own in self.counts.items()
+        }
+        failed = {kind: [dict(zip(COLUMNS, row)) for row in rows.tolist()] for kind, rows in self._failed().items()}
+        return {
+            "designs": self.designs, "seed": self.seed, "pressures": PRESSURES, "model": self.audit.model._asdict(),
+            "counts": counts, "not_converged": failed, "audit": self.audit.figures(),
+        }  # fmt: skip
+
     def report(self) -> str:
         """Counts, the ranges in which failures lie, and the audit, in words."""
         model = self.audit.model
@@ -68,9 +80,13 @@ class Census:
         )
         return np.quantile(every, MIDDLE, axis=0).T
 
+    def _failed(self):
+        """Designs (n, 10) of the states that failed for no physical reason, by kind."""
+        return {kind: np.concatenate(kept) for (kind, value), kept in self.kept.items() if value == NOT_CONVERGED}
+
     def _defects(self):
         """States that failed for no physical reason, some of each kind in full."""
-        found = {kind: np.concatenate(kept) for (kind, value), kept in self.kept.items() if value == NOT_CONVERGED}
+        found = self._failed()
         total = sum(self.counts[kind][NOT_CONVERGED] for kind in KINDS)
         lines = [f"{total:,} not_converged" if total else "every state is solved, or has a physical reason"]
         return lines + [f"  {kind}: {words(row)}" for kind, rows in found.items() for row in rows[:LISTED]]

@@ -49,7 +49,7 @@ EXAMPLES = {
     ),
     "freesweep verify": ("freesweep verify quick.nc", "freesweep verify quick.nc --resolve 1000"),
     "freesweep bench": ("freesweep bench --quick",),
-    "freesweep census": ("freesweep census 10000",),
+    "freesweep census": ("freesweep census 10000", "freesweep census 1000 --model physical --json"),
     "freesweep calibrate": (f"freesweep calibrate lengths.csv forces.csv {TUBE}",),
     "freesweep design": ("freesweep design sweeps/wishes/rotator.toml -o candidates.csv --picture candidates.png",),
     "freesweep thesis": ("freesweep thesis 2-7 claims", "freesweep thesis --out thesis"),

@@ -36,6 +36,7 @@ def add_judging(commands):
     census.add_argument("--model", choices=tuple(MODELS), default=DEFAULT, help=f"of the tubes (default: {DEFAULT})")
     census.add_argument("--threads", type=int, metavar="N", help="default: one for each core")
     census.add_argument("--quiet", action="store_true", help="no progress bar")
+    census.add_argument("--json", action="store_true", help="print all figures as JSON")
     census.set_defaults(run=_run_census)
 
 
@@ -117,10 +118,12 @@ def _run_bench(options):
 
 
 def _run_census(options):
+    import json
+
     from ..census.run import census
 
     found = census(
         options.count, options.seed, audit=options.audit, threads=options.threads, progress=not options.quiet,
         model=options.model,
     )  # fmt: skip
-    print(found.report())
+    print(json.dumps(found.figures(), indent=1) if options.json else found.report())

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..atlas.schema import PARAMETERS, attributes
+from ..atlas.schema import EXCHANGED, PARAMETERS, attributes
 from ..description.tube_model import fiber_surface
 from ..description.units import factor
 from ..inverse.outputs import output
@@ -52,6 +52,8 @@ _LABELS = {
     "ideal_blocked_force": ("Blocked force, ideal", 0.0),
     "ideal_blocked_torque": ("Blocked torque, ideal", 0.0),
     "outer_radius": ("Outer radius", None),
+    "slack_alpha": ("Slack share of alpha", None),
+    "slack_beta": ("Slack share of beta", None),
 }
 _ORDER = ("rotation", "length_change", "relative_radius", "outer_radius")
 
@@ -86,7 +88,7 @@ def _plain(name):
     plain, end = name.removeprefix("locked_"), ", locked" if name.startswith("locked_") else ""
     about = attributes(name)
     label, centre = _LABELS.get(plain, (about["long_name"], None))
-    return Measure(name, name, label + end, about["units"], centre)
+    return Measure(name, name, label + end, "%" if plain in EXCHANGED else about["units"], centre)
 
 
 def _tells_outer_radius(frame):
@@ -145,7 +147,7 @@ def is_loose(source) -> bool:
 def status_name(source) -> str:
     """The status of a variable in an answer."""
     family = FAMILY_OF.get(source)
-    return (FAMILIES[family].status if family else None) or f"{source}_status"
+    return FAMILIES[family].answer_status if family else f"{source}_status"
 
 
 def _columns(reader, values, size):

@@ -8,7 +8,10 @@ from ..inverse.wishes import Goal
 from .desk import AskError
 from .exact import loads_of, tube_of
 
-FREE = {"stroke", "rotation", "deformed_length", "mid_radius", "outer_radius", "volume", "strain_energy"}
+FREE = {
+    "stroke", "rotation", "deformed_length", "mid_radius", "outer_radius", "volume", "strain_energy", "slack_alpha",
+    "slack_beta",
+}  # fmt: skip
 LOCKED = {"stroke", "rotation", "deformed_length", "mid_radius", "volume", "strain_energy"}
 HELD = {"blocked_force": "force", "blocked_torque": "torque"}
 COUNT = 5  # designs that come back, at most: as many as can be pinned

@@ -5,6 +5,7 @@ from numbers import Real
 
 import numpy as np
 
+from ..atlas.schema import EXCHANGED, status_of
 from ..status import NOT_INTERPOLABLE, VALUED
 from .choice import DESIGN, choose, dimensions
 
@@ -22,7 +23,7 @@ def between(dataset, variable: str, select: dict, across):
     asked = {name: float(value) for name, value in select.items() if _is_between(dataset, name, value)}
     if not asked or set(asked) & set(across) or "x" in dataset.sizes or not set(dataset.coords) >= TUBE:
         return dataset
-    from ..query.family import FAMILY_OF, IDEAL
+    from ..query.family import FAMILIES, FAMILY_OF, IDEAL
     from ..query.query import Reader
 
     if FAMILY_OF.get(variable, "limit") == "limit" and variable not in IDEAL:
@@ -37,7 +38,12 @@ def between(dataset, variable: str, select: dict, across):
     size = int(np.prod(shape))
     values = grid | {name: np.full(size, value) for name, value in asked.items()}
     reader = Reader(part)
-    found = reader.answer(values, size, [variable], tolerance=EXACT)
+    wanted = [variable]
+    if variable in EXCHANGED:  # the other family's is its mirror image; the flags are those of a state's other numbers
+        wanted += [EXCHANGED[variable], "mid_radius"]
+    found = reader.answer(values, size, wanted, tolerance=EXACT)
+    if variable in FAMILY_OF:
+        found[status_of(variable)] = found[FAMILIES[FAMILY_OF[variable]].answer_status]
     made = part.isel(dict.fromkeys(asked, 0)).assign_coords(
         {name: part[name].isel({name: 0}).copy(data=value) for name, value in asked.items()}
     )

@@ -61,11 +61,11 @@ def plane(dataset, variable: str, select: dict) -> Plane:
 
     dataset = between(dataset, variable, select, ("alpha", "beta"))
     point, index = choose(dataset, select, ("alpha", "beta"))
-    values = _sheet(dataset[variable], index)
+    values, others = (_sheet(dataset[name], index) for name in (variable, schema.EXCHANGED.get(variable, variable)))
     status = _sheet(dataset[status_of(variable)], index)
     free = schema.VARIABLES[variable].without
     turns = any(point.get(name, 0.0) != 0.0 and name not in free for name in ("torque", "held_rotation"))
-    alpha, beta, values, status = _unfold(dataset, values, status, variable in ODD, turns)
+    alpha, beta, values, status = _unfold(dataset, values, others, status, variable in ODD, turns)
 
     point = point.only(lambda name: name not in free)
     return _plane(("alpha", "beta"), alpha, beta, values, status, variable, point)
@@ -122,10 +122,12 @@ def _sheet(array, index, names=("beta", "alpha")):
     return chosen.transpose(*names).values
 
 
-def _unfold(dataset, values, status, odd, turns):
-    """Nodes, values and status on the two quadrants; ``turns``: a torque is applied, the mirror would reverse it."""
+def _unfold(dataset, values, others, status, odd, turns):
+    """Nodes, values and status on the two quadrants; ``others`` are the values where the families change places, ``turns``:
+    a torque is applied, the mirror would reverse it.
+    """
     a, b = (dataset[name].values.astype(float) for name in ("alpha", "beta"))
-    images = [(a, b, values, status), (b, a, values.T, status.T)]
+    images = [(a, b, values, status), (b, a, others.T, status.T)]
     if not turns:
         sign = -1.0 if odd else 1.0
         images += [(-x, -y, sign * v, s) for x, y, v, s in images]

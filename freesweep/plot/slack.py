@@ -5,6 +5,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
+from ..atlas.schema import EXCHANGED
 from . import style
 from .between import between
 from .fill import cell, edges
@@ -18,7 +19,8 @@ WORDS = {"loose": "threads are slack somewhere", "bonded": "fibers would have to
 def flag(dataset, host, name, x, y, select):
     """A flag of the states that ``host`` is of, over ``x`` and ``y``: (m, n), NaN where there is none."""
     status = status_of(host)
-    lent = dataset.assign({host: dataset[name].astype(float), status: dataset[status] * 0})
+    lent = {one: dataset[name].astype(float) for one in (host, EXCHANGED.get(host, host))}
+    lent = dataset.assign(lent | {status: dataset[status] * 0})
     return section(lent, host, x, y, select).values.filled(np.nan)
 
 

@@ -2,17 +2,19 @@
 
 import numpy as np
 
+from ..atlas.schema import EXCHANGED
 from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import errors, reference, spline
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
-from .family import LOOSE, MIRRORED
+from .family import LOOSE, MIRRORED, TOLD_FROM
 from .locate import place
 from .missing_nodes import MIXED
 from .slack import UNKNOWN
 
 CUBIC, LINEAR = "cubic", "linear"
 SORTED = 2000  # points from which on sorting pays
-FLOORS = {reference.ROTATION: 0.1}  # [degree]: smaller rotations are held to the tolerance of this one
+# [degree], and of the length: smaller rotations, and shares, are held to the tolerance of these
+FLOORS = {reference.ROTATION: 0.1, reference.SLACK_ALPHA: 1.0, reference.SLACK_BETA: 1.0}
 LOAD_FLOOR = 0.01  # of pi r^2 P, pi r^3 P: the same for blocked force and torque
 
 
@@ -65,6 +67,9 @@ class Inquiry:
         """``(value, estimate, bound, beside)``: interpolated, what the next order would add, what was stored wrongly, and
         whether beside a hole; ``scales`` (d, RANKS) of the estimate.
         """
+        if name in TOLD_FROM:
+            *told, beside = self.estimate(TOLD_FROM[name], scales)
+            return *self.table.predictor.outer_radius(self.points, *told), beside
         effects, known = self.effects(name, self.orders()), self.table.variable(name).cells[self.cell]
         rest = known[:, DOUBT] + self.rests(known, scales).sum(axis=1)
         if self.method == LINEAR:
@@ -89,7 +94,18 @@ class Inquiry:
         return value, estimate, bound
 
     def answer(self, name, factors):
-        """``(value, error)`` of one variable, (n,) each; stored bits at nodes. NaN where nothing can be said."""
+        """``(value, error)`` of one variable, (n,) each; stored bits at nodes. NaN where nothing can be said. ``factors``
+        gives those of a variable.
+        """
+        value, error = self._as_stored(name, factors(name))
+        exchanged = self.marks[:, 5] == 1
+        if name in EXCHANGED and exchanged.any():
+            others = self._as_stored(EXCHANGED[name], factors(EXCHANGED[name]))
+            value, error = (np.where(exchanged, other, one) for other, one in zip(others, (value, error)))
+        return value, error
+
+    def _as_stored(self, name, factors):
+        """The same by the order of the families in the table."""
         value, estimate, bound, beside = self.estimate(name, factors.scales)
         error = errors.stated(factors, estimate, bound, self.natural_size(name, value), beside)
         if self.exact.any():

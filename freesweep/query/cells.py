@@ -8,18 +8,19 @@ import numpy as np
 
 from .axis import LABEL, WINDOW, extrapolation
 from .missing_nodes import weigh
+from .phases import remainders_within
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
 KINK = (0.25, 0.04, 0.01)  # of a change of slope times the width: what cubics miss in its piece, and one and two beside
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
 
 
-def describe(values, noise, doubt, bad, phases, axes):
+def describe(values, noise, doubt, bad, phases, axes, stored):
     """What is known of all cells (nodes, ROUGH + d) of a grid over ``axes``.
 
     ``values`` (nodes,) are end effects, holes filled; ``noise`` (nodes,) their bounds; ``doubt`` (nodes,) how far numbers
     that were put in may be off; ``bad`` (nodes,) marks nodes that had none; ``phases`` (nodes,) are alike where numbers are
-    smooth, or None if they are everywhere.
+    smooth, or None if they are everywhere. ``stored`` (2, nodes) are the slopes along the two inner axes.
     """
     shape = [len(axis.nodes) for axis in axes]
     slabs, size = shape[0], len(values) // shape[0]
@@ -29,7 +30,8 @@ def describe(values, noise, doubt, bad, phases, axes):
     first_reached = np.zeros((slabs, size), bool)
     if 0 in kept:
         _remainders(values, axes[0], kept[0], own[ROUGH].reshape(-1))
-        _kinks(values, phases, axes[0], kept[0], own[ROUGH].reshape(-1))
+        if phases is not None:
+            _kinks(values, np.zeros(len(values), bool), phases, axes[0], kept[0], own[ROUGH].reshape(-1))
         _reach(bad, kept[0], axes[0].first, first_reached.reshape(-1))
     for slab in range(slabs):
         here = slice(slab * size, (slab + 1) * size)
@@ -43,8 +45,13 @@ def describe(values, noise, doubt, bad, phases, axes):
             rough = own[ROUGH + a, slab]
             if a > 0:
                 _remainders(values[here], axes[a], inner[a], rough)
+                within = np.zeros(size, bool)
+                if phases is not None and a >= len(axes) - len(stored):
+                    slopes = stored[a - len(axes)][here]
+                    remainders_within(values[here], slopes, phases[here], axes[a].nodes, inner[a][1], rough, within)
                 _smooth_over(rough, inner[a])
-                _kinks(values[here], None if phases is None else phases[here], axes[a], inner[a], rough)
+                if phases is not None:
+                    _kinks(values[here], within, phases[here], axes[a], inner[a], rough)
             for extent in (extent for other, extent in inner.items() if other != a):
                 _over_corners(rough, extent)
     if 0 in kept:
@@ -69,10 +76,10 @@ def _remainders(values, axis, extent, rough):
     rough[:] = np.where(out < np.inf, out, np.inf)
 
 
-def _kinks(values, phases, axis, extent, rough):
-    """Where phases (nodes,) change along one axis, at least what a kink leaves there, and in the pieces that it reaches."""
-    if phases is None:
-        return
+def _kinks(values, within, phases, axis, extent, rough):
+    """Where phases (nodes,) change along one axis, at least what a kink leaves there, and in the pieces that it reaches: not
+    those that know nodes ``within`` their phase only.
+    """
     nodes = phases.reshape(-1, *extent)
     changes = nodes[:, :-1] != nodes[:, 1:]
     if not changes.any():
@@ -84,9 +91,10 @@ def _kinks(values, phases, axis, extent, rough):
     pieces = rough.reshape(-1, *extent)[:, :-1]
     jump = np.where(changes, np.where(jump < np.inf, jump, np.inf).reshape(-1, *extent)[:, :-1], 0.0)
     np.maximum(pieces, KINK[0] * jump, out=pieces)
+    reached = ~within.reshape(-1, *extent)[:, :-1]
     for apart, share in enumerate(KINK[1:], 1):
-        np.maximum(pieces[:, apart:], share * jump[:, :-apart], out=pieces[:, apart:])
-        np.maximum(pieces[:, :-apart], share * jump[:, apart:], out=pieces[:, :-apart])
+        for to, by in ((slice(apart, None), slice(None, -apart)), (slice(None, -apart), slice(apart, None))):
+            np.maximum(pieces[:, to], np.where(reached[:, to], share * jump[:, by], 0.0), out=pieces[:, to])
 
 
 def _over_corners(numbers, extent):

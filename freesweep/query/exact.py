@@ -8,7 +8,7 @@ from numba import config
 
 from ..description.actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
 from ..description.tube_model import MODELS
-from ..scaling import OUTPUTS, output_scales, problem_rows, wall_volume_inside
+from ..scaling import ALONG, OUTPUTS, output_scales, problem_rows, wall_volume_inside
 from ..solver.status import PENDING
 from ..status import DEGENERATE, INVALID, NOT_CONVERGED, VALUED
 from . import reference
@@ -39,6 +39,7 @@ def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["s
     rows = problem_rows(own, energy, model.is_thick, model.is_loose)
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
     names = ("force",) if kind == reference.LENGTH_HELD else ("torque",) if held else OUTPUTS
+    names += ALONG if model.is_physical and not held else ()
     found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
     slack, stable, limits = np.zeros(count, np.int8), np.zeros(count, np.int8), np.full((count, 2), np.nan)
     pressure = np.full(len(good), np.inf) if kind == reference.LOCKED else own["pressure"] / own["c10"]
@@ -96,7 +97,7 @@ def _free(rows, pressure, most, accuracy, cells, thorough):
     if thorough or config.DISABLE_JIT:
         walks = batch.walk_all(rows, first, pressures, batch.uniform(cells), accuracy, soon=True)
     else:
-        walks = batch._nothing(count, len(pressures), batch.NOTHING)
+        walks = batch._nothing(rows, len(pressures), batch.NOTHING)
         batch._walk_lanes(rows, first, pressures, cells, accuracy, batch.NOTHING, walks)
         walks.status[walks.status == PENDING] = NOT_CONVERGED
     own = slice(0, None, steps)

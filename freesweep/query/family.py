@@ -6,12 +6,20 @@ from . import reference as r
 
 
 class Family(NamedTuple):
-    """``variables`` maps names to variables of :mod:`reference`; ``status`` and ``flag`` are the names stored beside."""
+    """``variables`` maps names to variables of :mod:`reference`; ``status`` and ``flag`` are the names stored beside,
+    ``answered`` the status of an answer where it is one of its own.
+    """
 
     kind: int
     variables: dict
     status: str | None
     flag: str | None = None
+    answered: str | None = None
+
+    @property
+    def answer_status(self) -> str:
+        """The status beside an answer."""
+        return self.answered or self.status
 
 
 _SHAPE = {
@@ -23,8 +31,14 @@ _SHAPE = {
 }
 
 
+def _slack(prefix):
+    return {f"{prefix}slack_alpha": r.SLACK_ALPHA, f"{prefix}slack_beta": r.SLACK_BETA}
+
+
 FAMILIES = {
-    "state": Family(r.LOADED, _SHAPE, "status", "stable"),
+    "state": Family(r.LOADED, _SHAPE | {"outer_radius": r.OUTER_RADIUS}, "status", "stable"),
+    "slack": Family(r.LOADED, _slack(""), "status", answered="slack_status"),
+    "locked_slack": Family(r.LOCKED, _slack("locked_"), "locked_status", answered="locked_slack_status"),
     "locked": Family(r.LOCKED, {f"locked_{name}": variable for name, variable in _SHAPE.items()}, "locked_status"),
     "blocked_force": Family(
         r.LENGTH_HELD, {"blocked_force": r.HOLDING_FORCE}, "blocked_force_status", "blocked_force_stable"
@@ -32,10 +46,13 @@ FAMILIES = {
     "blocked_torque": Family(
         r.ROTATION_HELD, {"blocked_torque": r.HOLDING_TORQUE}, "blocked_torque_status", "blocked_torque_stable"
     ),
-    "limit": Family(r.NONE, {"limit_pressure": r.PLAIN}, None, "limit_found"),
+    "limit": Family(r.NONE, {"limit_pressure": r.PLAIN}, None, "limit_found", "limit_pressure_status"),
 }
 FAMILY_OF = {name: key for key, family in FAMILIES.items() for name in family.variables}
 IDEAL = ("ideal_blocked_force", "ideal_blocked_torque")  # closed forms: evaluated, never interpolated
 
 MIRRORED = ("rotation", "locked_rotation", "blocked_torque", "ideal_blocked_torque")  # turn round with both angles
-LOOSE = (r.ROTATION, r.ENERGY, r.HOLDING_FORCE, r.HOLDING_TORQUE)  # ten times the tolerance of lengths
+LOOSE = (  # ten times the tolerance of lengths
+    r.ROTATION, r.ENERGY, r.HOLDING_FORCE, r.HOLDING_TORQUE, r.SLACK_ALPHA, r.SLACK_BETA,
+)  # fmt: skip
+TOLD_FROM = {"outer_radius": "mid_radius"}  # in closed form

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..atlas.schema import VARIABLES, without
 from .answer import SORTED, Inquiry
-from .family import FAMILIES
+from .family import FAMILIES, TOLD_FROM
 from .measure import measured
 from .query import Reader
 
@@ -38,6 +38,8 @@ def _made_up():
 
     data = xr.Dataset(coords=AXES | FIXED | {"fiber_extension": 1.0, "force": 0.0, "torque": 0.0})
     for name in (name for key in KEYS for name in (*FAMILIES[key].variables, FAMILIES[key].status)):
+        if name in TOLD_FROM:  # of physical tubes
+            continue
         dims = [axis for axis in AXES if axis not in without(name)]
         shape = [len(AXES[axis]) for axis in dims]
         if name in VARIABLES:

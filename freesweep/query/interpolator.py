@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..atlas.schema import PARAMETERS
+from ..atlas.schema import EXCHANGED, PARAMETERS
 from ..description.given import numbers
 from ..description.options import read_switch
 from ..description.quantities import Quantities
@@ -13,7 +13,7 @@ from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import reference
 from .answer import Inquiry
 from .axis import LABEL
-from .family import FAMILY_OF, MIRRORED
+from .family import FAMILY_OF, MIRRORED, TOLD_FROM
 from .faults import QueryError
 from .query import check_names
 
@@ -86,11 +86,14 @@ class Interpolator:
         inquiry = Inquiry(table, flat)
         too_large = np.zeros(inquiry.size, bool)
         for k, name in own:
-            value, error = inquiry.answer(name, self.reader.factors(name))
+            value, error = inquiry.answer(name, self.reader.factors)
             too_large |= inquiry.exceeds(name, value, error, self.reader.tolerance)
             found[k] = value
             if slopes is not None:
                 slopes[k] = self._gradient(inquiry, name)
+                if name in EXCHANGED:
+                    exchanged = inquiry.marks[:, 5] == 1
+                    slopes[k] = np.where(exchanged, self._gradient(inquiry, EXCHANGED[name]), slopes[k])
         status = np.where(too_large, NOT_INTERPOLABLE, inquiry.status)
         lost = (status != OK) & (status != INACCURATE)
         for k, _ in own:
@@ -142,4 +145,6 @@ def _restore(table, name, points, states, effects, out):
     """Values at end effects (n,) into ``out[0]``."""
     nothing = np.zeros(len(effects))
     args = (effects, nothing, nothing, out[0], out[1], out[2])
-    reference.restore_all(table.family.variables[name], points, states, *args)
+    reference.restore_all(table.family.variables[TOLD_FROM.get(name, name)], points, states, *args)
+    if name in TOLD_FROM:
+        out[0] = table.predictor.outer_radius(points, out[0], nothing, nothing)[0]

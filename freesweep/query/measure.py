@@ -19,7 +19,7 @@ from .refine import exact_answers
 SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
 FEWEST, FEW = 2_000, 10_000  # at least, and at most, of physical tubes, which take a thousand times as long
-HELD_SHARE = 2  # held states cost more: so much fewer designs
+HELD_SHARE, SLACK_SHARE = 2, 4  # held states cost more, slack shares are solved for once more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
 LOOSE_SHARPER = 1.0  # where fibers go slack digits are dear, and what lies between nodes errs by far more
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
@@ -50,7 +50,7 @@ def measured(data, designs=None) -> dict:
         names = sorted((name for name in family.variables if name in data), key=lambda name: name != "mid_radius")
         if key == "limit" or not names or not reader.table(key).names:
             continue
-        own = count // HELD_SHARE if key.startswith("blocked") else count
+        own = count // (HELD_SHARE if key.startswith("blocked") else SLACK_SHARE if key.endswith("slack") else 1)
         drawn = _draw(reader, reader.table(key), own)
         share, results = _family(reader, key, names, drawn)
         answered[key] = share
@@ -79,7 +79,7 @@ def _family(reader, key, names, values):
     sharper = LOOSE_SHARPER if reader.frame.model.is_loose else SHARPER
     accuracy = max(sharper * reader.frame.accuracy, ACCURACIES[0])
     exact = exact_answers(reader, key, inquiry.points[places], names, accuracy)
-    solved = np.isin(exact[table.family.status], VALUED)
+    solved = np.isin(exact[table.family.answer_status], VALUED)
     with ThreadPoolExecutor(TOGETHER if table.size <= MUCH else 1) as pool:
         kept = dict(
             zip(names, pool.map(lambda name: _compare(inquiry, name, places, exact[name], solved, reader), names))

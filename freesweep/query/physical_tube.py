@@ -155,6 +155,8 @@ def uniform(kind, point, thick, loose, columns, out):
         return
     s = math.sqrt(1.0 + G_1)
     out[3], out[4], out[5], out[6] = y * y, s, psi, stored(y, G_1, psi, area, rubber, wall) / area
+    if kind == LOADED and loose == 0.0 and p * y * y + f > 0.0:  # bonded fibers may push
+        taut_alpha, taut_beta = pulling(y, p * y * y + f, G_1, psi, cell, load)
     out[TAUT] = kind_of(taut_alpha, taut_beta)
     if not held:
         return
@@ -172,6 +174,14 @@ def uniform(kind, point, thick, loose, columns, out):
         out[8] /= abs(psi_y)
 
 
+@kernel
+def pulling(y, pull, G_1, psi, cell, load):
+    """Which of two bonded families do not push, where the axial resultant is ``pull``."""
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load[1], load[2])
+    alpha, beta = multipliers(y, math.sqrt(1.0 + G_1), psi, True, True, cell[0], cell[1], pull, load[5], W_G, W_p)
+    return alpha >= 0.0, beta >= 0.0
+
+
 @functools.partial(entry_point, others=("solver",))
 def physical_states(kind, points, thick, loose, columns, out):
     """:func:`uniform` of points (n, 15) into ``out`` (n, UNIFORM); ``thick`` and ``loose``: 0.0 or 1.0; ``columns`` of the
@@ -182,9 +192,8 @@ def physical_states(kind, points, thick, loose, columns, out):
 
 
 @kernel
-def firmness(y, constant, cell, load):
-    """How firmly both families are held where the stretch is ``y``, over the load: multipliers, and of a slack one how much
-    is missing, negative.
+def along(y, constant, cell, load):
+    """``(T', G - 1, psi, taut alpha, taut beta)`` where the stretch is ``y``.
 
     Where nothing varies along a tube, L - v L_v = T' sqrt(G) - W + m psi is ``constant``, with G and psi those at slope 0
     under T' = T sqrt(G)/s; it rises with T' by sqrt(G).
@@ -198,6 +207,15 @@ def firmness(y, constant, cell, load):
         pull = max(pull - error / s, 0.5 * pull)
         if abs(error) <= ENOUGH * scale:
             break
+    return pull, G_1, psi, taut_alpha, taut_beta
+
+
+@kernel
+def firmness(y, constant, cell, load):
+    """How firmly both families are held where the stretch is ``y``, over the load: multipliers, and of a slack one how much
+    is missing, negative.
+    """
+    scale, (pull, G_1, psi, taut_alpha, taut_beta) = load[3] + abs(load[4]), along(y, constant, cell, load)
     _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load[1], load[2])
     s = math.sqrt(max(1.0 + G_1, LEAST))
     alpha, beta = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load[5], W_G, W_p)
@@ -228,3 +246,46 @@ def slack_somewhere(points, mid_radius, thick, loose, columns, out):
 def is_sure(firm, loose):
     """Whether a sign is far enough from zero: of a slack thread what is missing, of second order there, is told."""
     return firm > UNSURE or firm < (-MISSING if loose > 0.0 else -UNSURE)
+
+
+@functools.partial(entry_point, others=("solver",))
+def middles(points, mid_radius, thick, loose, columns, out):
+    """Meridional stretch, stretch and twist rate (n, 3) of the fiber surface in the middle of physical tubes under pressure,
+    from the radius there (n,) [m]; NaN where none is.
+    """
+    for k in range(len(points)):
+        cell, load = problem(points[k], thick, loose, columns)
+        y = mid_radius[k] / points[k, FIBERS]
+        out[k, 0], out[k, 1], out[k, 2] = math.nan, math.nan, math.nan
+        if y > 0.0:
+            _, G_1, psi, _, _ = place(y, 0.0, load[3] * y * y + load[4], cell, load)
+            out[k, 0], out[k, 1], out[k, 2] = math.sqrt(max(1.0 + G_1, LEAST)), y, psi
+
+
+@functools.partial(entry_point, others=("solver",))
+def outer_radius(points, mid_radius, thick, loose, columns, out, missed):
+    """The largest outer radius (n,) [m] along tubes with these radii in the middle (n,) [m], from the clamped ends on, and
+    what it may miss between the places that are looked at.
+    """
+    for k in range(len(points)):
+        point, r = points[k], points[k, FIBERS]
+        cell, load = problem(point, thick, loose, columns)
+        y_middle, outside = mid_radius[k] / r, ((point[RADIUS] + point[WALL]) / r) ** 2 - 1.0
+        out[k], missed[k] = math.nan, 0.0
+        if not y_middle > 0.0:
+            continue
+        if abs(outside) < LEAST or y_middle == 1.0:  # the fibers are the outermost, or nothing is deformed
+            out[k] = r * math.sqrt(max(1.0, y_middle) ** 2 + outside)
+            continue
+        constant = uniform_tube(y_middle, cell, load)[2]
+        before, last, most, doubt = math.nan, math.nan, 0.0, 0.0
+        for j in range(PLACES + 1):
+            y = 1.0 + (y_middle - 1.0) * j / PLACES
+            _, G_1, _, _, _ = along(y, constant, cell, load)
+            square = y * y + outside / math.sqrt(max(1.0 + G_1, LEAST))
+            if j > 1:
+                doubt = max(doubt, 0.125 * abs(square - 2.0 * last + before))
+            before, last, most = last, square, max(most, square)
+        inside = most > last and most > 0.0
+        out[k] = r * math.sqrt(most)
+        missed[k] = 0.5 * r * doubt / math.sqrt(most) if inside else 0.0

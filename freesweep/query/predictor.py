@@ -42,6 +42,25 @@ class Predictor(NamedTuple):
         columns = YEOH if np.any(points[:, [reference.C20, reference.C30]] != 0.0) else MOONEY_RIVLIN
         return float(self.model.is_thick), float(self.model.is_loose), columns
 
+    def middles(self, points, mid_radius) -> np.ndarray:
+        """``(meridional stretch, stretch, twist rate)`` (n, 3) of physical tubes under pressure where they are that wide."""
+        from .physical_tube import middles
+
+        found = np.empty((len(points), 3))
+        middles(points, mid_radius, *self._physical(points), found)
+        return found
+
+    def outer_radius(self, points, mid_radius, estimate, bound) -> tuple:
+        """``(value, estimate, bound)`` of the largest outer radius (n,) [m] of physical tubes under pressure, from those of
+        the radius in the middle.
+        """
+        from .physical_tube import outer_radius
+
+        found, missed = np.empty((3, len(points))), np.empty((3, len(points)))
+        for k, middle in enumerate((mid_radius, mid_radius + estimate, mid_radius + bound)):
+            outer_radius(points, middle, *self._physical(points), found[k], missed[k])
+        return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0])
+
     def slack_families(self, points, states, mid_radius) -> np.ndarray:
         """Flags (n,) of :func:`slack.slack_families` at points (n, 15), from the radius in the middle (n,) [m]."""
         told = np.empty(len(points), np.uint8)

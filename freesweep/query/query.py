@@ -23,6 +23,11 @@ from .ideal import ideal_answer
 from .question import read_question
 from .table import Table
 
+STATUSES_OF_ANSWERS = {  # that no atlas holds
+    "limit_pressure_status": "status of the limit pressure",
+    "slack_status": "status of the slack shares",
+    "locked_slack_status": "status of the slack shares, locked",
+}
 CHUNK = 1 << 18  # points answered together: their arrays fit in memory, and many share a cell
 ALONE = 1 << 14  # points for which a second thread is not worth its start
 NEAR = 1e-12  # relative: what counts as the end of an axis
@@ -56,8 +61,8 @@ class Reader:
     def attributes(self, name) -> dict:
         """CF attributes of a variable of an answer."""
         if name not in self._attributes:
-            if name == "limit_pressure_status":
-                self._attributes[name] = {"long_name": "status of the limit pressure", **status_attributes()}
+            if name in STATUSES_OF_ANSWERS:
+                self._attributes[name] = {"long_name": STATUSES_OF_ANSWERS[name], **status_attributes()}
             else:
                 self._attributes[name] = attributes(name)
         return self._attributes[name]
@@ -118,7 +123,7 @@ class Reader:
         flags = inquiry.flags()
         found, too_large = {}, np.zeros(inquiry.size, bool)
         for name in names:
-            value, error = inquiry.answer(name, self.factors(name))
+            value, error = inquiry.answer(name, self.factors)
             exceeds = inquiry.exceeds(name, value, error, tolerance)
             if coarse is not None:
                 inquiry.blame(name, exceeds & ~too_large & inquiry.valued, self.factors(name).scales, coarse)
@@ -134,7 +139,7 @@ class Reader:
             found[name] = np.where(valued, found[name], np.nan)
         for name, flag in flags.items():
             found[name] = np.where(valued, flag, 0).astype(np.int8)
-        found[table.family.status or f"{names[0]}_status"] = status
+        found[table.family.answer_status] = status
         return found
 
 

@@ -23,9 +23,10 @@ ALPHA, BETA, LENGTH, RADIUS, WALL, FIBERS, EXTENSION, C10, C01, FORCE, TORQUE, P
 
 NONE, LOADED, LOCKED, LENGTH_HELD, ROTATION_HELD = range(5)  # kinds of states; and variables:
 PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE = range(8)
+SLACK_ALPHA, SLACK_BETA, OUTER_RADIUS = range(8, 11)  # the last is told from the middle's
 
 UNIFORM = 10  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier, its rounding, and
-TAUT = 9  # which fibers of a loose tube are taut: 0 none, 1 alpha, 2 beta, 3 both
+TAUT = 9  # which fibers of a physical tube pull: 0 none, 1 alpha, 2 beta, 3 both
 TINY = 1e-5  # what the middle of a long tube lacks is not told from nothing below it, of its swelling
 CANCELLATION = 1e-15  # of the energy of a unit of strain
 ROUNDING = 1e-13  # of a value, and of the closed form
@@ -91,6 +92,9 @@ def reference(variable, point, u):
     q = u[3]
     if variable == PLAIN:
         return 0.0, 0.0, 1.0
+    if variable == SLACK_ALPHA or variable == SLACK_BETA:  # a long tube is all middle; its ends are some radii long
+        pulls = u[TAUT] == 3.0 or u[TAUT] == (1.0 if variable == SLACK_ALPHA else 2.0)
+        return (0.0 if pulls else 1.0) if u[TAUT] >= 0.0 else math.nan, 0.0, r / length
     swelling = q - 1.0
     if variable == DEFORMED_LENGTH:
         return length * u[4], 0.0, r * swelling
@@ -175,7 +179,8 @@ def _restore(variable, points, states, terms, effects, rests, noise, values, est
 
 @entry_point
 def _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise):
-    shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE
+    slack = variable == SLACK_ALPHA or variable == SLACK_BETA
+    shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE and not slack
     for k in range(len(stored)):
         offset, base, scale = terms[k, 0], terms[k, 1], terms[k, 2]
         q = states[k, 3]
@@ -183,6 +188,8 @@ def _end_effects(variable, kind, points, states, terms, stored, errors, effects,
         if kind == LOADED and points[k, PRESSURE] == 0.0 and q == 1.0 and shape:
             # at rest; the width of the end layer goes with the square root of pressure
             effect = math.log(TINY) if variable == MID_RADIUS else 0.0
+        elif kind == LOADED and points[k, PRESSURE] == 0.0 and q == 1.0 and slack:
+            effect = math.nan  # nothing pulls, and nothing is slack: there is no telling what comes with the least load
         elif not (shape and abs(q - 1.0) < LEAST) and not (variable == ROTATION and abs(states[k, 0]) < LEAST):
             slope = scale
             if base == 0.0:

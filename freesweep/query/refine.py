@@ -21,8 +21,7 @@ def refine_answers(reader, question, names, found) -> None:
         own = [name for name in names if FAMILY_OF.get(name) == key]
         if not own:
             continue
-        code = family.status or f"{own[0]}_status"
-        todo = np.flatnonzero(found[code] == NOT_INTERPOLABLE)
+        todo = np.flatnonzero(found[family.answer_status] == NOT_INTERPOLABLE)
         if not len(todo):
             continue
         if not reader.frame.uniform_along_x:
@@ -60,7 +59,7 @@ def exact_answers(reader, key, points, names, accuracy=None) -> dict:
         known = np.isin(solved["status"], VALUED) | np.isfinite(solved["limit_pressure"])
         found["limit_pressure_status"] = np.where(known, 0, solved["status"]).astype(np.int8)
         return found
-    found[family.status] = solved["status"]
+    found[family.answer_status] = solved["status"]
     if family.flag in frame.dims:
         found[family.flag] = np.where(np.isin(solved["status"], VALUED), solved["stable"], 0).astype(np.int8)
     if key == "state" and "slack_fiber" in frame.dims:

@@ -9,10 +9,11 @@ from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
 from .cells import describe
-from .family import FAMILIES
+from .family import FAMILIES, TOLD_FROM
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
 from .missing_nodes import cell_codes, fill, slopes
+from .phases import slopes_within
 from .predictor import Predictor
 from .reference import COLUMNS, end_effects
 from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
@@ -54,15 +55,16 @@ class Table:
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
         self.knots, self.windows, self.coordinates = self._packed()
         self._place()
+        self._variables, self._stored, self._errors, self._states, self._phases = {}, {}, {}, None, None
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
+        self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
         slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
         self.is_kinked = self.has_slack and frame.model.is_physical  # numbers have kinks where slack begins or ends
         # of held loose tubes there is no closed form
         self.is_untold = frame.model.is_loose and self.family.kind in HELD_NAMES.values()
         self.codes = np.stack([self._codes(), self._beyond_rest(slack) if self.is_kinked else slack])
         self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
-        self._variables, self._stored, self._errors, self._states, self._phases = {}, {}, {}, None, None
 
     def _place(self):
         """What :func:`place` has to know of the columns of a question."""
@@ -126,6 +128,8 @@ class Table:
             codes |= self._grid(status).astype(np.uint8)
         if self.has_flag:
             codes |= self._grid(flag).astype(np.uint8) << 4
+        if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
+            codes |= self.phases() << 4
         return codes
 
     def _beyond_rest(self, slack):
@@ -169,7 +173,8 @@ class Table:
             kept.pop(name, None)
 
     def variable(self, name):
-        """The :class:`Interpolant` of one variable."""
+        """The :class:`Interpolant` of one variable, or of the one that it is told from."""
+        name = TOLD_FROM.get(name, name)
         if name not in self._variables:
             self._variables[name] = self._interpolant(name)
         return self._variables[name]
@@ -179,13 +184,14 @@ class Table:
         effects, noise = self._end_effects(name)
         bad = ~np.isfinite(effects)
         doubt = fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
-        along = np.empty((3, len(effects)))
+        along, phases = np.empty((3, len(effects))), self.phases()
         for column, source, axis in ((0, effects, -1), (1, effects, -2), (2, along[0], -2)):
             slopes(source, self.axes[axis], int(self.strides[axis]), along[column])
+            if phases is not None:
+                slopes_within(source, phases, self.axes[axis].nodes, int(self.strides[axis]), along[column])
         table = np.empty((len(effects), NODE))
         table[:, 0], table[:, 1:] = effects, along.T
-        del along
-        return Interpolant(table.ravel(), describe(effects, noise, doubt, bad, self.phases(), self.axes))
+        return Interpolant(table.ravel(), describe(effects, noise, doubt, bad, phases, self.axes, along[1::-1]))
 
     def states(self) -> GridStates:
         """Uniform states of the grid."""
@@ -195,16 +201,20 @@ class Table:
         return self._states
 
     def phases(self):
-        """Which loose fibers are slack, in the middle of a long tube and anywhere, (nodes,): where it changes, numbers have
-        kinks. None where they have none.
+        """Which fibers are slack, in the middle of a long tube and anywhere, (nodes,): where it changes, numbers have kinks.
+        None where they have none.
         """
-        if not (self.has_slack and self.frame.model.is_loose):
+        if not self.tells_slack and not (self.has_slack and self.frame.model.is_loose):
             return None
         if self._phases is None:
             size = int(self.strides[0])
-            kinds = [self.states().slab(k)[:, reference.TAUT] for k in range(len(self.codes[1]) // size)]
+            kinds = [self.states().slab(k)[:, reference.TAUT] for k in range(self.size // size)]
             kinds = np.nan_to_num(np.concatenate(kinds), nan=3.0).astype(np.uint8)
-            self._phases = self._beyond_rest(kinds) | self.codes[1]
+            if self.tells_slack:
+                some = [(self._grid(name) > 0.0).astype(np.uint8) for name in self.family.variables]
+                self._phases = self._beyond_rest(kinds | some[0] << 2 | some[1] << 3)
+            else:
+                self._phases = self._beyond_rest(kinds) | self.codes[1]
         return self._phases
 
     def _end_effects(self, name):

@@ -6,6 +6,7 @@ import numpy as np
 from numba import config
 
 from ..interpret import at_once
+from .along.places import NUMBERS
 from .along.profile import FIELDS
 from .free.free_states import follow_many
 from .halves import one_by_one
@@ -13,7 +14,7 @@ from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressu
 from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
 from .status import PENDING
 
-OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle
+OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
 NOTHING = np.empty(0)
 FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
@@ -48,7 +49,7 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
         np.ascontiguousarray(problems),
         np.ascontiguousarray(pressures),
     )  # others would be compiled for anew
-    found = _nothing(len(problems), len(pressures), stations)
+    found = _nothing(problems, len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
     drawn = len(stations) > 0 and wall_columns(problems) == PHYSICAL  # vectors draw no profiles of such tubes
     if lanes and len(tube[0]) == 0 and not drawn and not config.DISABLE_JIT:
@@ -68,7 +69,7 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
 def walk_by_vectors(problems, pressures, cells, accuracy) -> Walks:
     """Each problem at its own pressure, of tubes that do not vary: what vectors find, PENDING where they leave it open."""
     count = len(problems)
-    first, found = np.arange(count + 1), _nothing(count, count, NOTHING)
+    first, found = np.arange(count + 1), _nothing(problems, count, NOTHING)
     pressures, _ = next_to_nothing(problems, first, pressures)
     _walk_lanes(problems, first, pressures, cells, accuracy, NOTHING, found)
     return found
@@ -93,7 +94,7 @@ def _walk_lanes(problems, first, pressures, base, accuracy, stations, found):
         return
     own = legs(problems, first, pressures)
     asked = own.rows >= 0
-    on_the_way = _nothing(len(own.owners), len(own.pressures), stations)
+    on_the_way = _nothing(problems[own.owners], len(own.pressures), stations)
     _solve_lanes(problems[own.owners], own.first, own.pressures, asked, base, accuracy, stations, on_the_way)
     for name in STATES:
         getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
@@ -101,9 +102,10 @@ def _walk_lanes(problems, first, pressures, base, accuracy, stations, found):
 
 def _nothing(problems, states, stations):
     """Room for walks that are not made yet."""
+    columns = OUTPUTS + (len(NUMBERS) if wall_columns(problems) == PHYSICAL else 0)
     return Walks(
-        np.full((states, OUTPUTS), np.nan), np.full((states, OUTPUTS), np.nan), np.full(states, PENDING, np.int64),
-        np.zeros(states, np.int64), np.full((problems, 2), np.nan), np.full((states, FIELDS, len(stations)), np.nan),
+        np.full((states, columns), np.nan), np.full((states, columns), np.nan), np.full(states, PENDING, np.int64),
+        np.zeros(states, np.int64), np.full((len(problems), 2), np.nan), np.full((states, FIELDS, len(stations)), np.nan),
     )  # fmt: skip
 
 

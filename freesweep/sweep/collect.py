@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import ideal, status
 from ..atlas.schema import absent
-from ..scaling import OUTPUTS, output_scales, wall_volume_inside
+from ..scaling import ALONG, OUTPUTS, output_scales, wall_volume_inside
 from .grid import Grid
 from .plan import FREE
 from .records import upward
@@ -35,18 +35,27 @@ class Group(NamedTuple):
 def groups(sweep) -> list:
     """All variables of an atlas."""
     shapes = [f"locked_{name}" for name in OUTPUTS if name != "strain_energy"]
+    along = _along(sweep)
     wanted = [
-        (FREE, _states, [*OUTPUTS], ["status", "slack_fiber", "stable"]),
+        (FREE, _states, [*OUTPUTS, *along], ["status", "slack_fiber", "stable"]),
         (FREE, _limits, ["limit_pressure"], ["limit_found"]),
         (FREE, _locked, shapes, []),
         (FREE, _locked, ["locked_strain_energy"], ["locked_status"]),
     ]
+    wanted += [(FREE, _locked, [f"locked_{name}"], []) for name in along]
     wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
     if (
         not {"alpha", "beta", "radius"} & set(sweep.profiles) and not sweep.model.is_loose
     ):  # bars may push, threads do not
         wanted += [(FREE, _ideal, [name], [f"{name}_status"]) for name in ideal.NAMES]
     return [_group(sweep, *each) for each in wanted]
+
+
+def _along(sweep):
+    """What an atlas tells of physical tubes along their length: of a thick wall its outer radius, too, but of bodies."""
+    if not sweep.model.is_physical:
+        return ()
+    return ALONG if sweep.model.is_thick and "radius" not in sweep.profiles else ALONG[:2]
 
 
 def _group(sweep, kind, make, values, codes):
@@ -82,7 +91,7 @@ def _outputs(table, records, at, rows):
     if body := table.grid.surface_of_bodies(design):
         scales["mid_radius"], inside = body
     arrays = {"status": codes}
-    for k, name in enumerate(OUTPUTS):
+    for k, name in enumerate((*OUTPUTS, *_along(table.grid.sweep))):
         value = _spread(states["values"][..., k], solved, valued, np.nan) * scales[name]
         if name == "rotation":
             value = np.where(found.mirrored[:, None], -value, value) + 0.0  # + 0.0: no negative zeros
@@ -90,6 +99,10 @@ def _outputs(table, records, at, rows):
             value = value - inside
         bound = _spread(states["bounds"][..., k].astype(float), solved, valued, np.nan) * scales[name]
         arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
+    for end in ("", "_error") if "slack_alpha" in arrays else ():
+        one, other = arrays[f"slack_alpha{end}"], arrays[f"slack_beta{end}"]
+        arrays[f"slack_alpha{end}"] = np.where(found.swapped[:, None], other, one)
+        arrays[f"slack_beta{end}"] = np.where(found.swapped[:, None], one, other)
     slack = _spread(states["slack"], solved, valued, 0)
     arrays["slack_fiber"] = np.where(found.swapped[:, None], (slack & 1) << 1 | slack >> 1, slack)
     arrays["stable"] = valued  # the walk keeps to stable states

@@ -63,7 +63,8 @@ def check_memory(sweep):
 def disk(sweep, equilibria) -> tuple:
     """Bytes of the shards while a sweep runs, and of its atlas, at most; ``equilibria`` of each kind."""
     shards = (
-        sum(count * state(kind).itemsize for kind, count in equilibria.items()) + grids(sweep)[FREE] * LIMIT.itemsize
+        sum(count * state(kind, sweep.model.is_physical).itemsize for kind, count in equilibria.items())
+        + grids(sweep)[FREE] * LIMIT.itemsize
     )
     steps = len(sweep.axes.get("pressure", [0.0]))
     numbers = sum(

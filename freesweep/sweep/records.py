@@ -2,16 +2,24 @@
 
 import numpy as np
 
+from ..scaling import ALONG, OUTPUTS
 from ..status import NOT_CONVERGED
 
-FREE_STATE = np.dtype([("values", "<f8", 5), ("bounds", "<f4", 5), ("status", "i1"), ("slack", "i1")])
+
+def _free_state(count):
+    return np.dtype([("values", "<f8", count), ("bounds", "<f4", count), ("status", "i1"), ("slack", "i1")])
+
+
+FREE_STATE, PHYSICAL_STATE = _free_state(len(OUTPUTS)), _free_state(len(OUTPUTS) + len(ALONG))
 LIMIT = np.dtype([("limit", "<f8"), ("bound", "<f8")])  # of each problem
 HELD_STATE = np.dtype([("value", "<f8"), ("bound", "<f4"), ("status", "i1"), ("stable", "i1")])
 
 
-def state(kind) -> np.dtype:
-    """The record of a state of one kind."""
-    return FREE_STATE if kind == "free" else HELD_STATE
+def state(kind, physical) -> np.dtype:
+    """The record of a state of one kind, of the source's tubes or of physical ones."""
+    if kind != "free":
+        return HELD_STATE
+    return PHYSICAL_STATE if physical else FREE_STATE
 
 
 def upward(bound):
@@ -32,14 +40,14 @@ def unsolved(dtype, status):
 
 
 class Records:
-    """Records of one kind of state, read from its shards where they are needed.
+    """Records of one type, read from its shards where they are needed.
 
     ``parts`` are the problems (first, last + 1) of each shard, ``first`` where each problem's states begin, ``paths`` the
     files, None where a shard killed its workers; ``contents`` gives the bytes of a file.
     """
 
-    def __init__(self, kind, parts, first, paths, contents):
-        self.dtype, self.paths, self.contents = state(kind), paths, contents
+    def __init__(self, dtype, parts, first, paths, contents):
+        self.dtype, self.paths, self.contents = dtype, paths, contents
         self.problems = np.array([a for a, _ in parts] + [parts[-1][1] if parts else 0], np.int64)
         self.rows = first[self.problems]
 

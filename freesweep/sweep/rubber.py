@@ -9,7 +9,7 @@ from ..description.elastomer import convex_to
 from ..description.faults import ActuatorError
 from ..description.material_library import material
 from ..description.profiles import as_profile
-from ..description.strain import first_invariant, largest_stretch
+from ..description.strain import invariant, largest_principal, membrane
 from ..description.tube_model import fiber_surface, model_of
 
 CONSTANTS = ("c10", "c01", "c20", "c30")
@@ -74,7 +74,7 @@ def warn_beyond_range(dataset, stacklevel=3):
 
 def beyond_range(dataset, limit) -> int:
     """Number of states of an atlas whose wall is stretched beyond ``limit`` at half length; read slice by slice."""
-    return sum(int(np.sum(_strained(part, largest_stretch) > limit)) for part in _slices(dataset))
+    return sum(int(np.sum(_strained(part, largest_principal) > limit)) for part in _slices(dataset))
 
 
 def beyond_convexity(dataset) -> int:
@@ -85,7 +85,7 @@ def beyond_convexity(dataset) -> int:
     for part in _slices(dataset):
         c10, c20, c30 = (part[name] if name in part.coords else 0.0 for name in ("c10", *YEOH))
         strain, *constants = _broadcast(
-            _strained(part, first_invariant), *(c + 0.0 * part["mid_radius"] for c in (c10, c20, c30))
+            _strained(part, invariant), *(c + 0.0 * part["mid_radius"] for c in (c10, c20, c30))
         )
         count += int(np.sum(strain.values > convex_to(*(c.values for c in constants))))
     return count
@@ -102,11 +102,33 @@ def _strained(part, measure):
     """A ``measure`` of the strain at half length, NaN where there is no state."""
     own = {name: _middle(part, name) for name in ("alpha", "beta", "radius", "wall", "fiber_extension")}
     own |= {"fiber_radius": part["fiber_radius"]} if "fiber_radius" in part.coords else {}
-    fibers = fiber_surface(own, model_of(part.attrs))
-    arrays = _broadcast(part["mid_radius"] / fibers, own["alpha"], own["beta"], own["fiber_extension"])
-    stretch, alpha, beta, extension = (array.values for array in arrays)
+    model = model_of(part.attrs)
+    own["fiber_radius"] = fiber_surface(own, model)
+    if model.is_physical:
+        return _of_physical(part, own, model, measure)
+    arrays = _broadcast(part["mid_radius"] / own["fiber_radius"], own["alpha"], own["beta"], own["fiber_extension"])
+    stretch, *rest = (array.values for array in arrays)
     with np.errstate(invalid="ignore"):
-        return arrays[0].copy(data=measure(alpha, beta, stretch, extension, part.attrs["energy"]))
+        return arrays[0].copy(data=measure(*membrane(*rest[:2], stretch, rest[2], part.attrs["energy"])))
+
+
+def _of_physical(part, own, model, measure):
+    """The same of physical tubes: the largest of the layers that the model strains."""
+    from ..query.predictor import Predictor
+    from ..query.reference import COLUMNS
+
+    columns = {name: own.get(name, part.coords.get(name, 0.0)) for name in COLUMNS}
+    radius, *others = _broadcast(part["mid_radius"], *(0.0 * part["mid_radius"] + one for one in columns.values()))
+    points = np.stack([other.values.ravel() for other in others], axis=-1)
+    at = dict(zip(COLUMNS, points.T))
+    meridional, stretch, twist = Predictor(model, part.attrs["energy"]).middles(points, radius.values.ravel()).T
+    inner, fibers = at["radius"], at["fiber_radius"]
+    layers = []
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for rho in (inner, inner + at["wall"]) if model.is_thick else (fibers,):
+            r = np.sqrt(stretch**2 + ((rho / fibers) ** 2 - 1.0) / meridional)
+            layers.append(measure(meridional, r * fibers / rho, r * twist))
+        return radius.copy(data=np.max(layers, axis=0).reshape(radius.shape))
 
 
 def _middle(part, name):

@@ -23,7 +23,7 @@ from .identity import fingerprint, identify
 from .jobs import bar, in_order
 from .plan import plan as make_plan
 from .provenance import provenance
-from .records import Records
+from .records import Records, state
 from .refine_axes import graded
 from .remote import solve_remotely
 from .rubber import warn_beyond_range
@@ -186,7 +186,13 @@ def _solve_all(sweep, tables, split_up, done, shards, threads, executor, progres
             shown.update(count)
     contents = Contents(shards.plan)
     return {
-        kind: Records(kind, own, tables[kind].first, [done[kind, k] for k in range(len(own))], contents)
+        kind: Records(
+            state(kind, sweep.model.is_physical),
+            own,
+            tables[kind].first,
+            [done[kind, k] for k in range(len(own))],
+            contents,
+        )
         for kind, own in split_up.items()
     }
 

@@ -4,10 +4,16 @@ import numpy as np
 
 from ..description.profiles import SENSITIVITY, widened
 from ..status import INVALID
-from .records import FREE_STATE, HELD_STATE, LIMIT, state, unsolved, upward
+from .canonical_problem import PHYSICAL
+from .records import HELD_STATE, LIMIT, state, unsolved, upward
 
 BASE_CELLS = 24
 UNIFORM = np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2)
+
+
+def is_physical(problems):
+    """Whether rows of problems are those of physical tubes."""
+    return problems.shape[1] > PHYSICAL
 
 
 def solve_shard(job, accuracy, lanes=True):
@@ -18,7 +24,7 @@ def solve_shard(job, accuracy, lanes=True):
     solve = _solve_free if job.kind == "free" else _solve_held
     if not job.courses:
         return solve(job.kind, job.problems, job.targets, job.first, job.pressures, (UNIFORM, 0.0), accuracy, lanes)
-    states = np.zeros(len(job.pressures), state(job.kind))
+    states = np.zeros(len(job.pressures), state(job.kind, is_physical(job.problems)))
     limits = np.full(len(job.problems) if job.kind == "free" else 0, np.nan, LIMIT)
     for k, tube in enumerate(job.courses):
         own = np.flatnonzero(job.course == k)
@@ -39,7 +45,7 @@ def _solve_free(_, problems, __, first, pressures, followed, accuracy, lanes=Tru
 
     tube, error = followed
     walks = walk_all(problems, first, pressures, tube, accuracy - SENSITIVITY * error, lanes=lanes)
-    states = np.empty(len(pressures), FREE_STATE)
+    states = np.empty(len(pressures), state("free", is_physical(problems)))
     states["values"], states["bounds"] = walks.values, upward(widened(walks.values, walks.bounds, error))
     states["status"], states["slack"] = walks.status, walks.slack
     found = np.empty(len(problems), LIMIT)

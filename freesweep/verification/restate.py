@@ -10,7 +10,7 @@ from ..description.tube_model import model_of
 from ..query import reference
 from ..query.exact import CELLS, solve
 from ..query.family import FAMILIES
-from ..scaling import ACCURACIES
+from ..scaling import ACCURACIES, ALONG
 from .cross_check import compare, ideal
 
 WIDER = 100.0  # times a bound may be another's: one state in a thousand is solved on another mesh
@@ -25,10 +25,11 @@ def faults(points) -> list:
     energy, accuracy, model = data.attrs["energy"], float(data.attrs["accuracy"]), model_of(data.attrs)
     highest = float(data["pressure"].max()) if "limit_pressure" in data else None
     for key, family in FAMILIES.items():
-        names = [name for name in family.variables if name in data]
+        # what is seen along a tube is as exact as its places are near, whatever accuracy is asked for
+        names = [name for name in family.variables if name in data and name.removeprefix("locked_") not in ALONG]
         if key == "limit" or not names:
             continue
-        most = highest if family.kind == reference.LOADED else None
+        most = highest if key == "state" else None
         anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model)
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))

@@ -1,5 +1,7 @@
 """The census: draws the whole domain, counts every state once, explains what has no result, audits the bounds."""
 
+import json
+
 import numpy as np
 import pytest
 from commands import refused, run
@@ -123,3 +125,16 @@ def test_the_command(capsys):
     err = refused(capsys, "census", "0", "--threads", "-1", "--seed", "-1")
     for text in ("N: found 0", "threads: found -1", "seed: found -1"):
         assert text in err
+
+
+def test_all_figures_are_told_as_json(capsys, small):
+    found = small.figures()
+    assert json.loads(json.dumps(found)) == found
+    assert sum(found["counts"]["free"].values()) == DESIGNS * PRESSURES
+    assert found["counts"]["free"]["ok"] == small.counts["free"][OK]
+    audit = found["audit"]
+    assert (audit["states"], audit["broken"]) == (small.audit.states, [])
+    told = audit["bound_over_difference"]["rotation"]
+    assert told["least"] == np.min(np.concatenate(small.audit.ratios["rotation"]))
+    assert run("census", "20", "--audit", "5", "--quiet", "--seed", "3", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["designs"] == 20

@@ -15,6 +15,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import to_rgb
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from freesweep import closed_form, status
 from freesweep.atlas import schema
@@ -311,3 +312,23 @@ def test_states_whose_fibers_are_slack_are_hatched_and_named(fibers, words):
         assert not [each for each in design_map(data, other).patches if each.get_gid() == "slack"]
     assert not [each for each in design_map(data, slack=False).patches if each.get_gid() == "slack"]
     pyplot.close("all")
+
+
+def test_where_the_families_change_places_a_slack_share_is_the_other_family_s():
+    """Quadrants that the atlas does not hold: by exchange the one below the diagonal, by the mirror the rest."""
+    data = atlas(alpha_from=30.0, beta_from=-20.0)
+    shares = {"slack_alpha": 0.01 * (data["alpha"] - 30.0), "slack_beta": 0.5 + 0.004 * (data["beta"] + 20.0)}
+    data = data.assign({name: share + 0.0 * data["rotation"] for name, share in shares.items()})
+    data = data.assign(
+        {f"{name}_error": 0.0 * data[name] for name in shares} | {"slack_fiber": xr.ones_like(data["status"])}
+    )
+    sheet = plane.plane(data, "slack_alpha", {})
+
+    def shown(alpha, beta):
+        return sheet.values[np.flatnonzero(sheet.y == beta)[0], np.flatnonzero(sheet.x == alpha)[0]]
+
+    assert shown(50.0, -10.0) == pytest.approx(0.2)
+    assert shown(10.0, 50.0) == pytest.approx(0.5 + 0.004 * 30.0)  # held as (50, 10)
+    assert shown(10.0, -50.0) == pytest.approx(0.5 + 0.004 * 10.0)  # held as (50, -10)
+    texts = design_map(data, "slack_alpha").figure.findobj(Text)
+    assert any("family alpha is slack" in artist.get_text() for artist in texts)

@@ -5,6 +5,7 @@ import pytest
 from grids import make, spec
 
 from freesweep import Atlas, status
+from freesweep.closed_form import uniform_state
 from freesweep.description.tube_model import MODELS, TubeModel
 from freesweep.query import reference
 from freesweep.query.cells import BESIDE
@@ -141,3 +142,72 @@ def test_vectors_that_know_no_physical_tube_hold_none():
     found = solve(reference.ROTATION_HELD, here, "full", 1e-6, model=PHYSICAL, thorough=False)
     assert set(found["status"]) == {status.NOT_CONVERGED}
     assert np.isnan(found["torque"]).all()
+
+
+def test_shares_of_slack_are_answered_between_nodes_that_are_alike_and_change_places_with_the_families(crossed):
+    atlas, names = Atlas(crossed, "crossed.nc"), ["slack_alpha", "slack_beta"]
+    pressure = np.random.default_rng(3).uniform(0.0, 2.007e5, 150)
+    found = atlas.query(pressure=pressure, variables=names)
+    reader = atlas._reader
+    exact = exact_answers(
+        reader, "slack", as_points(reader, "slack", reader.complete({"pressure": pressure}, 150)), names
+    )
+    given = found["slack_status"].values == status.OK
+    assert set(found["slack_status"].values) == {status.OK, status.NOT_INTERPOLABLE}
+    nodes = crossed["pressure"].values
+    cells = np.searchsorted(nodes, pressure) - 1
+    for name in names:
+        stored = crossed[name].values.ravel()
+        assert ((stored >= 0.0) & (stored <= 1.0)).all()
+        begins = (stored[cells] > 0.0) != (stored[cells + 1] > 0.0)
+        assert not (given & begins & (cells > 0)).any()
+        gap = np.abs(found[name].values - exact[name]) - exact[f"{name}_error"]
+        assert (gap <= found[f"{name}_error"].values)[given].all(), name
+        assert np.isnan(found[name].values[~given]).all()
+    turned = atlas.query(alpha=36.0, beta=8.0, pressure=pressure, variables=names)
+    for name, other in zip(names, reversed(names)):
+        np.testing.assert_array_equal(turned[name].values, found[other].values)
+    refined = atlas.query(pressure=pressure, variables=names, refine=True)
+    assert (refined["slack_status"] == status.OK).all()
+
+
+def test_the_outer_radius_follows_from_the_middle_s(crossed):
+    atlas = Atlas(crossed, "crossed.nc")
+    pressure = np.random.default_rng(4).uniform(0.0, 2.007e5, 40)
+    found = atlas.query(pressure=pressure, variables=["mid_radius", "outer_radius"])
+    given = found["status"].values == status.OK
+    assert given.any()
+    fibers = 4.76e-3 + 1.59e-3  # lie outermost, and are held at the ends
+    outer = np.maximum(found["mid_radius"].values, fibers)
+    np.testing.assert_allclose(found["outer_radius"].values[given], outer[given], rtol=1e-12)
+    at_nodes = atlas.query(pressure=crossed["pressure"].values, variables=["outer_radius"])
+    np.testing.assert_array_equal(at_nodes["outer_radius"].values, crossed["outer_radius"].values.ravel())
+    stored = np.maximum(crossed["mid_radius"], fibers)
+    assert (
+        np.abs(crossed["outer_radius"] - stored) <= crossed["outer_radius_error"] + crossed["mid_radius_error"]
+    ).all()
+
+
+def test_where_fibers_lie_within_the_wall_its_outer_layer_is_followed_along_the_tube():
+    here = points(30)
+    here[:, reference.FIBERS] = here[:, reference.RADIUS]
+    solved = solve(reference.LOADED, here, "full", 1e-6, model=PHYSICAL._replace(fiber_radius="inner"))
+    known = np.isfinite(solved["mid_radius"])
+    predictor = Predictor(PHYSICAL._replace(fiber_radius="inner"), "full")
+    nothing = np.zeros(known.sum())
+    told, missed, _ = predictor.outer_radius(here[known], solved["mid_radius"][known], nothing, nothing)
+    gap = np.abs(told - solved["outer_radius"][known])
+    assert (gap <= missed + solved["outer_radius_error"][known] + 1e-9 * told).mean() > 0.9
+    assert np.median(gap / told) < 1e-6
+
+
+def test_the_middle_of_bonded_membranes_is_strained_as_the_source_s():
+    here, model = points(40), TubeModel("outer", "membrane", "bonded")
+    radius = here[:, reference.FIBERS] * 1.1
+    meridional, stretch, twist = Predictor(model, "full").middles(here, radius).T
+    axial, turn, *_ = uniform_state(here[:, reference.ALPHA], here[:, reference.BETA], 1.1)
+    known = np.isfinite(axial)
+    assert known.sum() > 20
+    np.testing.assert_allclose(stretch, 1.1)
+    np.testing.assert_allclose(meridional[known], axial[known], rtol=1e-12)
+    np.testing.assert_allclose(twist[known], turn[known], rtol=1e-12, atol=1e-14)

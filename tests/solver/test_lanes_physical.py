@@ -64,7 +64,8 @@ def test_a_wall_without_thickness_and_bonded_fibers_are_the_source_s_tube(only_v
     solved = found.status == OK
     assert np.mean(found.status == source.status) > 0.99
     assert np.array_equal(found.slack[solved], source.slack[solved])
-    assert np.all(np.abs(found.values - source.values)[solved] <= (found.bounds + source.bounds)[solved])
+    same = np.s_[:, : batch.OUTPUTS]
+    assert np.all(np.abs(found.values[same] - source.values)[solved] <= (found.bounds[same] + source.bounds)[solved])
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -11,7 +11,7 @@ def in_proportion(problems, first, pressures):
     """States of ``problems`` (n, 11), whose loads are at their full size at the first of each one's ``pressures``."""
     problems, pressures = np.ascontiguousarray(problems), np.ascontiguousarray(pressures, dtype=float)
     first, nothing = np.asarray(first), batch.NOTHING
-    found = batch._nothing(len(problems), len(pressures), nothing)
+    found = batch._nothing(problems, len(pressures), nothing)
     batch.follow_many(
         problems,
         batch.wall_columns(problems),

@@ -1,10 +1,14 @@
-"""Fibers that would have to push: where a state relies on them, physics does not stand behind it."""
+"""Fibers that would have to push: where a state relies on them, physics does not stand behind it. Of physical tubes also
+the numbers of :mod:`places`, from the two finest meshes of a solved state.
+"""
 
 from ...jit import kernel
-from ..cells import cell_at
+from ..cells import cell_at, nothing_yet
+from ..numerics.finest import load_of, mesh_of
 from ..numerics.properties_along import at_point, fill
 from ..physics import lagrangian
 from ..physics.wall import has_any_family, has_two_families, may_go_slack
+from . import places
 from .axial import axial_stretch, flux_at, is_alike
 
 NOTHING = 1e-300  # the multiplier of a slack family is 0
@@ -23,8 +27,76 @@ def pushing(alpha, beta, share, load):
 
 
 @kernel
+def look_along(fine, n, base, tube, load, seen, numbers, bounds):
+    """:func:`pushing` anywhere along a tube, whose finest meshes are ``fine``, the last of n cells. Of a physical one
+    ``numbers`` and ``bounds``, as many as there is room for, take those of :mod:`places`; ``seen`` (4, > n + 1) is scratch.
+    """
+    return _look_along(fine, n, base, tube, load, seen, numbers, bounds, load[2])
+
+
+@kernel
+def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
+    if len(wall) == 1:
+        return slack_fibers(fine[0], fine[1], n, base, tube, load)
+    flag = see(fine[0], fine[1], n, base, tube, load, seen)
+    if len(numbers) > 0:
+        sharp = summed(seen, n + 2, load)
+        x, y = mesh_of(1, n // 2, fine)
+        see(x, y, n // 2, base, tube, load_of(1, load, fine), seen)
+        found, missed = places.together(sharp, summed(seen, n // 2 + 2, load))
+        for k in range(len(numbers)):
+            numbers[k], bounds[k] = found[k], missed[k]
+    return flag
+
+
+@kernel
+def see(x, y, n, base, tube, load, seen):
+    """Write what :mod:`places` looks at along a physical tube to the rows of ``seen``; returns the flag."""
+    course, edges, cells, symmetric, _, _ = tube
+    own, size, near, flag = fill(course, edges, x, n, base, cells), load[3] + abs(load[4]), nothing_yet(0.0), 0
+    loose, any_family, both = may_go_slack(load[2]), has_any_family(load[2]), has_two_families(load[2])
+    least, at_ends = (NOTHING if loose else -TENSIONLESS * size), (NOTHING if loose else -TENSIONLESS_END * size)
+    for k in range(n + 2):
+        j = min(max(k - 1, 0), n - 1)
+        if k == 0 or k == n + 1:
+            node = min(k, n)
+            cell = at_point(course, 0 if k == 0 else course.shape[0] - 1, 0.0 if k == 0 else 1.0)
+            flux = 0.0 if symmetric and k > 0 else flux_at(x, y, node, n, own, load)
+            alpha, beta, square = places.at_end(y[node], flux, cell, load)
+            place, below = x[node], at_ends
+        else:
+            v, place, below = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (x[j] + x[j + 1]), least
+            alpha, beta, square, near = places.inside(0.5 * (y[j] + y[j + 1]), v, cell_at(own, j), load, near)
+        seen[places.PLACE, k], seen[places.ALPHA, k], seen[places.BETA, k] = place, alpha - below, beta - below
+        seen[places.SQUARE, k] = square
+        flag |= (1 if any_family and alpha < below else 0) | (2 if both and beta < below else 0)
+    return flag
+
+
+@kernel
+def summed(seen, count, load):
+    """``(share of alpha, its doubt, share of beta, its doubt, largest square, what lies above it)`` of ``count`` places."""
+    x, squares, faint = seen[places.PLACE], seen[places.SQUARE], places.FAINT * (load[3] + abs(load[4]))
+    loose = may_go_slack(load[2])
+    total, found = x[count - 1] - x[0], (0.0, 0.0, 0.0, 0.0)
+    most, missed = max(squares[0], squares[count - 1]), 0.0
+    for i in range(count - 1):
+        before, beyond, h = max(i - 1, 0), min(i + 2, count - 1), (x[i + 1] - x[i]) / total
+        h_before = (x[i] - x[before]) / total if i > 0 else h
+        h_beyond = (x[beyond] - x[i + 1]) / total if i < count - 2 else h
+        steps = h_before, h, h_beyond, faint, loose
+        a, b = seen[places.ALPHA], seen[places.BETA]
+        part_a, doubt_a = places.without_pull(a[before], a[i], a[i + 1], a[beyond], *steps)
+        part_b, doubt_b = places.without_pull(b[before], b[i], b[i + 1], b[beyond], *steps)
+        found = found[0] + part_a, found[1] + doubt_a, found[2] + part_b, found[3] + doubt_b
+        if i > 0:
+            most, missed = places.widest(squares[before], squares[i], squares[i + 1], most, missed)
+    return (*found, most, missed)
+
+
+@kernel
 def slack_fibers(x, y, n, base, tube, load):
-    """:func:`pushing` anywhere along a tube."""
+    """:func:`pushing` anywhere along a tube of the source's."""
     course, edges, cells, _, _, _ = tube
     flag = 0
     if is_alike(course):

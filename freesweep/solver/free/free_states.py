@@ -10,6 +10,7 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from .. import guide
+from ..along import places
 from ..constant import quadrature
 from ..constant.branch import retrace
 from ..numerics import nested
@@ -54,6 +55,7 @@ def settle(problem, wall, tube, rows):
                 rows.values[i, k], rows.bounds[i, k] = 0.0, 0.0
             rows.values[i, 0], rows.values[i, 4] = half, 1.0
             rows.values[i, 1] = (1.0 if tube.half else 0.5) * volume(tube.course, tube.places)
+            places.rest(tube.course, wall, rows.values[i, 5:], rows.bounds[i, 5:])
         elif not p + f > 0.0:
             rows.status[i] = COMPRESSED
 
@@ -238,7 +240,8 @@ def follow_many(
     course, edges, places : what varies along the tubes, and where segments begin and end on the base mesh and along x; an
         empty ``course`` for tubes that are the same all along, of which half is solved
     accuracy : bound to reach, scaled
-    values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds
+    values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds; of
+        physical tubes (n, 8), with the numbers of :mod:`..along.places`
     status, slack : (n,) codes; rows that are not PENDING are passed over; values are NaN unless the status is OK or
         INACCURATE
     limits : (k, 2) limit pressure and its bound, NaN if none was met

@@ -10,7 +10,7 @@ import numpy as np
 from ...jit import kernel
 from ..along.drawing import draw
 from ..along.profile import FIELDS
-from ..along.slack import slack_fibers
+from ..along.slack import look_along
 from ..constant import quadrature
 from ..numerics import held, nested, newton
 from ..numerics.properties_along import fill
@@ -117,7 +117,9 @@ def record(space, tube, load, status, doublings, accuracy, rows, i):
     for k in range(5):
         share = 1.0 if tube.half or k == nested.MIDDLE else 0.5  # of half the tube
         rows.values[i, k], rows.bounds[i, k] = share * space.out[0, k], share * space.out[1, k]
-    rows.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << doublings, base, tube, load)
+    rows.slack[i] = look_along(
+        space.fine, base << doublings, base, tube, load, space.work, rows.values[i, 5:], rows.bounds[i, 5:]
+    )
     if len(rows.stations) > 0:
         drawn = draw(
             rows.stations, base, doublings, tube, load, space.fine, space.curve, space.work, accuracy, rows.profiles[i]
@@ -129,7 +131,7 @@ def record(space, tube, load, status, doublings, accuracy, rows, i):
 def blank(rows, i):
     """No value in row ``i`` yet."""
     rows.slack[i] = 0
-    for k in range(5):
+    for k in range(rows.values.shape[1]):
         rows.values[i, k], rows.bounds[i, k] = np.nan, np.nan
     for j in range(len(rows.stations)):
         for k in range(FIELDS):

@@ -9,7 +9,7 @@ from ...jit import entry_point, kernel
 from .. import guide
 from ..along.drawing import draw
 from ..along.profile import FIELDS
-from ..along.slack import slack_fibers
+from ..along.slack import look_along
 from ..numerics import held, nested
 from ..numerics.properties_along import Tube, make_cells, volume
 from ..numerics.shapes import MESH_CHANGE
@@ -183,7 +183,16 @@ def record(states, i, found, tube, space, accuracy, out):
         share = 0.5 if not tube.half and k < 4 else 1.0
         states.values[i, k], states.bounds[i, k] = share * out[0, k], share * out[1, k]
     states.stable[i] = 1 if found.unstable == 0 else 0
-    states.slack[i] = slack_fibers(space.fine[0], space.fine[1], base << found.doublings, base, tube, found.load)
+    states.slack[i] = look_along(
+        space.fine,
+        base << found.doublings,
+        base,
+        tube,
+        found.load,
+        space.work,
+        states.values[i, 6:],
+        states.bounds[i, 6:],
+    )
     if len(states.stations) > 0:
         drawn = draw(
             states.stations, base, found.doublings, tube, found.load, space.fine, space.curve, space.work, accuracy,

@@ -12,7 +12,7 @@ from ..numerics.nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..numerics.newton import SMALL_STEP
 from ..physics import lagrangian
 from . import mesh, middle, newton
-from .slack import pushing
+from .slack import look_along
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
@@ -150,10 +150,10 @@ def solve(
     """Solve the ``active`` lanes, whose uniform tubes have stretch ``u``; ``x`` and ``y`` (n + 1, WIDTH) are the graded base
     mesh and a first guess, replaced by its solution.
 
-    ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, OUTPUTS, WIDTH) takes
-    values and bounds of the lanes that are met, ``found`` (2, ...) is scratch. ``kept`` (WIDTH, 5, ...), unless None, takes
-    their finest meshes as :func:`..along.profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
-    fibers would have to push, beta fibers would)``.
+    ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, > OUTPUTS, WIDTH) takes values
+    and bounds of the lanes that are met, of physical tubes those of :mod:`..along.places` behind them; ``found`` (2, ...) is
+    scratch. ``kept`` (WIDTH, 5, ...), unless None, takes their finest meshes as :func:`profile.at_stations` reads them, with
+    ``doublings``. Returns masks: ``(met, alpha fibers would have to push, beta fibers would)``.
     """
     # the energy at a low pressure is little beside the work whose error it takes: more than the accuracy of the rest
     tolerance = max(min(accuracy * accuracy, LARGEST_TOLERANCE), SMALLEST_TOLERANCE)
@@ -224,7 +224,9 @@ def solve(
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
         if some(ready):
-            alpha_here, beta_here = pushing(here_x, here_y, count, cell, load)
+            alpha_here, beta_here = look_along(
+                here_x, here_y, count, half_x, half_y, cell, load, work, out, OUTPUTS, ready
+            )
             alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
             if kept is not None:
                 put(sizes, 0, max(error, coarser))

@@ -1,8 +1,11 @@
 """Designs in and out of lanes: scalar work, done one lane at a time."""
 
+from math import sqrt
+
 import numpy as np
 
 from ...jit import entry_point, kernel
+from ..along.places import OUTER
 from ..along.profile import at_stations
 from ..physics import lagrangian
 from ..physics.wall import layers, reciprocal
@@ -123,9 +126,11 @@ def settle(p, problem, clamped, row, values, bounds, status):
     elif p == 0.0 and f == 0.0 and m == 0.0:
         half = 0.5 * problem[LENGTH]
         status[row] = OK
-        values[row, 0], values[row, 1], values[row, 2], values[row, 3], values[row, 4] = half, half, 0.0, 0.0, 1.0
-        for k in range(OUTPUTS):
-            bounds[row, k] = 0.0
+        for k in range(values.shape[1]):
+            values[row, k], bounds[row, k] = 0.0, 0.0
+        values[row, 0], values[row, 1], values[row, 4] = half, half, 1.0
+        if values.shape[1] > OUTPUTS:
+            values[row, OUTPUTS + OUTER] = sqrt(problem[INNER] + problem[AREA]) if problem[INNER] > 0.0 else 1.0
     elif not p + f > 0.0 and not p == np.inf:
         status[row] = COMPRESSED
     else:
@@ -141,7 +146,7 @@ def record(met, alpha, beta, rows, out, values, bounds, status, slack):
         if (met >> lane) & 1:
             status[row] = OK
             slack[row] = ((alpha >> lane) & 1) | (((beta >> lane) & 1) << 1)
-            for k in range(OUTPUTS):
+            for k in range(values.shape[1]):
                 values[row, k], bounds[row, k] = out[0, k, lane], out[1, k, lane]
 
 
