@@ -2,7 +2,8 @@
 
 With r the residuals over their standard uncertainties and J their derivative along the parameters, the covariance of the
 parameters is (J^T J)^-1. Where no uncertainties are given, that of each measured quantity is estimated from its scatter
-about the fit, and the fit is made again with it. Intervals are Student's, for the degrees of freedom that are left.
+about the fit, and the fit is made again with it; what that costs is in the covariance, too (:mod:`scatter`). Intervals are
+Student's, for the degrees of freedom that are left.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,6 +23,7 @@ from .likelihood import profile_intervals
 from .measured import Measurement, read_names
 from .parameters import EXTENSION, Parameters, known_names, read_pairs, read_ties
 from .problem import Problem
+from .scatter import estimated, scatter_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -202,7 +204,7 @@ def _fitted(asked):
         settled = not changed
         for name in unknown:
             here = rows & (problem.quantity == name)
-            scatter = _scatter(problem.residuals(model, there), slopes, rows, here, 1.0 / parameters.sigma)
+            scatter = scatter_of(problem.residuals(model, there), slopes, rows, here, 1.0 / parameters.sigma)
             least = LEAST_SCATTER * np.max(np.abs(problem.measured[problem.quantity == name]), initial=1e-9)
             scatter = max(scatter, least)
             settled &= abs(scatter / sigma[problem.quantity == name][0] - 1.0) < SETTLED
@@ -210,18 +212,6 @@ def _fitted(asked):
         if settled:
             break
     return _result(problem, theta, sigma, rows, unknown, asked.notes)
-
-
-def _scatter(residuals, slopes, rows, here, pull):
-    """Standard uncertainty from residuals: the parameters take their share of the degrees of freedom."""
-    active = here & np.any(slopes != 0.0, axis=1) if np.any(slopes[here]) else here  # not what hangs slack, and is met
-    if not active.any():
-        return 0.0
-    left, values, _ = np.linalg.svd(np.vstack([slopes[rows], np.diag(pull)]), full_matrices=False)
-    leverage = np.zeros(len(rows))
-    leverage[rows] = np.sum(left[: rows.sum(), values > 1e-8 * max(values[0], 1e-300)] ** 2, axis=1)
-    freedom = max(active.sum() - leverage[active].sum(), 0.5)
-    return np.sqrt(np.sum(residuals[active] ** 2) / freedom)
 
 
 def _checked(measurements, fit, own_extension, bounds, priors, ties, known):
@@ -281,19 +271,6 @@ def _effects(problem, derivative, rows):
     return effects
 
 
-def _freedoms(slopes, covariance, quantity, active, most):
-    """Degrees of freedom of each parameter (p,): fewer where its variance rests on few values' scatter (Satterthwaite)."""
-    told = np.where(np.isfinite(covariance), covariance, 0.0)
-    variance = np.maximum(np.diag(told), 1e-300)
-    spread = np.zeros(len(told))
-    for name in set(quantity.tolist()):
-        own = active & (quantity == name)
-        normal = slopes[own].T @ slopes[own]
-        left = max(own.sum() - np.trace(told @ normal), 1.0)
-        spread += (np.diag(told @ normal @ told) / variance) ** 2 / left
-    return np.clip(1.0 / np.maximum(spread, 1e-12), 2.0, most)
-
-
 def _result(problem, theta, sigma, rows, unknown, notes):
     from scipy.stats import t as student
 
@@ -311,15 +288,18 @@ def _result(problem, theta, sigma, rows, unknown, notes):
     chi_square = float(weighed @ weighed + np.sum(((theta - parameters.mean) * known) ** 2)) / freedom
     judged = judge(problem, theta, residuals, derivative, sigma, active, unknown, chi_square, freedom)
     freedom = judged.freedom
-    covariance = scaled * np.outer(parameters.unit, parameters.unit)
     values = parameters.values(theta)
-    each = np.full(len(theta), float(freedom))
+    each, whole = np.full(len(theta), float(freedom)), scaled
     if unknown and judged.fits:
-        each = _freedoms(derivative / sigma[:, None], scaled, problem.quantity, active, freedom)
+        each, added = estimated(derivative / sigma[:, None], scaled, problem.quantity, unknown, active, freedom)
+        whole = scaled + added
+    covariance = whole * np.outer(parameters.unit, parameters.unit)
+    with np.errstate(invalid="ignore"):
+        widening = judged.widening * np.sqrt(np.nan_to_num(np.diag(whole) / np.diag(scaled), nan=1.0))
     quantiles = student.ppf(0.975, each)
     half = quantiles * np.sqrt(np.diag(covariance)) * judged.widening
     intervals = np.column_stack([values - half, values + half])
-    profiled = profile_intervals(problem, theta, sigma, rows, scaled, judged, quantiles)
+    profiled = profile_intervals(problem, theta, sigma, rows, scaled, widening, quantiles)
     shown_there = np.where(rows & there, model, np.nan)
     cuts = np.cumsum([len(m) * len(m.measured) for m in problem.measurements])[:-1]
     parts = [part.reshape(len(m), -1) for m, part in zip(problem.measurements, np.split(shown_there, cuts))]

@@ -8,9 +8,10 @@ ALIKE = 0.1  # relative difference of an end from the linearised one that is non
 FARTHEST = 6.0  # times the linearised half width
 
 
-def profile_intervals(problem, theta, sigma, rows, covariance, judged, quantile):
-    """Intervals (p, 2) of theta; those of the linearised covariance where it tells the same, or where data are blind."""
-    widening = judged.widening
+def profile_intervals(problem, theta, sigma, rows, covariance, widening, quantile):
+    """Intervals (p, 2) of theta, made wider by ``widening`` (p,); those of the linearised covariance where it tells the
+    same, or where data are blind.
+    """
     errors = np.sqrt(np.diag(covariance))
     half = quantile * errors * widening
     found = np.column_stack([theta - half, theta + half])

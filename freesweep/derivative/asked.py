@@ -3,7 +3,8 @@
 import numpy as np
 
 from . import grid
-from .course import Course
+from .along import Course
+from .body import Body
 from .nested import solve
 from .physical import PhysicalTube
 from .physics import Physics
@@ -26,7 +27,7 @@ class Asked:
     ):
         self.tube, self.parameters, self.accuracy, self.error = tube, parameters, accuracy, error
         self.held, self.unknown = held, unknown
-        self.course = None if course is None else Course(course[0], course[2])
+        self.course = None if course is None else Course(tube, course[2])
         self.half = self.course is None and not whole
         places = [0.0, 0.5] if self.half else [0.0, 0.5, 1.0]
         self.segments = np.array(places) if self.course is None else self.course.places
@@ -86,7 +87,8 @@ class Asked:
 
     def _physics(self, loads, seeds):
         kind = PhysicalTube if self.is_physical else Physics
-        return kind(self.tube, self.course, loads, seeds)
+        made = kind(self.tube, self.course, loads, seeds)
+        return Body(made) if self.tube.is_body else made
 
     def _under(self, loads, y):
         """As :meth:`state`, with nothing held."""

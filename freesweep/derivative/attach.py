@@ -21,7 +21,7 @@ def shapes_of(asked, solve):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # who asks has been warned
         shapes = solve(asked.stations(), GUESS)
-    return shapes["deformed_radius"].values / asked.tube.fiber_surface
+    return shapes["deformed_radius"].values / asked.tube.fiber_surface_at(asked.x)
 
 
 def attach(result, asked, loads, solve, target=None):

@@ -143,6 +143,8 @@ _UFUNCS = {
     np.radians: lambda x: x * np.radians(1.0),
     np.degrees: lambda x: x * np.degrees(1.0),
     np.tan: _tan,
+    np.sin: lambda x: _along(x, np.sin(x.value), np.cos(x.value)),
+    np.arcsin: lambda x: _along(x, np.arcsin(x.value), 1.0 / np.sqrt(1.0 - x.value**2)),
     np.sqrt: sqrt,
     np.maximum: maximum,
 }  # where the array, or the number of NumPy's, comes first

@@ -40,9 +40,9 @@ def follow(physics, x, y, free, segments):
     shape, x = PchipInterpolator(x, y), np.union1d(x, segments)
     y = shape(x)
     slope = np.diff(y) / (np.diff(x) * physics.length.value)
-    s = physics.axial(0.5 * (y[1:] + y[:-1]), slope, 0.5 * (x[1:] + x[:-1]))
-    whole = np.hypot(s, slope)
-    nodes, edges = grid.graded(x, slope / whole, s / whole, segments, free)
+    w, s = physics.meridian(0.5 * (y[1:] + y[:-1]), slope, 0.5 * (x[1:] + x[:-1]))
+    whole = np.hypot(s, w)
+    nodes, edges = grid.graded(x, w / whole, s / whole, segments, free)
     return nodes, edges, shape
 
 

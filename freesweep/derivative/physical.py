@@ -37,8 +37,9 @@ def walls():
 
     def points(inner, area):
         """As many Gauss points in all cells as one of them needs."""
-        thickest = np.max(area.value)
-        return counted(float(inner.value[0]), float(thickest))
+        both = np.broadcast_arrays(inner.value, area.value)
+        thickest = np.argmax(both[1] / both[0])
+        return counted(*(float(one[thickest]) for one in both))
 
     return twin(wall.energy, points=points), twin(wall.narrowest), twin(physical.place)
 
@@ -160,10 +161,10 @@ class PhysicalTube(Physics):
             return float(number[j] if np.size(number) > 1 else number.reshape(-1)[0])
 
         gamma = float(np.sqrt(gg[0]))
-        numbers = tuple(at(c, 0) for c in rubber), tuple(at(c, 0) for c in wall)
         for k, j in enumerate(some):
             cell = at(H, j), at(D, j), at(area, j)
-            load = (gamma, *numbers, 0.0, 0.0, float(m[j]), 1.0)
+            own, layers = tuple(at(c, j) for c in rubber), tuple(at(c, j) for c in wall)
+            load = (gamma, own, layers, 0.0, 0.0, float(m[j]), 1.0)
             _, four[0, k], four[1, k], taut[0, k], taut[1, k] = place(float(y[j]), float(v[j]), float(T[j]), cell, load)
         return Settled(share[some], four, taut[0], taut[1])
 
@@ -251,10 +252,10 @@ class PhysicalTube(Physics):
                 found.append(np.clip(_vanishes(share[near], mu[near], low if family[j] else high), low, high))
         return np.unique(found)
 
-    def axial(self, y, v, share):
+    def meridian(self, y, v, share):
         """As of :class:`Physics`."""
         four = self.settle(y, v, share)[3]
-        return np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
+        return v, np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
 
 
 def _vanishes(x, mu, near):

@@ -15,7 +15,6 @@ from .twins import twin
 
 BY_Y, BY_V, OWN = 0, 1, 2  # first parts of every dual number: by y, by its slope; then by the parameters
 NEXT_TO_NOTHING = 1e-300  # of C1: a constant of Yeoh's that is 0 counts, too, where its derivative is asked for
-ALONG = ("alpha", "beta", "wall")
 
 
 @cache
@@ -26,13 +25,13 @@ def membranes():
     return twin(membrane.density), twin(membrane.integrands)
 
 
-def outputs_of(design, numbers) -> dict:
+def outputs_of(design, numbers, scales=None, inside=None) -> dict:
     """Outputs in SI units and degrees from dimensionless ones of half a tube, in the order of kernels: length, volume,
-    twist, energy, stretch in the middle.
+    twist, energy, stretch in the middle. A body has ``scales`` and a volume of wall ``inside`` the fibers of its own.
     """
-    scales = output_scales(design)
+    scales = output_scales(design) | (scales or {})
     made = {name: number * scales[name] for name, number in zip(OUTPUTS, numbers)}
-    return made | {"volume": made["volume"] - wall_volume_inside(design)}
+    return made | {"volume": made["volume"] - (wall_volume_inside(design) if inside is None else inside)}
 
 
 class Physics:
@@ -44,19 +43,22 @@ class Physics:
 
     def __init__(self, tube, course, loads, parameters):
         self.tube, self.course, self.parameters = tube, course, tuple(parameters)
-        self.design = {name: self._seed(name, value) for name, value in (tube.design() | loads).items()}
+        self.design = {name: self.seed(name, value) for name, value in (tube.design() | loads).items()}
         for own, name in constants(tube.material).items():
-            self.design[name] = self._seed(own, self.design[name].value)
+            self.design[name] = self.seed(own, self.design[name].value)
         place = place_of_fibers(tube)
-        if place in FIBER_PLACES:
+        if tube.is_body:
+            self.design["fiber_radius"] = course.first_surface(self.seed)
+        elif place in FIBER_PLACES:
             thinnest = float(np.min(tube.profile("wall").samples()))
-            self.design["fiber_radius"] = fiber_place(place, self.design["radius"], self._seed("wall", thinnest))
+            self.design["fiber_radius"] = fiber_place(place, self.design["radius"], self.seed("wall", thinnest))
         self.is_locked = bool(np.all(np.isinf(loads["pressure"])))
         if self.is_locked:
             self.design["pressure"] = 0.0 * self.design["length"]
         self.length = self.design["length"] / self.design["fiber_radius"]
 
-    def _seed(self, name, value):
+    def seed(self, name, value):
+        """A number, or numbers along the tube (n,), with the derivative by the parameter ``name``, if that is wanted."""
         value = np.atleast_1d(np.asarray(value, float))
         parts = np.zeros((OWN + len(self.parameters), 1))
         if name not in self.parameters:
@@ -66,15 +68,9 @@ class Physics:
 
     def properties(self, share):
         """``(cell, load)`` as kernels take them, for cells whose middles lie at places x/l."""
-        design = self.design
+        tube, design = self.tube, self.design
         if self.course is not None:
-            H, D, area = self.course.at(share)
-            radius, r = design["radius"].value, design["fiber_radius"].value
-            along = (
-                np.degrees(np.arctan(H + D)), np.degrees(np.arctan(H - D)), np.sqrt(area * r**2 + radius**2) - radius
-            )  # fmt: skip
-            design = design | {name: self._seed(name, value) for name, value in zip(ALONG, along)}
-        tube = self.tube
+            design = design | self.course.at(share, self.seed)
         H, D, area, gamma, ratio, shear, f, m, _, second, third, *wall = problem_columns(
             design, tube.energy, tube.is_thick, tube.is_loose
         )
@@ -108,7 +104,12 @@ class Physics:
         """Places x/l, other than where segments meet, at which the kind of the ``cells`` changed that were seen last."""
         return np.zeros(0)
 
-    def axial(self, y, v, share):
-        """Axial stretch in all cells."""
+    def rest_integrals(self):
+        """What the outputs integrate, of the undeformed tube."""
+        none = 0.0 * self.length
+        return [self.length, self.length, none, none]
+
+    def meridian(self, y, v, share):
+        """Slope of the meridian, and axial stretch, in all cells."""
         cell, load = self.properties(share)
-        return np.broadcast_to(membranes()[1](Dual(y), Dual(v), cell, load)[0].value, y.shape)
+        return v, np.broadcast_to(membranes()[1](Dual(y), Dual(v), cell, load)[0].value, y.shape)

@@ -52,11 +52,6 @@ def asked_of(tube, value, faults, loads=(), held=None):
     """:func:`read_derivatives` of what a tube, if it is one, has; nothing where ``value`` is None."""
     if value is None or not isinstance(tube, Actuator):
         return ()
-    if tube.is_body:
-        faults.append(
-            "derivatives: found a radius that varies; they are known of tubes of one radius only, leave them out"
-        )
-        return ()
     if not tube.has_two_families:
         faults.append(
             "derivatives: found fibers of fewer than two angles; they are known of tubes with two families only, leave them"

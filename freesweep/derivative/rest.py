@@ -2,7 +2,8 @@
 
 There ``L_yy dy = -L_ytheta`` in each cell. At rest the fibers' extension does not count, by definition; so where it is not 1
 a first load finds the tube swollen at once, and no derivative by it exists. Nor is there one where fibers are loose:
-whether they go slack depends on the load's sign.
+whether they go slack depends on the load's sign; or of a body, whose meridian is inclined: a first load moves its ends and
+its bends at once, in layers of no width.
 """
 
 import numpy as np
@@ -22,15 +23,13 @@ def is_at_rest(loads, held, target, tube):
 def at_rest(physics, share, widths, half):
     """The outputs as dual numbers; ``widths`` of cells in x/l."""
     ones, count = np.ones_like(share), OWN + len(physics.parameters)
-    length = physics.length * float(np.sum(widths))
-    none = 0.0 * physics.length
-    made = [length, length, none, none]
-    middle = none + 1.0
+    made = [float(np.sum(widths)) * integral for integral in physics.rest_integrals()]
+    middle = 0.0 * physics.length + 1.0
     first = [k for k, name in enumerate(physics.parameters) if name in LOADS]
     if not first:
         return physics.outputs(made, middle, half)
     parts = np.zeros((4 + 1, count, 1))
-    if physics.tube.is_loose or physics.tube.fiber_extension != 1.0:
+    if physics.tube.is_loose or physics.tube.fiber_extension != 1.0 or physics.tube.is_body:
         parts[:, [OWN + k for k in first]] = np.nan
     else:
         seeds = np.zeros((count, 1))

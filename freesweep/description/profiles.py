@@ -49,11 +49,18 @@ class Along:
 
     def at(self, share):
         """Values at shares of the length; on a jump the left one."""
+        return self._piecewise(self.within, share)
+
+    def slope_at(self, share):
+        """Derivatives along x/l at shares of the length; on a bend the left one."""
+        return self._piecewise(self.slope, share)
+
+    def _piecewise(self, within, share):
         share = np.atleast_1d(np.asarray(share, float))
         out = np.empty(share.shape)
         for low, high in pairwise(self.breaks):
             here = (share >= low if low == 0.0 else share > low) & (share <= high)
-            out[here] = self.within(low, high, (share[here] - low) / (high - low))
+            out[here] = within(low, high, (share[here] - low) / (high - low))
         return out
 
     def samples(self):

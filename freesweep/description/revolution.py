@@ -9,7 +9,6 @@ thinnest, unless it follows the radius ("constant volume": the section stays tha
 Where sin(angle) would pass 1 a geodesic turns back: there is no such body.
 """
 
-import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -142,11 +141,14 @@ def _beside(line):
 
 def wall_volume_inside(tube) -> float:
     """Undeformed volume between cavity and fiber surface [m3]: an incompressible wall keeps it."""
-    parts, total = resolved(tube), 0.0
-    breaks = np.unique(np.concatenate([profile.breaks for profile in parts.profiles]))
+    parts = resolved(tube)
+    share, weight = gauss(parts.profiles)
+    return np.pi * tube.length * float(weight @ (parts.fibers.at(share) ** 2 - parts.radius.at(share) ** 2))
+
+
+def gauss(profiles):
+    """Places x/l inside of the pieces between which profiles bend or jump, and their weights, to integrate along a tube."""
+    breaks = np.unique(np.concatenate([profile.breaks for profile in profiles]))
     share = (np.arange(PANELS)[:, None] + 0.5 + 0.5 * GAUSS[0]).ravel() / PANELS
-    weight = np.tile(0.5 * GAUSS[1], PANELS) / PANELS
-    for low, high in itertools.pairwise(breaks):
-        surface, inner = parts.fibers.within(low, high, share), parts.radius.within(low, high, share)
-        total += float(weight @ (surface**2 - inner**2)) * (high - low)
-    return np.pi * tube.length * total
+    weight, widths = np.tile(0.5 * GAUSS[1], PANELS) / PANELS, np.diff(breaks)[:, None]
+    return (breaks[:-1, None] + widths * share).ravel(), (widths * weight).ravel()

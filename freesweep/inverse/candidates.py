@@ -57,7 +57,7 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
         "status": (("candidate",), _worst(found.status[:, :last])),
         "met": (("candidate",), np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)),
         "misfit": (("candidate",), np.sqrt(np.sum(residuals[:, :last] ** 2, axis=1))),
-        "python": (("candidate",), [f"fs.{tube!r}".replace("material=", "material=fs.") for tube in tubes]),
+        "python": (("candidate",), [_line(tube) for tube in tubes]),
     }
     if last > asked:
         data |= {
@@ -95,6 +95,11 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
     }  # fmt: skip
     result.attrs = {"title": f"designs from {space.template!r}", "summary": sentence(misfit, result, u, slopes)}
     return Found(result, tubes)
+
+
+def _line(tube):
+    """The line of Python that makes a tube."""
+    return f"fs.{tube!r}".replace("material=", "material=fs.").replace("=Profile(", "=fs.Profile(")
 
 
 def _worst(status):

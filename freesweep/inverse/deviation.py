@@ -39,7 +39,8 @@ def read_tolerances(given, template, faults) -> dict:
 
 def deviations(tubes, wishes, columns, tolerances) -> np.ndarray:
     """Standard deviations (tubes, wishes) of what is wished for; NaN where no derivative is known: of limit pressures and
-    stiffnesses, and where there is no state. ``columns`` hold the loads of each tube, by name.
+    stiffnesses, of the outer radius of what varies or hangs on loose fibers, and where there is no state. ``columns`` hold
+    the loads of each tube, by name.
     """
     found = np.full((len(tubes), len(wishes)), np.nan)
     with warnings.catch_warnings():
@@ -48,7 +49,9 @@ def deviations(tubes, wishes, columns, tolerances) -> np.ndarray:
             loads = {name: float(columns[name][i]) for name in LOADS}
             seen = {}
             for k, wish in enumerate(wishes):
-                if wish.kind != "limit" and wish.output in (*SHAPE, *FOLLOWING, *HELD, *tube.design(), "pressure"):
+                outer = wish.output == "outer_radius" and (tube.varies or tube.is_loose)  # no closed form tells it
+                known = wish.output in (*SHAPE, *FOLLOWING, *HELD, *tube.design(), "pressure")
+                if wish.kind != "limit" and known and not outer:
                     found[i, k] = _deviation(tube, wish, loads, tolerances, seen)
     return found
 

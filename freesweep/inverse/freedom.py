@@ -23,7 +23,7 @@ from .wishes import DESIGN
 LOADS = ("pressure", "force", "torque")
 CONSTANTS = ("c10", "c01", "c20", "c30")
 TIE = re.compile(r"\s*(-?)\s*(?:([0-9.]+(?:e-?[0-9]+)?)\s*\*\s*)?([a-z_0-9]+)\s*", re.ASCII)
-KNOTTED = ("alpha", "beta", "wall")  # what may vary along the tube by free knots
+KNOTTED = ("alpha", "beta", "wall", "radius")  # what may vary along the tube by free knots
 FOLLOWED = 1e-6  # accuracy to which splines follow most profiles
 
 
@@ -123,9 +123,6 @@ def read(template, free, faults):
     """The :class:`Space` of a ``template`` and what is ``free``; None after noting faults."""
     if not isinstance(template, Actuator):
         faults.append(f"template: found {described(template)}; give an Actuator")
-        return None
-    if template.is_body:
-        faults.append("template: its radius varies; designs are looked for among tubes of one radius")
         return None
     if not template.has_two_families:
         faults.append("template: it has fewer than two families of fibers; designs are looked for among tubes with two")

@@ -96,7 +96,7 @@ def _tolerance(space, wish):
     ends = [abs(end) for end in (wish.low, wish.high) if np.isfinite(end)]
     size = max(ends, default=0.0)
     if size == 0.0:
-        tube = space.template
-        natural = NATURAL | {"force": np.pi * tube.radius**2 * 1e4, "torque": np.pi * tube.radius**3 * 1e4}
-        size = natural.get(wish.output) or 0.1 * getattr(tube, SHARE.get(wish.output, ""), 0.0) or 1.0
+        r = space.held["radius"]
+        natural = NATURAL | {"force": np.pi * r**2 * 1e4, "torque": np.pi * r**3 * 1e4}
+        size = natural.get(wish.output) or 0.1 * space.held.get(SHARE.get(wish.output), 0.0) or 1.0
     return RELATIVE * size

@@ -153,3 +153,16 @@ def test_limits_are_never_broken_by_more_than_their_bounds():
     worst, kept = broken_limits(50, seed=5)
     assert worst <= 1.0
     assert kept > 50
+
+
+@pytest.mark.long  # a minute of compiling
+def test_a_hidden_taper_is_found_again():
+    """Turned round it does the same."""
+    cone = {"alpha": 20, "beta": -40, "length": 0.08, "wall": 1e-3, "material": RUBBER}
+    secret = fs.inflate(fs.Actuator(radius=[(0, 8e-3), (1, 5.5e-3)], **cone), 4e4, x=0.0)
+    goals = [fs.Goal(name, secret[name].item(), pressure=4e4) for name in ("rotation", "deformed_length")]
+    free = {"radius": fs.Profile(2, between=(4e-3, 1e-2))}
+    found = designed(fs.Actuator(radius=[(0, 6e-3), (1, 6.1e-3)], **cone), free, goals, count=3)
+    assert np.all(found["met"])
+    for ends in found["radius"].values:
+        assert np.sort(ends) == pytest.approx([5.5e-3, 8e-3], rel=1e-3)

@@ -378,11 +378,6 @@ def test_what_varies_is_told_in_the_shell():
     assert tube.profile("wall").at(0.0).item() == pytest.approx(1e-3)
 
 
-def test_derivatives_of_bodies_are_refused():
-    with pytest.raises(ActuatorError, match="derivatives: found a radius that varies"):
-        inflate(body(CONE), 1e4, derivatives="all")
-
-
 def test_a_body_is_drawn_with_its_radius():
     shape = shape_of(body(CONE))
     assert (shape.radius[0], shape.radius[-1], shape.position[-1]) == pytest.approx((8.0, 5.0, 60.0))

@@ -36,22 +36,32 @@ def exact(measurements, tube):
     return [np.nan_to_num(values[:, 0]).clip(min=0.0) for values in found]
 
 
-def bench(truth, guess, rng, noise=NOISE, forces=True):
-    """A free curve over pressure, and forces over contraction at three pressures, with noise and slack zeros."""
+def bench(truth, guess, rng, noise=NOISE, forces=True, states=(10, 8)):
+    """A free curve over pressure, and forces over contraction at three pressures, with noise and slack zeros; ``states`` of
+    the one, and of each of the others.
+    """
     top = rng.uniform(2.0, 4.0) * 1e5
-    pressure = np.linspace(0.15, 1.0, 10) * top
-    free = Measurement(guess, pressure, stroke=np.full(10, 1e-3))
-    held = [np.repeat([0.35, 0.7, 1.0], 8) * top, np.tile(np.linspace(0.0, 0.24, 8), 3)]
-    pulled = Measurement(guess, held[0], contraction=held[1], force=np.ones(24), measured="force")
+    many, each = states
+    pressure = np.linspace(0.15, 1.0, many) * top
+    free = Measurement(guess, pressure, stroke=np.full(many, 1e-3))
+    held = [np.repeat([0.35, 0.7, 1.0], each) * top, np.tile(np.linspace(0.0, 0.24, each), 3)]
+    pulled = Measurement(guess, held[0], contraction=held[1], force=np.ones(3 * each), measured="force")
     length, force = exact([free, pulled], truth)
     stroke = truth.length - length
-    stroke = stroke + noise * stroke.max() * rng.standard_normal(10)
+    stroke = stroke + noise * stroke.max() * rng.standard_normal(many)
     spread = noise * force.max()
-    force = np.where(force > 2.0 * spread, force + spread * rng.standard_normal(24), 0.0)
+    force = np.where(force > 2.0 * spread, force + spread * rng.standard_normal(3 * each), 0.0)
     made = [Measurement(guess, pressure, stroke=stroke)]
     if forces:
         made.append(Measurement(guess, held[0], contraction=held[1], force=force, measured="force"))
     return made
+
+
+def half_of(measurement, rest):
+    """Every second state."""
+    given = {name: getattr(measurement, name) for name in ("pressure", "deformed_length", "force")}
+    given = {name: array[rest::2] for name, array in given.items() if array is not None}
+    return Measurement(measurement.tube, **given, measured=measurement.measured)
 
 
 def values(tube):

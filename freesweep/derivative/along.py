@@ -1,0 +1,76 @@
+"""What varies along a tube, at any places x/l, as dual numbers of what was given: the same rules as
+:mod:`freesweep.revolution` has for numbers. A profile moves by the same amount all along.
+"""
+
+import numpy as np
+
+from ..description.along import rule_of
+from ..description.given import numbers
+from ..description.revolution import gauss, resolved
+from .dual import Dual, sqrt
+
+ANGLES = ("alpha", "beta")
+
+
+class Course:
+    """Angles, wall and radius along a ``tube`` that varies; ``places`` x/l where pieces meet."""
+
+    def __init__(self, tube, places):
+        self.tube, self.places = tube, np.asarray(places) / places[-1]
+        self.parts = resolved(tube)
+
+    def at(self, share, seed) -> dict:
+        """Angles [degree], wall, of a body radius and fiber radius [m], too: name -> dual numbers (n,) at places x/l inside
+        of segments; ``seed(name, values)`` makes them dual.
+        """
+        if not self.tube.is_body:
+            return {name: seed(name, self.parts.named(name).at(share)) for name in (*ANGLES, "wall")}
+        inner, wall, fibers = self._walls(share, seed)
+        first = self._walls(0.0, seed)[2]
+        found = {"radius": inner, "wall": wall, "fiber_radius": fibers}
+        for name in ANGLES:
+            if text := rule_of(name, getattr(self.tube, name)):
+                start = np.sin(np.radians(seed(name, numbers(text, "degree").item())))
+                found[name] = np.degrees(np.arcsin(start * first / fibers))
+            else:
+                found[name] = seed(name, self.parts.named(name).at(share))
+        return found
+
+    def first_surface(self, seed):
+        """Radius of the fibers of a body at x = 0 [m]: what lengths are measured by."""
+        return self._walls(0.0, seed)[2]
+
+    def rise(self, share, seed):
+        """Slope dR/d(x/l) of a body's fiber surface [m]."""
+        along = self.parts.radius.slope_at(share)
+        if not rule_of("wall", self.tube.wall):
+            return Dual(along)
+        inner, wall, _ = self._walls(share, seed)
+        outer = inner + wall
+        return along * (1.0 + self.tube.fiber_share * (inner / outer - 1.0))
+
+    def squares(self, seed):
+        """Means along a body of the squared fiber radius, and of that less the squared inner radius [m2]."""
+        share, weight = gauss(self.parts.profiles)
+        inner, _, fibers = self._walls(share, seed)
+        square = fibers * fibers
+        return mean(square, weight), mean(square - inner * inner, weight)
+
+    def _walls(self, share, seed):
+        """Inner radius, wall and fiber radius of a body [m]."""
+        inner, part = seed("radius", self.parts.radius.at(share)), self.tube.fiber_share
+        if text := rule_of("wall", self.tube.wall):
+            first = seed("radius", self.parts.radius.at(0.0))
+            outside = first + seed("wall", numbers(text, "m").item())
+            wall = sqrt(inner * inner + outside * outside - first * first) - inner
+            return inner, wall, inner + part * wall
+        thinnest = float(np.min(self.parts.wall.samples())) if part else 0.0
+        return inner, seed("wall", self.parts.wall.at(share)), inner + part * seed("wall", thinnest)
+
+
+def mean(number, weight):
+    """The sum over places (n,) of a dual number, each with its weight."""
+    value = np.atleast_1d(weight @ np.broadcast_to(number.value, len(weight)))
+    if number.parts is None:
+        return Dual(value)
+    return Dual(value, np.broadcast_to(number.parts, (len(number.parts), len(weight))) @ weight[:, None])

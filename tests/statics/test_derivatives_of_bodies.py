@@ -1,0 +1,175 @@
+"""Derivatives of bodies of revolution: the solver's own density at a point, the body's values where a parameter moves, and
+symmetries of Maxwell's.
+"""
+
+import numpy as np
+import pytest
+
+from freesweep import Actuator, MooneyRivlin, Profile, blocked_force, blocked_torque, inflate, interpret, lock
+from freesweep.derivative import attach
+from freesweep.derivative.asked import Asked
+from freesweep.derivative.dual import Dual
+from freesweep.derivative.physics import BY_V, BY_Y, OWN
+from freesweep.solver import batch, hold_batch
+from freesweep.solver.physics import lagrangian as kernels
+from freesweep.statics import read_course
+from freesweep.status import OK
+
+TUBE = {"alpha": 20, "beta": -40, "length": 0.06, "wall": 1e-3, "c10": 0.17e6, "c01": 0.08e6}
+CONE = {"radius": [(0, 8e-3), (1, 5e-3)]}
+SMOOTH = {"radius": Profile([(0, 6e-3), (0.5, 9e-3), (1, 6e-3)], smooth=True)}
+RULES = {"alpha": "geodesic 25.0 deg", "wall": "constant volume 1.2e-3 m", "fiber_radius": "outer"}
+PHYSICAL = {"model": "physical"}
+LOADS = ("pressure", "force", "torque", "deformed_length", "rotation")
+STEPS = {
+    "alpha": 0.1, "beta": 0.1, "length": 5e-5, "radius": 3e-5, "wall": 1e-5, "c10": 1e3, "c01": 1e3, "pressure": 500.0,
+    "force": 0.05, "torque": 1e-4, "fiber_extension": 1e-4, "deformed_length": 5e-5, "rotation": 0.5,
+}  # fmt: skip
+lagrangian = interpret._Twins(kernels)
+
+
+@pytest.fixture(autouse=True)
+def plain(monkeypatch):
+    """States without the compiler: there is no machine code of bodies for all tests."""
+    monkeypatch.setattr(interpret, "_clock", interpret._Clock())
+
+    def at_once(_, __, entry, *arguments):
+        return interpret._is_done(entry, arguments, [0, 0.0], 3000.0)
+
+    for states in (batch, hold_batch, interpret):
+        monkeypatch.setattr(states, "at_once", at_once)
+
+
+def bulb(share):
+    return 6e-3 + 3e-3 * np.sin(np.pi * share) ** 2
+
+
+def body(state):
+    design = {name: value for name, value in (TUBE | state).items() if name not in LOADS}
+    return Actuator(material=MooneyRivlin(design.pop("c10"), design.pop("c01")), **design)
+
+
+def moved(value, by):
+    """What is given, by so much more all along."""
+    if isinstance(value, str):
+        rule, number, unit = value.rsplit(" ", 2)
+        return f"{rule} {float(number) + by!r} {unit}"
+    if isinstance(value, Profile):
+        return Profile(moved(list(value.knots), by), smooth=value.smooth)
+    if callable(value):
+        return lambda share: value(share) + by
+    return [(x, number + by) for x, number in value] if isinstance(value, list) else value + by
+
+
+# --- at one point
+
+
+@pytest.mark.parametrize("more", [{}, RULES, PHYSICAL], ids=["source", "rules", "physical"])
+def test_a_body_s_density_is_that_of_the_kernels(more):
+    """Its first derivatives, and the second ones as parts of the dual numbers."""
+    tube = body(SMOOTH | more)
+    course, error = read_course(tube, 1e-6)
+    loads = {"pressure": 5e4, "force": 0.5, "torque": 1e-3}
+    physics = Asked(tube, (), 1e-6, course, error)._physics(loads, ())
+    share, y, v = np.array([0.2, 0.45, 0.8]), np.array([1.1, 1.15, 1.05]), np.array([0.1, -0.05, -0.2])
+    seeds = np.zeros((2, OWN, 1))
+    seeds[0, BY_Y] = seeds[1, BY_V] = 1.0
+    _, L_y, L_v = physics.local(Dual(y, seeds[0]), Dual(v, seeds[1]), share)
+    integrals = physics.integrands(Dual(y, seeds[0]), Dual(v, seeds[1]), share)
+    found = [L_y.value, L_v.value, L_y.parts[BY_Y], L_y.parts[BY_V], L_v.parts[BY_V], *(q.value for q in integrals)]
+    found = np.array([np.broadcast_to(row, 3) for row in found])
+    parts, r = physics.own.course.parts, tube.fiber_surface
+    c10 = tube.material.c10
+    wall = (1.0, 1.0, 1.0) if tube.is_loose else (1.0,)
+    rubber = (tube.material.c01 / c10, 0.0, 0.0) if tube.is_loose else (tube.material.c01 / c10,)
+    load = (1.0, rubber, wall, 5e4 / c10, 0.5 / (np.pi * r**2 * c10), 1e-3 / (np.pi * r**3 * c10), 1.0)
+    for k in range(3):
+        place = 0 if share[k] < 0.5 else 1  # the spline's pieces
+        cell = tuple(parts.numbers(0.5 * place, 0.5 * place + 0.5, 2.0 * share[k] - place).tolist())
+        own = lagrangian.density(y[k], v[k], cell, load)[1:]
+        expected = [*own, *lagrangian.integrands(y[k], v[k], cell, load)[:4]]
+        assert found[:, k] == pytest.approx(expected, rel=1e-10, abs=1e-13)
+
+
+# --- whole bodies
+
+WAYS = {"inflate": inflate, "lock": lock, "blocked_force": blocked_force, "blocked_torque": blocked_torque}
+STATES = {
+    "geodesic": ("inflate", CONE | RULES | {"pressure": 3e4, "force": 0.5, "torque": 1e-3}),
+}
+LONG = {
+    "held length": ("blocked_force", CONE | {"pressure": 4e4, "deformed_length": 0.0605}),
+    "bulb": ("inflate", {"radius": bulb, "pressure": 4e4, "force": 0.5, "torque": 1e-3}),
+    "bend": ("inflate", {"radius": [(0, 6e-3), (0.4, 8e-3), (1, 8e-3)], "wall": [(0, 1e-3), (1, 1.5e-3)], "pressure": 4e4}),
+    "extension": ("inflate", SMOOTH | {"fiber_extension": 1.01, "fiber_radius": "middle", "pressure": 4e4}),
+    "locked": ("lock", CONE),
+    "held rotation": ("blocked_torque", CONE | {"pressure": 4e4, "rotation": 5.0}),
+    "thick": ("inflate", CONE | {"wall_model": "thick", "fiber_radius": "outer", "pressure": 4e4}),
+    "physical": ("inflate", SMOOTH | PHYSICAL | RULES | {"pressure": 4e4}),
+    "slack": ("inflate", CONE | PHYSICAL | {"alpha": 5, "beta": 30, "pressure": 5e4}),
+}  # fmt: skip
+
+
+def judge(way, state, monkeypatch):
+    """Derivatives against differences of the same body's values, which are those of the solver within both bounds."""
+    seen, shapes = {}, attach.shapes_of
+
+    def spied(asked, solve):
+        seen["asked"], seen["y"] = asked, shapes(asked, solve)
+        return seen["y"]
+
+    monkeypatch.setattr(attach, "shapes_of", spied)
+    loads = {name: state[name] for name in LOADS if name in state}
+    found = WAYS[way](body(state), **loads, x=[0.0], derivatives="all")
+    assert found["status"] == OK
+    asked, y = seen["asked"], seen["y"].ravel()
+    own = {name: state.get(name, np.inf if way == "lock" and name == "pressure" else 0.0) for name in LOADS[:3]}
+    if asked.unknown:
+        own[asked.unknown] = found[asked.unknown].item()
+
+    def values(name, by):
+        at = (TUBE | {"fiber_extension": 1.0, "force": 0.0, "torque": 0.0} | state)[name]
+        changed = state | {name: moved(at, by)}
+        tube = body(changed)
+        other = Asked(tube, (), 1e-8, *read_course(tube, 1e-8), asked.held, asked.unknown)
+        other.x = asked.x
+        return other.state(own | ({name: own[name] + by} if name in own else {}), changed.get(asked.held), y)[0][:, 0]
+
+    for name in asked.parameters:
+        h = STEPS[name]
+        if name == "fiber_extension" and name not in state:  # 1 is the least
+            h *= 0.1
+            zero, half, one = (values(name, by * h) for by in (0.0, 0.5, 1.0))
+            difference, close = (4.0 * half - 3.0 * zero - one) / h, 3e-5
+        else:
+            near, far = values(name, h / 2) - values(name, -h / 2), values(name, h) - values(name, -h)
+            difference, close = (8.0 * near - far) / (6.0 * h), 1e-6
+        for output, told in zip(asked.outputs, difference):
+            exact, bound = (found[f"d_{output}_d_{name}{end}"].item() for end in ("", "_error"))
+            size = max(abs(exact), 1e-4 * abs(found[output].item()) / h)
+            assert abs(exact - told) <= max(close * size, bound), (output, name)
+            assert bound <= 1e-5 * size, (output, name)
+    return found
+
+
+@pytest.mark.parametrize("kind", STATES)
+def test_derivatives_of_bodies_are_what_their_differences_tell(kind, monkeypatch):
+    found = judge(*STATES[kind], monkeypatch)
+    if kind == "geodesic":  # Maxwell's symmetries
+        by_torque, by_pressure = (found[f"d_deformed_length_d_{name}"].item() for name in ("torque", "pressure"))
+        assert found["d_rotation_d_force"].item() == pytest.approx(np.degrees(by_torque), rel=1e-8)
+        assert found["d_volume_d_force"].item() == pytest.approx(by_pressure, rel=1e-8)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", LONG)
+def test_derivatives_of_more_bodies_are_what_their_differences_tell(kind, monkeypatch):
+    judge(*LONG[kind], monkeypatch)
+
+
+def test_an_undeformed_body_has_derivatives_by_its_sizes_and_none_by_loads():
+    found = inflate(body(CONE), 0.0, x=[0.0], derivatives=["length", "radius", "pressure"])
+    assert found["d_deformed_length_d_length"] == 1.0
+    assert found["d_mid_radius_d_radius"] == 1.0
+    assert found["d_volume_d_radius"].item() == pytest.approx(np.pi * 0.06 * 13e-3, rel=1e-12)  # 2 pi l times the mean
+    assert np.isnan(found["d_volume_d_pressure"])
