@@ -5,14 +5,15 @@ above. Here a kernel that other kernels call remains as LLVM reads it; an entry 
 once, and only that is optimised and made.
 
 Kernels hold no closures, ``with``, ``raise`` or expressions of whole arrays, so the passes that look for those are left out.
-And which signature an operator takes for arguments of given types, which Numba finds out by trying dozens of templates, is
-found out once in a process rather than at each of thousands of places.
+What is handed to LLVM is shorter (:mod:`.lowering`). And which signature an operator takes for arguments of given types,
+which Numba finds out by trying dozens of templates, is found out once in a process rather than at each of thousands of
+places.
 """
 
 import contextlib
 import gc
 
-from numba.core import typed_passes
+from numba.core import event, typed_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
@@ -37,7 +38,7 @@ LEFT_OUT = {  # by name: other versions of Numba know other passes
 _signatures = {}  # (function, types of arguments) -> signature
 
 
-_ask, _find = BaseFunction.get_call_type, NRTContext.get_meminfos
+_ask = BaseFunction.get_call_type
 
 
 def _remembered(function, context, given, named):
@@ -49,21 +50,30 @@ def _remembered(function, context, given, named):
     return _signatures[key]
 
 
+INSTEAD = (
+    (BaseFunction, "get_call_type", _remembered),
+    (NRTContext, "get_meminfos", counted),
+    (event, "install_timer", lambda *_: contextlib.nullcontext()),  # each kernel's own, told of each call of LLVM
+)
+
+
 @contextlib.contextmanager
 def _quick():
-    """While a kernel is compiled with all that it calls, signatures are remembered and arrays found without detours, and
-    Python's garbage collector, which would look at a compiler's many objects over and over, waits.
+    """While a kernel is compiled with all that it calls, parts of Numba are replaced by quicker ones, and Python's garbage
+    collector, which would look at a compiler's many objects over and over, waits.
     """
-    if BaseFunction.get_call_type is not _ask:  # it is called by one that is compiled
+    if BaseFunction.get_call_type is _remembered:  # it is called by one that is compiled
         yield
         return
-    BaseFunction.get_call_type, NRTContext.get_meminfos = _remembered, counted
-    if collecting := gc.isenabled():
-        gc.disable()
+    collecting, before = gc.isenabled(), [getattr(owner, name) for owner, name, _ in INSTEAD]
+    gc.disable()
+    for owner, name, quicker in INSTEAD:
+        setattr(owner, name, quicker)
     try:
         yield
     finally:
-        BaseFunction.get_call_type, NRTContext.get_meminfos = _ask, _find
+        for (owner, name, _), usual in zip(INSTEAD, before):
+            setattr(owner, name, usual)
         if collecting:
             gc.enable()
 
