@@ -5,16 +5,22 @@ above. Here a kernel that other kernels call remains as LLVM reads it; an entry 
 once, and only that is optimised and made.
 
 Kernels hold no closures, ``with``, ``raise`` or expressions of whole arrays, so the passes that look for those are left out.
-And which signature an operator takes for arguments of given types, which Numba finds out by trying dozens of templates, is
-found out once in a process rather than at each of thousands of places.
+What is handed to LLVM is shorter (:mod:`.lowering`). And which signature an operator takes for arguments of given types,
+which Numba finds out by trying dozens of templates, is found out once in a process rather than at each of thousands of
+places.
 """
 
+import contextlib
 import gc
 
-from numba.core import typed_passes, types
+from numba.core import event, typed_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
+from numba.core.runtime.context import NRTContext
+from numba.core.types.functions import BaseFunction
+
+from .lowering import KernelLower, counted
 
 LEFT_OUT = {  # by name: other versions of Numba know other passes
     "WithLifting",
@@ -32,34 +38,44 @@ LEFT_OUT = {  # by name: other versions of Numba know other passes
 _signatures = {}  # (function, types of arguments) -> signature
 
 
-class _Remembering:
-    """A typing context that remembers the signatures of Numba's own functions."""
-
-    def __init__(self, context):
-        self._context = context
-
-    def __getattr__(self, name):
-        return getattr(self._context, name)
-
-    def resolve_function_type(self, function, given, named):
-        if named or not isinstance(function, types.Function):
-            return self._context.resolve_function_type(function, given, named)
-        if (key := (function, given)) not in _signatures:
-            _signatures[key] = self._context.resolve_function_type(function, given, named)
-        return _signatures[key]
+_ask = BaseFunction.get_call_type
 
 
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _TypeInference(typed_passes.NopythonTypeInference):
-    _name = "remembering_type_inference"
+def _remembered(function, context, given, named):
+    """The signature that one of Numba's own functions takes."""
+    if named:
+        return _ask(function, context, given, named)
+    if (key := (function, given)) not in _signatures:
+        _signatures[key] = _ask(function, context, given, named)
+    return _signatures[key]
 
-    def run_pass(self, state):
-        context = state.typingctx
-        state.typingctx = _Remembering(context)
-        try:
-            return super().run_pass(state)
-        finally:
-            state.typingctx = context
+
+INSTEAD = (
+    (BaseFunction, "get_call_type", _remembered),
+    (NRTContext, "get_meminfos", counted),
+    (event, "install_timer", lambda *_: contextlib.nullcontext()),  # each kernel's own, told of each call of LLVM
+)
+
+
+@contextlib.contextmanager
+def _quick():
+    """While a kernel is compiled with all that it calls, parts of Numba are replaced by quicker ones, and Python's garbage
+    collector, which would look at a compiler's many objects over and over, waits.
+    """
+    if BaseFunction.get_call_type is _remembered:  # it is called by one that is compiled
+        yield
+        return
+    collecting, before = gc.isenabled(), [getattr(owner, name) for owner, name, _ in INSTEAD]
+    gc.disable()
+    for owner, name, quicker in INSTEAD:
+        setattr(owner, name, quicker)
+    try:
+        yield
+    finally:
+        for (owner, name, _), usual in zip(INSTEAD, before):
+            setattr(owner, name, usual)
+        if collecting:
+            gc.enable()
 
 
 class _Part(JITCodeLibrary):
@@ -84,11 +100,45 @@ class _Part(JITCodeLibrary):
         return whole
 
 
+class _Whole(JITCodeLibrary):
+    """The code of a kernel that Python calls, and of all others that it needs, which no one calls from outside."""
+
+    def finalize(self):
+        self._doors = {one.name for one in self.get_defined_functions()}
+        super().finalize()
+
+    def _optimize_final_module(self):
+        for one in self.get_defined_functions():
+            if one.name not in self._doors and one.name.startswith("_ZN"):  # of Python's; Numba's own count references
+                one.linkage = "internal"  # so LLVM may drop arguments, and what it has put in everywhere
+        super()._optimize_final_module()
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _Lowering(typed_passes.NativeLowering):
+    """LLVM code, and machine code."""
+
+    _name = "kernel_lowering"
+
+    @property
+    def lowering_class(self):
+        return KernelLower
+
+    def run_pass(self, state):
+        state.library = _Whole(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return super().run_pass(state)
+
+
 @register_pass(mutates_CFG=True, analysis_only=False)
 class _PartLowering(typed_passes.NativeLowering):
     """LLVM code that no one but other kernels will call: no machine code of its own."""
 
     _name = "part_lowering"
+
+    @property
+    def lowering_class(self):
+        return KernelLower
 
     def run_pass(self, state):
         state.library = _Part(state.targetctx.codegen(), state.func_id.func_qualname)
@@ -103,25 +153,18 @@ class _PartLowering(typed_passes.NativeLowering):
 class KernelCompiler(CompilerBase):
     """The compiler of what Python calls."""
 
-    lowering = typed_passes.NativeLowering
+    lowering = _Lowering
 
     def compile_extra(self, function):
-        """Python's garbage collector looks at a compiler's many objects over and over: it waits."""
-        collecting = gc.isenabled()
-        gc.disable()
-        try:
+        with _quick():
             return super().compile_extra(function)
-        finally:
-            if collecting:
-                gc.enable()
 
     def define_pipelines(self):
         whole = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        instead = {typed_passes.NopythonTypeInference: _TypeInference, typed_passes.NativeLowering: self.lowering}
         manager = type(whole)("kernel")
         for kind, words in whole.passes:
             if kind.__name__ not in LEFT_OUT:
-                manager.add_pass(instead.get(kind, kind), words)
+                manager.add_pass(self.lowering if kind is typed_passes.NativeLowering else kind, words)
         manager.finalize()
         return [manager]
 

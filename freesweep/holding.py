@@ -132,6 +132,8 @@ def _hold(
 ):  # fmt: skip
     from .interpret import at_once
     from .solver.along.profile import FIELDS
+    from .solver.batch import uniform
+    from .solver.halves import in_two_halves
     from .solver.held.held_state import HELD_LENGTH, HELD_ROTATION
     from .solver.held.held_states import hold_many
     from .solver.hold_batch import refuse
@@ -158,19 +160,16 @@ def _hold(
     )[0]
     whole, error = is_solved_whole(tube) or buckled, 0.0
     if tube.varies:
-        (course, edges, places), error = read_course(tube, accuracy)
+        solved, error = read_course(tube, accuracy)
     else:
-        segments = 2 if whole else 1
-        course = np.zeros((segments, 1, 3, 4))
-        course[:, 0, :, 0] = row[:3]
-        edges, places = np.arange(segments + 1) * HALF_CELLS, np.arange(segments + 1) * 0.5 * tube.length / r
+        solved = in_two_halves(row, HALF_CELLS) if whole else uniform(HALF_CELLS)
     every = with_own(tube, stations)
     unique, index = near_stations(tube, every, whole)
-    values, bounds = np.empty((count, 6)), np.empty((count, 6))
+    values, bounds = np.full((2, count, 6), np.nan)
     codes = np.full(count, PENDING)
-    stable, slack, paths = (np.empty(count, np.int64) for _ in range(3))
-    least = np.empty((count, 2))
-    fields = np.empty((count, FIELDS, len(unique)))
+    stable, slack, paths = np.zeros((3, count), np.int64)
+    least = np.full((count, 2), np.nan)
+    fields = np.full((count, FIELDS, len(unique)), np.nan)
     held_is_length = held_name == "deformed_length"
     states = (
         pressures / c10, others / (np.pi * r ** (3 if held_is_length else 2) * c10),
@@ -179,8 +178,8 @@ def _hold(
     if count >= MANY and not whole:
         refuse(row, *states, codes)
     arguments = (
-        row, wall_columns(row), *states, bool(buckled), course, edges, places, accuracy - SENSITIVITY * error,
-        values, bounds, codes, stable, slack, paths, least, unique, fields,
+        row[None], wall_columns(row), np.array([0, count]), *states, bool(buckled), *solved,
+        accuracy - SENSITIVITY * error, values, bounds, codes, stable, slack, paths, least, unique, fields,
     )  # fmt: skip
     if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
         hold_many(*arguments)
@@ -228,7 +227,7 @@ def _hold(
         tube,
         names,
         accuracy,
-        (course, edges, places) if tube.varies else None,
+        solved if tube.varies else None,
         error,
         held_name,
         unknown,

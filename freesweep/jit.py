@@ -36,7 +36,7 @@ def source_hash(*rooms: str) -> str:
     here = Path(__file__).parent
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     sources = [path for room in rooms for path in sorted((here / room).rglob("*.py"))]
-    for path in [Path(__file__), here / "compiler.py", *sources]:
+    for path in [Path(__file__), here / "compiler.py", here / "lowering.py", *sources]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 

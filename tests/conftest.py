@@ -32,12 +32,7 @@ sections = dict(length=0.1, radius=5e-3, wall=1.5e-3, material=fs.MooneyRivlin(1
 alike, varying = fs.Actuator(alpha=40, beta=-20, **sections), fs.Actuator(alpha=[(0, 40), (1, 41)], beta=-20, **sections)
 """
 HELD = """
-import numpy as np
-from freesweep.solver import batch, hold_batch
-from freesweep.solver.held import sought
 fs.blocked_force(alike, 1e4)
-none = np.zeros((0, 11)), np.zeros(0), sought.HELD_LENGTH, np.zeros(1, np.int64), np.zeros(0)
-hold_batch.hold_all(*none, batch.uniform(24), 1e-6, lanes=False)
 """
 FREE = """
 import numpy as np

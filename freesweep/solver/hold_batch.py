@@ -6,14 +6,16 @@ held: the first integral guesses mu to a few digits, secants through solved stat
     mu = mu_1 + (target - C(mu_1))/sigma,    sigma = dC/dmu
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numba import config
 
 from ..interpret import at_once
+from .along.profile import FIELDS
 from .halves import one_by_one
-from .held.block import block_many
+from .held.held_states import hold_many
 from .held.sought import HELD_LENGTH
 from .physics.lagrangian import ROUNDING
 from .problem import FORCE, MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, TORQUE, YEOH, wall_columns
@@ -23,6 +25,7 @@ TURNS = 5  # solutions of one state, at most; two do nearly always
 CLEAR = 20.0  # times its bounds: a difference of C from which a secant is good
 DOUBT, BLIND = 0.02, 0.2  # share of the last correction that a secant, or the guess of sigma, may miss, at least
 TWIST = 2  # column of a free state's values
+STATUS = 14  # place among the arguments of hold_many
 LEAST_ACCURACY = 1e-11  # asked of free states
 
 
@@ -42,9 +45,8 @@ def _pending(count):
 
 
 def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=True, soon=False) -> Holds:
-    """Hold each problem at its target under each of its pressures; arguments as of :func:`.held.block.block_many`,
-    ``tube`` its
-    (course, edges, places).
+    """Hold each problem at its target (k,) under each of its pressures, keeping its torque while its length is held, its
+    force while its rotation is; arguments as of :func:`.held.held_states.hold_many`, ``tube`` its (course, edges, places).
 
     Vectors of designs serve where tubes do not vary. Their numbers do not depend on which designs share a vector; those
     of the scalar kernels alone (``lanes=False``) differ by less than the bounds. ``soon``: a few states need not wait for
@@ -54,24 +56,34 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
         np.ascontiguousarray, (problems, targets, pressures)
     )  # others are compiled for anew
     count, found = len(pressures), _pending(len(pressures))
-    walls, todo = wall_columns(problems), True
+    numbers = np.full((2, count, 6), np.nan)
+    scalar = partial(_scalar_calls, problems, targets, kind, first, pressures, tube, accuracy, found, *numbers)
     if lanes and len(tube[0]) == 0 and problems.shape[1] == PROBLEM_SIZE and not config.DISABLE_JIT:
         from .lanes.held import seek_lanes
 
-        scalar = problems, walls, targets, kind, first, pressures, *tube, accuracy, *found
-        todo = not (soon and at_once(count, seek_lanes, block_many, *scalar))
-        if todo:
+        if not (soon and at_once(count, seek_lanes, hold_many, *next(scalar()))):
             _hold_lanes(problems, targets, kind, first, pressures, int(tube[1][-1]), accuracy, found)
-    for own, rows, starts, whole in one_by_one(problems, first, tube) if todo else ():
-        if not (left := np.count_nonzero(found.status[rows] == PENDING)):
-            continue
-        scalar = (
-            problems[own], walls, targets[own], kind, starts, pressures[rows], *whole, accuracy,
-            *(array[rows] for array in found),
-        )  # fmt: skip
-        if not (soon and at_once(left, block_many, block_many, *scalar)):
-            block_many(*scalar)
+    for call in scalar():
+        left = np.count_nonzero(call[STATUS] == PENDING)
+        if left and not (soon and at_once(left, hold_many, hold_many, *call)):
+            hold_many(*call)
+    own = np.isfinite(numbers[0, :, -1])
+    found.values[own], found.bounds[own] = numbers[:, own, -1]
     return found
+
+
+def _scalar_calls(problems, targets, kind, first, pressures, tube, accuracy, found, values, bounds):
+    """Arguments of :func:`hold_many`: of all problems at once, or of each that has to be solved whole."""
+    walls, each = wall_columns(problems), np.diff(first)
+    others = np.repeat(problems[:, TORQUE if kind == HELD_LENGTH else FORCE], each)
+    targets, nothing = np.repeat(targets, each), np.empty(0)
+    for own, rows, starts, whole in one_by_one(problems, first, tube):
+        count = len(pressures[rows])
+        yield (
+            problems[own], walls, starts, pressures[rows], others[rows], targets[rows], kind, False, *whole, accuracy,
+            values[rows], bounds[rows], found.status[rows], found.stable[rows], *np.zeros((2, count), np.int64),
+            np.empty((count, 2)), nothing, np.empty((count, FIELDS, 0)),
+        )  # fmt: skip
 
 
 def _hold_lanes(problems, targets, kind, first, pressures, base, accuracy, found):

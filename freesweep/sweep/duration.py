@@ -17,7 +17,7 @@ MUCH = 0.1  # share of the whole time, below which a kind of states is worth no 
 SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
 TOGETHER = 32  # problems that are solved at once, as vectors need them
 KERNELS = {FREE: ("solve_lanes", "follow_many")} | dict.fromkeys(
-    ("blocked_force", "blocked_torque"), ("seek_lanes", "solve_lanes", "block_many")
+    ("blocked_force", "blocked_torque"), ("seek_lanes", "solve_lanes", "hold_many")
 )
 VARIED = KERNELS | {FREE: ("follow_many",)}
 

@@ -53,7 +53,7 @@ def test_kernels_are_loaded_before_the_threads_begin(text, needed, tmp_path, mon
         return noted
 
     entries = [(free, "carry_lanes"), (free, "solve_lanes"), (held, "seek_lanes")]
-    for module, name in [*entries, (batch, "follow_many"), (hold_batch, "block_many")]:
+    for module, name in [*entries, (batch, "follow_many"), (hold_batch, "hold_many")]:
         monkeypatch.setattr(module, name, noting(getattr(module, name)))
     early, late, idle = set(), set(), set()
     monkeypatch.setattr(kernels, "load", then(kernels.load, early))
@@ -73,7 +73,7 @@ def test_a_first_sweep_needs_no_scalar_kernel(tmp_path, monkeypatch):
         raise AssertionError("a scalar kernel is needed")
 
     monkeypatch.setattr(batch, "follow_many", never)
-    monkeypatch.setattr(hold_batch, "block_many", never)
+    monkeypatch.setattr(hold_batch, "hold_many", never)
     found = make(tmp_path / "atlas.nc", QUICK)
     assert set(np.unique(found["status"])) == {0, 1}
     assert "interpolation_measured" in found.attrs

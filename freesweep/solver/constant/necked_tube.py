@@ -129,7 +129,9 @@ def solve(cell, tube, x, y, mu, path, t, scale, accuracy, base, fine, curve, tab
         if k >= quadrature.ROWS - finest.MESHES:
             lay(curve, count, half, *finest.mesh_of(quadrature.ROWS - 1 - k, nodes // 2, fine))
     there, last = loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
-    out[2], out[3] = lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE)
+    units, floors = lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE)
+    for k in range(nested.OUTPUTS):
+        out[2, k], out[3, k] = units[k], floors[k]
     unit = max(abs(direction[4]), abs(direction[5]))
     out[2, nested.MULTIPLIER] /= max(unit, 1.0)
     out[3, nested.MULTIPLIER] /= unit

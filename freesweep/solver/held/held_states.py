@@ -1,4 +1,4 @@
-"""Held states: one after another, each on a mesh that holds it."""
+"""Held states, of one design or many: one after another, each on a mesh that holds it."""
 
 from math import atan
 from typing import NamedTuple
@@ -11,14 +11,23 @@ from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
 from ..numerics import held, nested
-from ..numerics.properties_along import Tube, make_cells, volume
+from ..numerics.properties_along import Tube, make_cells, of_problems, seat, turns, volume
 from ..numerics.shapes import MESH_CHANGE
 from ..physics import lagrangian
-from ..problem import LENGTH, D, H
-from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK, PENDING
+from ..problem import GAMMA, LENGTH, D, H, wall_of
+from ..status import (
+    BEYOND_LIMIT,
+    COMPRESSED,
+    HELD_IMPOSSIBLE,
+    INACCURATE,
+    INVALID,
+    NOT_CONVERGED,
+    OK,
+    PENDING,
+)
 from .buckled import find_buckled
 from .held_state import find
-from .sought import FROM_REST, HELD_LENGTH, Found, failed, load_of, unit_of, valued
+from .sought import HELD_LENGTH, HELD_ROTATION, Found, failed, load_of, unit_of, valued
 from .ways import cylinder_multiplier, make_room
 
 FINER, FINEST = 4, 6144  # times the cells of the base mesh, up to so many: some layers are thin
@@ -145,18 +154,6 @@ class States(NamedTuple):
 
 
 @kernel
-def blank(states, i):
-    """No value yet."""
-    for k in range(6):
-        states.values[i, k], states.bounds[i, k] = np.nan, np.nan
-    for j in range(len(states.stations)):
-        for k in range(FIELDS):
-            states.profiles[i, k, j] = np.nan
-    states.slack[i], states.stable[i], states.paths[i] = 0, 0, FROM_REST
-    states.least[i, 0], states.least[i, 1] = np.nan, np.nan
-
-
-@kernel
 def leave_at_rest(states, i, problem, tube):
     """The undeformed tube; the fiber angles of one that varies are put in by who asks."""
     rest, fields = 0.5 * problem[LENGTH], states.profiles[i]
@@ -201,39 +198,65 @@ def record(states, i, found, tube, space, accuracy, out):
         states.status[i] = found.status if drawn else INACCURATE
 
 
+@kernel
+def ends_last(problem, walls, tube):
+    """Whether longer fibers leave the clamped ends, whose radius is given, any length."""
+    least = 1.0
+    for end in range(2):
+        cell = guide.cell_along(tube, 1.0 * end)
+        least = min(least, lagrangian.clamped(cell, problem[GAMMA], wall_of(problem, walls)))
+    return least > 0.0
+
+
+@kernel
+def hold(states, i, problem, walls, p, other, target, kind, buckled, tube, accuracy, room, out):
+    """Hold one state."""
+    natural = target == (problem[LENGTH] if kind == HELD_LENGTH else 0.0)
+    if not ends_last(problem, walls, tube):
+        states.status[i] = INVALID
+    elif p == 0.0 and other == 0.0 and natural and not buckled:
+        leave_at_rest(states, i, problem, tube)
+    elif kind == HELD_ROTATION and not turns(tube.course):
+        states.status[i] = HELD_IMPOSSIBLE
+    else:
+        own_target = 0.5 * target if tube.half else target
+        if buckled:
+            found = find_buckled(problem, walls, p, other, own_target, tube, accuracy, room, out, states.least[i])
+        else:
+            found, tube, room = find_on_some_mesh(problem, walls, p, other, own_target, kind, tube, accuracy, room, out)
+        record(states, i, found, tube, room.space, accuracy, out)
+
+
 @entry_point
 def hold_many(
-    problem, walls, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds, status,
-    stable, slack, paths, least, stations, profiles,
+    problems, walls, first, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds,
+    status, stable, slack, paths, least, stations, profiles,
 ):  # fmt: skip
-    """Held states of one design, for arrays of pressure, of the load that is not unknown, and of the held quantity.
+    """Held states of designs, each for pressures, the load that is not unknown, and what is held (``kind`` HELD_LENGTH, or
+    HELD_ROTATION).
 
-    The n-th entries belong together; those whose status is not PENDING are passed over. ``targets`` are in radii (deformed
-    length) or radians, of the whole tube; a tube that is the same all along is solved by half (``edges`` and ``places`` of
-    one segment), unless ``buckled``. ``values`` and ``bounds`` are (n, 6): length, volume, twist, energy of half the tube,
-    stretch in the middle, multiplier. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2) the least
-    pressure of the ``buckled`` branch and its bound.
+    ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of
+    :func:`..free.free_states.follow_many`. The n-th entries of ``pressures``, ``others`` and ``targets`` belong together;
+    those whose status is not PENDING are passed over, and where no value is found none is written. ``targets`` are in radii
+    (deformed length) or radians, of the whole tube; a tube that is the same all along is solved by half, unless ``buckled``:
+    then ``course`` is its own, of two halves. ``values`` and ``bounds`` are (n, 6): length, volume, twist, energy of half
+    the tube, stretch in the middle, multiplier. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2)
+    the least pressure of the ``buckled`` branch and its bound.
     """
-    base, whole, half = edges[len(edges) - 1], places[len(places) - 1], len(places) == 2
-    middle = base if half else edges[np.argmin(np.abs(places - 0.5 * whole))]
-    varying = not half or course.shape[1] > 1
-    first_room, out = make_room(base, half, varying), np.zeros((4, nested.OUTPUTS))
-    first_tube = Tube(course, edges, cells_for(base, varying, course), half, middle, places)
+    alike, base = course.shape[0] == 0, edges[len(edges) - 1]
+    own_course, own_places = of_problems(course) if alike else course, np.zeros(2) if alike else places.copy()
+    whole = own_places[len(own_places) - 1]
+    middle = base if alike else edges[np.argmin(np.abs(own_places - 0.5 * whole))]
+    tube = Tube(own_course, edges, cells_for(base, not alike, own_course), alike, middle, own_places)
+    room, out = make_room(base, alike, not alike), np.zeros((4, nested.OUTPUTS))
     states = States(values, bounds, status, stable, slack, paths, least, stations, profiles)
-    for i in range(len(pressures)):
-        blank(states, i)
-        if status[i] != PENDING:
-            continue
-        p, other, target = pressures[i], others[i], 0.5 * targets[i] if half else targets[i]
-        natural = target == (whole if kind == HELD_LENGTH else 0.0)
-        if p == 0.0 and other == 0.0 and natural and not buckled:
-            leave_at_rest(states, i, problem, first_tube)
-            continue
-        tube, room = first_tube, first_room
-        if buckled:
-            found = find_buckled(problem, walls, p, other, target, tube, accuracy, room, out, least[i])
-        else:
-            found, tube, room = find_on_some_mesh(
-                problem, walls, p, other, target, kind, first_tube, accuracy, first_room, out
-            )
-        record(states, i, found, tube, room.space, accuracy, out)
+    for k in range(len(problems)):
+        if alike:
+            own_places[1] = 0.5 * problems[k, LENGTH]
+            seat(own_course, problems[k])
+        for i in range(first[k], first[k + 1]):
+            if status[i] == PENDING:
+                hold(
+                    states, i, problems[k], walls, pressures[i], others[i], targets[i], kind, buckled, tube, accuracy, room,
+                    out,
+                )  # fmt: skip
