@@ -6,6 +6,7 @@ from ..jit import kernel
 from ..solver.lanes.newton import eliminate, substitute
 from ..solver.lanes.pack import aligned
 from ..solver.lanes.vector import WIDTH, get, mask_of, spread
+from ..solver.load import Load
 from ..solver.physics import lagrangian
 from .peak import CELLS, LOAD, PASSES, RUBBER, TUBE, median_time
 
@@ -17,7 +18,7 @@ def lane_passes(count, x, y, columns, work):
     """That many Newton passes at the same state."""
     n = len(x) - 1
     cell = (get(columns, 0), get(columns, 1), get(columns, 2))
-    load = (
+    load = Load(
         get(columns, 3), (get(columns, 4),), (get(columns, 5),), get(columns, 6), get(columns, 7), get(columns, 8),
         get(columns, 9),
     )  # fmt: skip

@@ -12,6 +12,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from ..jit import kernel
+from ..solver.load import Load
 from ..solver.numerics import newton
 from ..solver.physics import lagrangian
 
@@ -20,7 +21,7 @@ CHAINS = (
 )
 CELLS, PASSES = 96, 500  # of a mesh, timed at once
 TUBE, RUBBER = (0.1, 0.6, 0.7), (0.5, 0.0, 0.0)  # any: a pass takes the same time
-LOAD = (1.0, RUBBER, (1.0,), 1.0, 0.0, 0.0, 1.0)
+LOAD = Load(1.0, RUBBER, (1.0,), 1.0, 0.0, 0.0, 1.0)
 EXTRA = 36  # flops of a cell beside its density: newton.assemble, factor, substitute
 
 

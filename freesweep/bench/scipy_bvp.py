@@ -13,6 +13,7 @@ import numpy as np
 from scipy.integrate import solve_bvp
 
 from ..jit import kernel
+from ..solver.load import Load
 from ..solver.physics import lagrangian
 
 NODES, COLD_NODES = 17, 65  # of a warm start, and of the first pressure
@@ -26,7 +27,7 @@ def fill(y, q, cell, load, rates, jacobian):
     """Rates (2, n) and their Jacobian (2, 2, n)."""
     for i in range(len(y)):
         G = 1.0 + lagrangian.kinematics(y[i], cell, load)[3]
-        T = load[3] * y[i] * y[i] + load[4]
+        T = load.p * y[i] * y[i] + load.f
         v = -q[i] * sqrt(max(G, 1e-30)) / sqrt(T * T + q[i] * q[i])
         _, L_y, _, L_yy, L_yv, L_vv = lagrangian.density(y[i], v, cell, load)
         v_y, v_q = -L_yv / L_vv, 1.0 / L_vv
@@ -54,7 +55,7 @@ def integrals(y, q, weights, cell, load, out):
     """Length, volume and rotation of half a tube."""
     for i in range(len(y)):
         G = 1.0 + lagrangian.kinematics(y[i], cell, load)[3]
-        T = load[3] * y[i] * y[i] + load[4]
+        T = load.p * y[i] * y[i] + load.f
         v = -q[i] * sqrt(G) / sqrt(T * T + q[i] * q[i])
         s, volume, psi, _, _ = lagrangian.integrands(y[i], v, cell, load)
         out[0] += weights[i] * s
@@ -76,7 +77,8 @@ def solve_all(chosen, stretches, tolerance):
     for problem in chosen.problems:
         cell, half, solution = tuple(problem[:3]), 0.5 * problem[8], None
         for p in chosen.pressures:
-            load = (problem[3], (problem[4], problem[9], problem[10]), (problem[5],), p, problem[6], problem[7], 1.0)
+            rubber = problem[4], problem[9], problem[10]
+            load = Load(problem[3], rubber, (problem[5],), p, problem[6], problem[7], 1.0)
             begun = time.thread_time()
             found = _solve(cell, load, half, stretches[row], solution, tolerance)
             if found.status == 0:

@@ -1,5 +1,5 @@
 """What varies along a tube, at any places x/l, as dual numbers of what was given: the same rules as
-:mod:`freesweep.revolution` has for numbers. A profile moves by the same amount all along.
+:mod:`freesweep.description.revolution` has for numbers. A profile moves by the same amount all along.
 """
 
 import numpy as np

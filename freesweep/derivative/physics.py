@@ -68,6 +68,8 @@ class Physics:
 
     def properties(self, share):
         """``(cell, load)`` as kernels take them, for cells whose middles lie at places x/l."""
+        from ..solver.load import Load
+
         tube, design = self.tube, self.design
         if self.course is not None:
             design = design | self.course.at(share, self.seed)
@@ -80,7 +82,7 @@ class Physics:
         rubber = (ratio,)
         if isinstance(tube.material, Yeoh):
             rubber = (ratio, second, third + NEXT_TO_NOTHING)
-        return (H, D, area), (gamma, rubber, (shear, *wall), p, f, m, e)
+        return (H, D, area), Load(gamma, rubber, (shear, *wall), p, f, m, e)
 
     def outputs(self, integrals, middle, half):
         """The outputs in SI units and degrees from dimensionless dual numbers, of ``half`` the tube or all of it."""

@@ -9,6 +9,7 @@ import functools
 import math
 
 from ..jit import entry_point, kernel
+from ..solver.load import Load
 from ..solver.physics.physical import density, kind_of, place, uniform_tube
 from ..solver.physics.relaxed import both_reach, multipliers, reach, taut_twist
 from ..solver.physics.wall import slopes, stored
@@ -63,7 +64,9 @@ def problem(point, thick, loose, columns):
     area = ((point[RADIUS] + point[WALL]) / r) ** 2 - within * within
     wall, square = (1.0, within * within * thick, loose), math.pi * r * r * c10
     loads = point[PRESSURE] / c10, point[FORCE] / square, point[TORQUE] / (square * r)
-    return (0.5 * (ta + tb), 0.5 * (ta - tb), area), (point[EXTENSION], rubber_at(point, columns), wall, *loads, 1.0)
+    return (0.5 * (ta + tb), 0.5 * (ta - tb), area), Load(
+        point[EXTENSION], rubber_at(point, columns), wall, *loads, 1.0
+    )
 
 
 @kernel
@@ -81,11 +84,11 @@ def longest(cell, gamma, loose, outward):
 def stretch(cell, load):
     """The first stationary point met from y = 1; NaN if there is none."""
     room, start, _, _, _, _ = density(1.0, 0.0, cell, load)
-    if start == 0.0 or (load[3] == 0.0 and load[4] == 0.0 and load[5] == 0.0 and load[0] == 1.0):
+    if start == 0.0 or (load.p == 0.0 and load.f == 0.0 and load.m == 0.0 and load.gamma == 1.0):
         return 1.0
     if not (room > 0.0 and abs(start) > 0.0):
         return math.nan
-    end = longest(cell, load[0], load[2][2] > 0.0, start > 0.0)
+    end = longest(cell, load.gamma, load.wall[2] > 0.0, start > 0.0)
     inner, outer, share, before, value = 1.0, 1.0, 1.0, start, start
     for _ in range(MARCH):
         share *= REMAINS
@@ -177,8 +180,8 @@ def uniform(kind, point, thick, loose, columns, out):
 @kernel
 def pulling(y, pull, G_1, psi, cell, load):
     """Which of two bonded families do not push, where the axial resultant is ``pull``."""
-    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load[1], load[2])
-    alpha, beta = multipliers(y, math.sqrt(1.0 + G_1), psi, True, True, cell[0], cell[1], pull, load[5], W_G, W_p)
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
+    alpha, beta = multipliers(y, math.sqrt(1.0 + G_1), psi, True, True, cell[0], cell[1], pull, load.m, W_G, W_p)
     return alpha >= 0.0, beta >= 0.0
 
 
@@ -198,12 +201,12 @@ def along(y, constant, cell, load):
     Where nothing varies along a tube, L - v L_v = T' sqrt(G) - W + m psi is ``constant``, with G and psi those at slope 0
     under T' = T sqrt(G)/s; it rises with T' by sqrt(G).
     """
-    T = load[3] * y * y + load[4]
-    pull, scale, G_1, psi, taut_alpha, taut_beta = T, load[3] + abs(load[4]), 0.0, 0.0, True, True
+    T = load.p * y * y + load.f
+    pull, scale, G_1, psi, taut_alpha, taut_beta = T, load.p + abs(load.f), 0.0, 0.0, True, True
     for _ in range(PULLS):
         _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, pull, cell, load)
         s = math.sqrt(max(1.0 + G_1, LEAST))
-        error = pull * s - stored(y, G_1, psi, cell[2], load[1], load[2]) + load[5] * psi - constant
+        error = pull * s - stored(y, G_1, psi, cell[2], load.rubber, load.wall) + load.m * psi - constant
         pull = max(pull - error / s, 0.5 * pull)
         if abs(error) <= ENOUGH * scale:
             break
@@ -215,11 +218,11 @@ def firmness(y, constant, cell, load):
     """How firmly both families are held where the stretch is ``y``, over the load: multipliers, and of a slack one how much
     is missing, negative.
     """
-    scale, (pull, G_1, psi, taut_alpha, taut_beta) = load[3] + abs(load[4]), along(y, constant, cell, load)
-    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load[1], load[2])
+    scale, (pull, G_1, psi, taut_alpha, taut_beta) = load.p + abs(load.f), along(y, constant, cell, load)
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
     s = math.sqrt(max(1.0 + G_1, LEAST))
-    alpha, beta = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load[5], W_G, W_p)
-    stretch, h, d = load[0] * load[0] - 1.0, cell[0], cell[1]
+    alpha, beta = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load.m, W_G, W_p)
+    stretch, h, d = load.gamma * load.gamma - 1.0, cell[0], cell[1]
     alpha = alpha / scale if taut_alpha else G_1 - reach(y, psi, h + d, stretch)
     beta = beta / scale if taut_beta else G_1 - reach(y, psi, h - d, stretch)
     return alpha, beta
@@ -258,7 +261,7 @@ def middles(points, mid_radius, thick, loose, columns, out):
         y = mid_radius[k] / points[k, FIBERS]
         out[k, 0], out[k, 1], out[k, 2] = math.nan, math.nan, math.nan
         if y > 0.0:
-            _, G_1, psi, _, _ = place(y, 0.0, load[3] * y * y + load[4], cell, load)
+            _, G_1, psi, _, _ = place(y, 0.0, load.p * y * y + load.f, cell, load)
             out[k, 0], out[k, 1], out[k, 2] = math.sqrt(max(1.0 + G_1, LEAST)), y, psi
 
 

@@ -4,7 +4,7 @@ from ..jit import kernel
 
 PROBLEM_SIZE = 11
 H, D, AREA, GAMMA, RATIO, SHEAR, FORCE, TORQUE, LENGTH, SECOND, THIRD = range(PROBLEM_SIZE)
-INNER, THREADS = PROBLEM_SIZE, PROBLEM_SIZE + 1  # of physical tubes only; the threads as in :mod:`wall`
+INNER, THREADS = PROBLEM_SIZE, PROBLEM_SIZE + 1  # of physical tubes only; the threads as in :mod:`.physics.wall`
 SOURCE, PHYSICAL = (SHEAR,), (SHEAR, INNER, THREADS)  # columns of a wall
 MOONEY_RIVLIN, YEOH = (RATIO,), (RATIO, SECOND, THIRD)  # columns of a rubber's constants, over C10
 

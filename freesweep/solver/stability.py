@@ -17,8 +17,8 @@ def pushed(y, cells, load):
     """Whether the meridional resultant p r^2 + f has all but vanished somewhere."""
     for i in range(len(y)):
         r = y[i] * level(y[i], cell_at(cells, i))[1]
-        part = load[3] * r * r
-        if part + load[4] < PUSHED * max(abs(part), abs(load[4])):
+        part = load.p * r * r
+        if part + load.f < PUSHED * max(abs(part), abs(load.f)):
             return True
     return False
 

@@ -8,6 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 from freesweep.census.designs import Drawn, with_pressures
 from freesweep.first_integral.folded import solve_near
 from freesweep.first_integral.uniform import Tubes
+from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian, uniform_tube
 from freesweep.status import BEYOND_LIMIT, COMPRESSED, OK
 from freesweep.sweep import solve
@@ -59,8 +60,8 @@ def test_long_tube_whose_ends_have_a_stretch_that_pays_more_turns_back_before_th
     """
     (problem,) = Drawn(np.array([design]), None).problems()
     H, D, area, gamma, ratio, shear = problem[:6]
-    rest = (1.0, (ratio,), (shear,), 0.0, 0.0, 0.0, 1.0)
-    load = (gamma, (ratio,), (shear,), pressure, 0.0, 0.0, 1.0)
+    rest = Load(1.0, (ratio,), (shear,), 0.0, 0.0, 0.0, 1.0)
+    load = Load(gamma, (ratio,), (shear,), pressure, 0.0, 0.0, 1.0)
     cell = (H, D, area)
     drawn = lagrangian.drawn_in(cell, load)
     u, carried = uniform_tube.follow(lagrangian.density, 1.0, cell, rest, load, 0.5 * problem[8], drawn)

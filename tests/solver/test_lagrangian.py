@@ -9,6 +9,7 @@ import sympy as sp
 from oracle import PARAMETERS, V, Y, expressions, half_sum_and_difference
 
 from freesweep import closed_form
+from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian
 
 rng = np.random.default_rng
@@ -31,7 +32,7 @@ def random_point(draw, energy=None):
         if G < 0.05:
             continue
         v = draw.uniform(-0.95, 0.95) * np.sqrt(G)
-        cell, load = (H, D, a), (gamma, (c, c2, c3), (k,), p, f, m, e)
+        cell, load = (H, D, a), Load(gamma, (c, c2, c3), (k,), p, f, m, e)
         return y, v, cell, load, (H, D, a, gamma, c, k, p, f, m, e, c2, c3)
 
 
@@ -83,7 +84,11 @@ def test_partial_derivatives_against_sympy(symbolic, seed):
     room, *partials = lagrangian.density(y, v, cell, load)
     agree(partials, symbolic["density"](*args), size, 1e-13)
     agree(room, min(symbolic["room"](*args)), 1 + H * H / y**4 + D * D + p * y * y + abs(f))
-    agree(lagrangian.conjugate(y, v, cell, load, (0, 0, 0, 0.3, -0.7, 1.9, 0))[:3], symbolic["conjugate"](*args), size)
+    agree(
+        lagrangian.conjugate(y, v, cell, load, Load(0, 0, 0, 0.3, -0.7, 1.9, 0))[:3],
+        symbolic["conjugate"](*args),
+        size,
+    )
     agree(lagrangian.integrands(y, v, cell, load)[:4], symbolic["integrands"](*args), raised)
 
 
@@ -123,7 +128,7 @@ def test_strain_energy_keeps_its_digits_near_the_undeformed_state(strain, shear)
         first = G + t * q + 1 / (G * t) - 3
         exact = first + ratio * (G * t + 1 / t + q / G - 3) + first**2 / 2 + first**3 / 4
         exact_slope = float(exact) * 2 / strain  # of a quadratic, to first order
-        load = (1.0, (c, 0.5, 0.25), (shear,), 0.0, 0.0, 0.0, 1.0)
+        load = Load(1.0, (c, 0.5, 0.25), (shear,), 0.0, 0.0, 0.0, 1.0)
         w, w_y, w_yy = lagrangian.strain_energy(y, np.array([H, D, 1.0]), load)
         rounding = 1e-11 + shear * 1e-15 / abs(strain)  # psi carries the rounding of 1/y^2, as any computed y does
         assert w == pytest.approx(float(exact), rel=rounding, abs=0)
@@ -138,7 +143,7 @@ def test_energy_curvature_of_the_undeformed_wall():
         H, D = half_sum_and_difference(alpha, beta)
         q = tan(radians(alpha)) * tan(radians(beta))
         for shear in (0.0, 1.0):
-            load = (1.0, (0.3, 0.7, -0.2), (shear,), 0, 0, 0, 1.0)
+            load = Load(1.0, (0.3, 0.7, -0.2), (shear,), 0, 0, 0, 1.0)
             _, w_y, w_yy = lagrangian.strain_energy(1.0, np.array([H, D, 1.0]), load)
             assert w_y == pytest.approx(0, abs=1e-13 * w_yy)
             assert w_yy == pytest.approx(8 * 1.3 * (1 + q + q * q + shear * H * H), rel=1e-12)
@@ -156,7 +161,7 @@ def test_both_energies_agree_for_mckibben_muscles(seed):
 
 def test_energies_differ_where_the_tube_twists():
     H, D = half_sum_and_difference(0, 30)
-    loads = [(1.0, (0.0, 0.0, 0.0), (k,), 0, 0, 0, 1.0) for k in (0.0, 1.0)]
+    loads = [Load(1.0, (0.0, 0.0, 0.0), (k,), 0, 0, 0, 1.0) for k in (0.0, 1.0)]
     both = [lagrangian.strain_energy(1.2, np.array([H, D, 1.0]), load)[0] for load in loads]
     psi = H * (1 / 1.44 - 1)
     assert both[1] - both[0] == pytest.approx(1.44 * psi**2, rel=1e-12)  # C01 = 0: y^2 psi^2 in I1
@@ -173,7 +178,7 @@ def test_fiber_tension_of_a_blocked_mckibben_muscle(alpha):
     p = 2.5
     q = -(tan(radians(alpha)) ** 2)
     f = -p * (1 + 2 / q)  # Eq. 2.16
-    cell, load = np.array([0.0, tan(radians(alpha)), 0.8]), (1.0, (0.3, 0.5, 0.1), (1.0,), p, f, 0.0, 1.0)
+    cell, load = np.array([0.0, tan(radians(alpha)), 0.8]), Load(1.0, (0.3, 0.5, 0.1), (1.0,), p, f, 0.0, 1.0)
     for tension in fiber_tensions(alpha, -alpha, lagrangian.fiber_multipliers(1.0, 1.0, cell, load)):
         assert tension == pytest.approx(p * cos(radians(alpha)) / sin(radians(alpha)) ** 2, rel=1e-12)
 
@@ -187,7 +192,7 @@ def test_fiber_tensions_balance_the_blocked_tube(alpha, beta):
     p = 1.7
     f = closed_form.blocked_force(alpha, beta, 1.0, p) / pi
     H, D = half_sum_and_difference(alpha, beta)
-    load = (1.0, (0.2, 0.5, 0.1), (1.0,), p, float(f), 0.0, 1.0)
+    load = Load(1.0, (0.2, 0.5, 0.1), (1.0,), p, float(f), 0.0, 1.0)
     tension = fiber_tensions(alpha, beta, lagrangian.fiber_multipliers(1.0, 1.0, np.array([H, D, 0.5]), load))
     sines, cosines = np.sin(np.radians([alpha, beta])), np.cos(np.radians([alpha, beta]))
     assert np.dot(tension, cosines) == pytest.approx(p + f, rel=1e-11)
@@ -210,7 +215,7 @@ def test_blocked_torque_can_need_fibers_that_push(alpha, beta, expected):
     p = 0.8
     m = float(closed_form.blocked_torque(alpha, beta, 1.0, p)) / pi
     H, D = half_sum_and_difference(alpha, beta)
-    load = (1.0, (0.3, 0.5, 0.1), (1.0,), p, 0.0, m, 1.0)
+    load = Load(1.0, (0.3, 0.5, 0.1), (1.0,), p, 0.0, m, 1.0)
     tau = lagrangian.fiber_multipliers(1.0, 1.0, np.array([H, D, 0.6]), load)
     assert np.array(tau) / p == pytest.approx(expected, abs=0.0051)
 

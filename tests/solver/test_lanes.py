@@ -13,6 +13,7 @@ from freesweep.scaling import problem_rows
 from freesweep.solver import batch
 from freesweep.solver.lanes import vector
 from freesweep.solver.lanes.vector import WIDTH, bits, get, mask_of, put, select, some, spread
+from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian
 from freesweep.solver.status import INACCURATE, OK, PENDING
 
@@ -102,7 +103,7 @@ def _yeoh(points):
 
 @numba.njit(error_model="numpy", fastmath={"contract"})
 def _densities(points, rubber, out):
-    cell, load = (get(points, 2), get(points, 3), get(points, 4)), (
+    cell, load = (get(points, 2), get(points, 3), get(points, 4)), Load(
         get(points, 5), rubber(points), (get(points, 6),), get(points, 7), get(points, 8), get(points, 9), get(points, 10),
     )  # fmt: skip
     found = lagrangian.density(get(points, 0), get(points, 1), cell, load)
@@ -113,7 +114,7 @@ def _densities(points, rubber, out):
 @numba.njit(error_model="numpy", fastmath={"contract"})
 def _density(q, out):
     found = lagrangian.density(
-        q[0], q[1], (q[2], q[3], q[4]), (q[5], (q[11], q[12], q[13]), (q[6],), q[7], q[8], q[9], q[10])
+        q[0], q[1], (q[2], q[3], q[4]), Load(q[5], (q[11], q[12], q[13]), (q[6],), q[7], q[8], q[9], q[10])
     )
     for k in range(6):
         out[k] = found[k]

@@ -8,6 +8,7 @@ import freesweep as fs
 from freesweep.scaling import problem_rows
 from freesweep.solver import batch
 from freesweep.solver.cells import nothing_yet, of_length
+from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian, physical, uniform_tube
 from freesweep.solver.problem import PHYSICAL, rubber_of, wall_of
 from freesweep.solver.status import OK
@@ -27,7 +28,7 @@ def problem(alpha, beta, length, radius):
 
 def point(row, p):
     """Cell and load of :mod:`lagrangian` at the pressure ``p``."""
-    return tuple(row[:3]), (1.0, rubber_of(row), wall_of(row, PHYSICAL), p, 0.0, 0.0, 1.0)
+    return tuple(row[:3]), Load(1.0, rubber_of(row), wall_of(row, PHYSICAL), p, 0.0, 0.0, 1.0)
 
 
 # each was unsolved, or took minutes: the load of a stretch has corners, and L_yy jumps a hundredfold between families

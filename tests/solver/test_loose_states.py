@@ -8,6 +8,7 @@ import pytest
 from loose_tubes import Tube
 
 from freesweep import Actuator, MooneyRivlin, blocked_torque, inflate
+from freesweep.solver.load import NO_CHANGE, Load
 from freesweep.solver.numerics import nested
 from freesweep.solver.physics import lagrangian
 
@@ -18,8 +19,8 @@ KNOWN = {
     100e3: (-97.081, 128.2230, 0.27748, 122.7907),
     200e3: (-293.582, 122.4153, 0.60228, 113.1081),
 }
-FREE = (0.0,) * 7
-TWISTED = (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)  # what is held: the rotation
+FREE = NO_CHANGE
+TWISTED = Load(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)  # what is held: the rotation
 
 
 @numba.njit(error_model="numpy")
@@ -45,7 +46,7 @@ def nested_meshes(
     )
     x = np.concatenate([half[:-1], [0.5 * length], length - half[-2::-1]])
     y = np.interp(x, *guess)
-    load = (gamma, rubber, (1.0, inner, 1.0), p, f, 0.0, 1.0)
+    load = Load(gamma, rubber, (1.0, inner, 1.0), p, f, 0.0, 1.0)
     tube = (course, np.arange(3) * (base // 2), cells, False, base // 2, np.arange(3) * 0.5 * length)
     goal, direction = (nested.HELD, TWISTED) if held else (nested.PLAIN, FREE)
     status, unstable, doublings, _ = _solve(x, y, tube, load, goal, direction, accuracy, fine, work, table, out)

@@ -16,6 +16,7 @@ import pytest
 from scipy.optimize import brentq
 
 from freesweep.solver.free.space import make_track
+from freesweep.solver.load import NO_CHANGE, Load
 from freesweep.solver.numerics import held, mesh, nested, newton
 from freesweep.solver.numerics.bordered import FOLLOWED, correct
 from freesweep.solver.numerics.continuation import advance, is_stable, last_alike, make_unit
@@ -25,8 +26,8 @@ from freesweep.solver.numerics.properties_along import Tube
 X = 0.5
 FILM, BRATU = 0.0, 1.0
 BRATU_LIMIT = 3.513830719125162
-REST = (0.0,) * 7
-ALONG_MU = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+REST = NO_CHANGE
+ALONG_MU = Load(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 @numba.njit
@@ -151,11 +152,10 @@ def test_a_soap_film_is_a_catenoid():
     assert y == pytest.approx(STABLE * np.cosh((X - x) / STABLE), abs=2e-4)
 
 
-@pytest.mark.parametrize(("cell", "load"), [(FILM, REST), (BRATU, (0, 0, 0, 3.0, 0, 0, 0.0))])
+@pytest.mark.parametrize(("cell", "load"), [(FILM, REST), (BRATU, Load(0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0))])
 def test_one_mesh_is_of_second_order_and_extrapolation_of_fourth(cell, load):
     exact = catenoid(STABLE) if cell == FILM else np.array(bratu(bratu_theta(3.0))[1])
     x, y = start()
-    load = tuple(float(q) for q in load)
     status, *_, table = on_nested_meshes(x, y, cell, load, accuracy=1e-30)
     assert status == nested.UNREACHED
     # volume, meridian, area and middle on meshes of 24, 48, ... cells, as far as rounding lets one see the order
@@ -174,7 +174,7 @@ def test_bounds_hold_and_meet_the_accuracy_asked_for(accuracy, cells):
     problems += [(BRATU, mu, np.array(bratu(bratu_theta(mu))[1])) for mu in (0.3, 1.0, 2.0, 3.0, 3.4)]
     for cell, mu, exact in problems:
         x, y = start(cells)
-        load = (0.0, 0.0, 0.0, mu, 0.0, 0.0, 0.0)
+        load = Load(0.0, 0.0, 0.0, mu, 0.0, 0.0, 0.0)
         status, unstable, _, values, bounds, _ = on_nested_meshes(x, y, cell, load, accuracy=accuracy)
         assert (status, unstable) == (newton.CONVERGED, 0)
         assert np.all(np.abs(values - exact)[:5] <= bounds[:5]), (cell, mu)
@@ -200,7 +200,7 @@ def test_a_chain_of_given_length_hangs_as_a_catenary():
 def fold_of_bratu(cells, begin):
     """Strength at the fold of Bratu's problem on one mesh, by continuation from a state of that strength."""
     x, y = start(cells)
-    load = (0.0, 0.0, 0.0, begin, 0.0, 0.0, 0.0)
+    load = Load(0.0, 0.0, 0.0, begin, 0.0, 0.0, 0.0)
     assert on_one_mesh(x, y, BRATU, load)[0] == newton.CONVERGED
     track = make_track(cells, True, False)
     track.x[:], track.y[:] = x, y
@@ -234,7 +234,7 @@ def test_where_the_conjugate_integral_is_held_a_way_goes_on_through_the_fold():
     cells, work, own = 96, np.zeros((13, 98)), np.array([[BRATU, 0.0, 0.0]])
     track = make_track(cells, True, True)
     track.x[:], track.y[:-1] = start(cells)
-    load = (0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
+    load = Load(0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
     assert on_one_mesh(track.x, track.y[:-1], BRATU, load)[0] == newton.CONVERGED
     first, _ = held.hold(conjugate, track.x, track.y, cells, own, load, ALONG_MU, work[8])
     track.y[-1] = 2.0
@@ -258,7 +258,7 @@ def test_where_the_conjugate_integral_is_held_a_way_goes_on_through_the_fold():
 
 def test_no_state_is_found_beyond_the_turning_point():
     x, y = start()
-    load = (0.0, 0.0, 0.0, 1.02 * BRATU_LIMIT, 0.0, 0.0, 0.0)
+    load = Load(0.0, 0.0, 0.0, 1.02 * BRATU_LIMIT, 0.0, 0.0, 0.0)
     assert on_one_mesh(x, y, BRATU, load)[0] != newton.CONVERGED
 
 
@@ -275,7 +275,7 @@ def test_pivots_count_the_unstable_directions_of_a_string(waves, free, unstable)
     """
     x = np.linspace(0, X, 801)
     k = waves * pi / X
-    assert curvature(x, np.ones_like(x), BRATU, (0.0, 0.0, 0.0, k * k, 0.0, 0.0, 0.0), free) == unstable
+    assert curvature(x, np.ones_like(x), BRATU, Load(0.0, 0.0, 0.0, k * k, 0.0, 0.0, 0.0), free) == unstable
 
 
 def test_the_deep_soap_film_is_unstable():
@@ -295,7 +295,7 @@ def test_holding_the_conjugate_integral_stabilises_the_upper_branch(strength, pa
     shape, _ = bratu(bratu_theta(strength, pair))
     x = np.linspace(0, X, 401)
     y = np.array([shape(t) for t in x])
-    cells, load = np.array([[BRATU, 0.0, 0.0]]), (0.0, 0.0, 0.0, strength, 0.0, 0.0, 0.0)
+    cells, load = np.array([[BRATU, 0.0, 0.0]]), Load(0.0, 0.0, 0.0, strength, 0.0, 0.0, 0.0)
     assert curvature(x, y, BRATU, load, True) == (0 if sign > 0 else 1)
     work = np.zeros((13, len(x)))
     target, _ = held.hold(conjugate, x, y, len(x) - 1, cells, load, ALONG_MU, work[8])

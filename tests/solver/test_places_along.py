@@ -5,9 +5,10 @@ import pytest
 
 from freesweep.solver.along import places
 from freesweep.solver.along.slack import summed
+from freesweep.solver.load import Load
 
-LOAD = (1.0, (0.0,), (1.0, 0.5, 1.0), 1.0, 0.0, 0.0, 1.0)  # of pressure 1 and loose fibers
-BONDED = (*LOAD[:2], (1.0, 0.5, 0.0), *LOAD[3:])
+LOAD = Load(1.0, (0.0,), (1.0, 0.5, 1.0), 1.0, 0.0, 0.0, 1.0)  # of pressure 1 and loose fibers
+BONDED = Load(*LOAD[:2], (1.0, 0.5, 0.0), *LOAD[3:])
 
 
 def seen(x, alpha, beta, squares):

@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import minimize
 
 from freesweep.solver.cells import nothing_yet
+from freesweep.solver.load import Load
 from freesweep.solver.physics import membrane, physical, relaxed, wall
 
 QUICK, MANY = 2000, 100_000
@@ -27,7 +28,7 @@ def random_point(draw, loose=1.0, room=0.02):
         gamma = 1 + draw.integers(2) * draw.uniform(0, 0.02)
         y, v = draw.uniform(0.6, 2), draw.uniform(-0.95, 0.95) * draw.uniform(0, 1.5)
         cell = (H, D, area)
-        load = (gamma, (draw.uniform(0, 1), *yeoh), (1.0, inner, loose), p, float(force), float(torque), 1.0)
+        load = Load(gamma, (draw.uniform(0, 1), *yeoh), (1.0, inner, loose), p, float(force), float(torque), 1.0)
         if physical.density(y, v, cell, load)[0] > room:
             return y, v, cell, load
 
@@ -156,7 +157,7 @@ def test_where_both_tensions_are_positive_threads_and_cement_agree():
         if taut(y, v, cell, load) != (True, True):
             continue
         met += 1
-        bonded = (*load[:2], (load[2][0], load[2][1], 0.0), *load[3:])
+        bonded = Load(*load[:2], (load[2][0], load[2][1], 0.0), *load[3:])
         assert physical.density(y, v, cell, load)[1:] == physical.density(y, v, cell, bonded)[1:]
         assert min(physical.at_slope(y, v, cell, load)[1:]) >= 0.0
 
@@ -168,7 +169,7 @@ def test_a_bonded_membrane_is_the_source_s():
         thin, source = (*load[:2], (1.0, 0.0, 0.0), *load[3:]), (*load[:2], (1.0,), *load[3:])
         if membrane.density(y, v, cell, source)[0] < 0.05:
             continue
-        direction = (0.0, 0.0, 0.0, 0.3, -0.7, 1.9, 0.0)
+        direction = Load(0.0, 0.0, 0.0, 0.3, -0.7, 1.9, 0.0)
         for ours, theirs in (
             (physical.density(y, v, cell, thin), membrane.density(y, v, cell, source)),
             (physical.uniform_tube(y, cell, thin), membrane.uniform_tube(y, cell, source)),
@@ -185,7 +186,7 @@ def test_what_is_conjugate_to_a_load_is_the_change_of_the_density_with_it():
     draw, d = np.random.default_rng(9), 1e-5
     for _ in range(300):
         y, v, cell, load = random_point(draw, room=0.05)
-        direction = (0.0, 0.0, 0.0, 0.3, 0.7, 1.9, 0.0)
+        direction = Load(0.0, 0.0, 0.0, 0.3, 0.7, 1.9, 0.0)
         low, high = ((*load[:3], *(load[k] + e * direction[k] for k in (3, 4, 5)), 1.0) for e in (-d, d))
         c, c_y, c_v, c_mu = physical.conjugate(y, v, cell, load, direction)
         first, last = physical.density(y, v, cell, low), physical.density(y, v, cell, high)

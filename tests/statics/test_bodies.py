@@ -28,6 +28,7 @@ from freesweep.description.profiles import as_profile
 from freesweep.plot.shape import shape_of
 from freesweep.solver import batch, hold_batch
 from freesweep.solver.cells import cell_at
+from freesweep.solver.load import Load
 from freesweep.solver.numerics import mesh as kernels_of_mesh
 from freesweep.solver.numerics import newton as kernels_of_newton
 from freesweep.solver.numerics import properties_along as kernels_of_course
@@ -72,8 +73,8 @@ def body(radius, alpha=20, beta=-40, length=0.06, **more):
 
 # --- the density at one point
 
-SOURCE_LOAD = (1.01, (0.4,), (1.0,), 0.3, 0.05, -0.02, 1.0)
-LOOSE_LOAD = (1.0, (0.4, 0.0, 0.0), (1.0, 0.6, 1.0), 0.3, 0.05, -0.02, 1.0)
+SOURCE_LOAD = Load(1.01, (0.4,), (1.0,), 0.3, 0.05, -0.02, 1.0)
+LOOSE_LOAD = Load(1.0, (0.4, 0.0, 0.0), (1.0, 0.6, 1.0), 0.3, 0.05, -0.02, 1.0)
 LOADS = {"source": SOURCE_LOAD, "loose": LOOSE_LOAD}
 
 
@@ -81,7 +82,7 @@ LOADS = {"source": SOURCE_LOAD, "loose": LOOSE_LOAD}
 def test_a_body_of_radius_one_is_the_tube(load):
     point, y, v = (0.2, 0.6, 0.4), 1.1, 0.2
     cell = (*point, 1.0, 0.0, load[2][1] if len(load[2]) > 1 else 0.0)
-    direction = (0.0, 0.0, 0.0, 0.0, 1.0, 0.5, 0.0)
+    direction = Load(0.0, 0.0, 0.0, 0.0, 1.0, 0.5, 0.0)
     for name, more in (("density", ()), ("integrands", ()), ("conjugate", (direction,)), ("at_slope", ())):
         function = getattr(lagrangian, name)
         assert function(y, v, cell, load, *more) == pytest.approx(function(y, v, point, load, *more), rel=1e-14), name
@@ -122,7 +123,7 @@ def test_rest_is_rest(plain, radius, model):
     n = int(edges[-1])
     x = np.concatenate([np.linspace(a, b, 49)[:-1] for a, b in itertools.pairwise(places)] + [[places[-1]]])
     cells = course.fill(rows, edges, x, n, n, course.make_cells(rows, n))
-    load = (1.0, (0.4, 0.0, 0.0), (1.0,) if model == "source" else (1.0, 0.5, 0.0), 0.0, 0.0, 0.0, 1.0)
+    load = Load(1.0, (0.4, 0.0, 0.0), (1.0,) if model == "source" else (1.0, 0.5, 0.0), 0.0, 0.0, 0.0, 1.0)
     g, d, e, room, least = np.zeros((5, n + 1))
     newton.assemble(lagrangian.density, x, np.ones(n + 1), n, cells, load, False, least, room, g, d, e)
     assert np.max(np.abs(g[1:n])) < 1e-14 * np.max(np.abs(d))
@@ -189,7 +190,7 @@ def test_meshes_of_a_body_are_of_second_order_and_extrapolate_to_fourth():
     """The length of a bulb on 24 to 192 cells, spread by one smooth map, against brute force on its own meshes."""
     actuator, pressure = body(bulb, length=0.03), 1e5
     (rows, _, places), _ = read_course(actuator, 1e-6)
-    load = (1.0, (RUBBER.c01 / RUBBER.c10,), (1.0,), pressure / RUBBER.c10, 0.0, 0.0, 1.0)
+    load = Load(1.0, (RUBBER.c01 / RUBBER.c10,), (1.0,), pressure / RUBBER.c10, 0.0, 0.0, 1.0)
     found = []
     for n in (24, 48, 96, 192):
         x = 0.5 * places[-1] * (1.0 + np.tanh(np.linspace(-2.5, 2.5, n + 1)) / np.tanh(2.5))

@@ -4,6 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from freesweep.solver.load import Load
 from freesweep.solver.physics import membrane, physical, wall
 
 PARTS = ("w", "y", "G", "psi", "yy", "yG", "ypsi", "GG", "Gpsi", "psipsi")
@@ -62,7 +63,7 @@ def test_a_thin_wall_is_a_membrane():
     for thickness in (0.02, 0.01):
         inner, outer = 1 - thickness / 2, 1 + thickness / 2
         area = outer**2 - inner**2
-        thick, thin = ((1.0, (0.5,), w, 2.0, 0.1, 0.2, 1.0) for w in ((1.0, inner**2, 0.0), (1.0,)))
+        thick, thin = (Load(1.0, (0.5,), w, 2.0, 0.1, 0.2, 1.0) for w in ((1.0, inner**2, 0.0), (1.0,)))
         one = np.array(physical.density(1.2, 0.3, (*cell, area), thick))
         other = np.array(membrane.density(1.2, 0.3, (H, D, area), thin))
         missed.append(np.max(np.abs(one - other)) / area)
@@ -87,11 +88,11 @@ def test_contraction_of_the_source_s_section_at_half_a_bar(fibers, thick, thin):
     area, t = outer**2 - inner**2, np.tan(np.radians(30))
     cell = (0.0, t, area)
     for square, contraction, known in ((inner**2, thick, 5e-5), (0.0, thin, 1e-3)):  # thin: of a tube with ends
-        load = (1.0, (0.0,), (1.0, square, 0.0), 0.5, 0.0, 0.0, 1.0)
+        load = Load(1.0, (0.0,), (1.0, square, 0.0), 0.5, 0.0, 0.0, 1.0)
         y = stretch(cell, load)
         assert 1 - physical.uniform_tube(y, cell, load)[0] == pytest.approx(contraction, abs=known)
 
-    load = (1.0, (0.0,), (1.0, inner**2, 0.0), 0.5, 0.0, 0.0, 1.0)
+    load = Load(1.0, (0.0,), (1.0, inner**2, 0.0), 0.5, 0.0, 0.0, 1.0)
     with mpmath.workdps(30):
         tt = mpmath.tan(mpmath.radians(30)) ** 2
 

@@ -7,6 +7,7 @@ stretch a thousandfold.
 import numpy as np
 
 from ...jit import kernel
+from ..load import by
 from ..numerics import held, nested, newton
 from ..numerics.finest import LEFT, MESHES, NO_MESH, load_of
 from ..numerics.properties_along import fill
@@ -39,9 +40,9 @@ def refine(base, doublings, tube, load, accuracy, fine, work):
     for k in range(3 * MESHES):
         changes[k] = fine[3, k]
     now = load_of(0, load, fine)
-    most = max(abs(now[3]), max(abs(now[4]), abs(now[5])))
+    most = max(abs(now.p), max(abs(now.f), abs(now.m)))
     by_force, by_torque = changes[1] != changes[4], changes[2] != changes[5]
-    direction = (0.0, 0.0, 0.0, 0.0, most if by_force else 0.0, most if by_torque else 0.0, 0.0)
+    direction = by(0.0, most if by_force else 0.0, most if by_torque else 0.0)
     holds = by_force or by_torque
     density, conjugate = lagrangian.density, lagrangian.conjugate
     own = fill(course, edges, fine[0], count, base, cells)
@@ -61,6 +62,6 @@ def refine(base, doublings, tube, load, accuracy, fine, work):
         )
     for i in range(3):
         fine[3, 3 + i], fine[3, 6 + i] = changes[i], changes[3 + i]
-    fine[3, 0], fine[3, 1], fine[3, 2] = changes[0], changes[1] + mu * direction[4], changes[2] + mu * direction[5]
+    fine[3, 0], fine[3, 1], fine[3, 2] = changes[0], changes[1] + mu * direction.f, changes[2] + mu * direction.m
     fine[3, LEFT] = left
     return status == newton.CONVERGED

@@ -38,7 +38,7 @@ def outer_square(y, G_1, cell, wall):
 def inside(y, v, cell, load, near):
     """In the middle of a cell: ``(multipliers of both families, outer radius squared, what is handed on)``."""
     at, near = over_cell.look(y, v, cell, load, near)
-    square, alpha, beta = body.of_multipliers(cell, outer_square(y, at.G_1, cell, load[2]), at.a, at.b)
+    square, alpha, beta = body.of_multipliers(cell, outer_square(y, at.G_1, cell, load.wall), at.a, at.b)
     return alpha, beta, square, near
 
 
@@ -46,7 +46,7 @@ def inside(y, v, cell, load, near):
 def at_end(y, flux, cell, load):
     """The same at an end, where the flux is known; a plane of symmetry has none."""
     _, G_1, alpha, beta = lagrangian.at_flux(y, flux, cell, load)
-    return alpha, beta, outer_square(y, G_1, cell, load[2])
+    return alpha, beta, outer_square(y, G_1, cell, load.wall)
 
 
 @kernel

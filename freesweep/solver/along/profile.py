@@ -10,6 +10,7 @@ import numpy as np
 
 from ...jit import kernel
 from ..cells import cell_at, of_length
+from ..load import under
 from ..numerics.finest import LEFT, MESHES, load_of, mesh_of
 from ..numerics.properties_along import at_point, fill
 from ..physics import lagrangian
@@ -97,7 +98,7 @@ def local(y, flux, constant, alike, cell, load):
     meridional = sqrt(1.0 + G_1)
     return (
         atan(y * (cell[0] + cell[1] + psi) / meridional), atan(y * (cell[0] - cell[1] + psi) / meridional),
-        load[0] * alpha, load[0] * beta,
+        load.gamma * alpha, load.gamma * beta,
     )  # fmt: skip
 
 
@@ -105,20 +106,12 @@ def local(y, flux, constant, alike, cell, load):
 def extrapolated_loads(load, fine):
     """The load to fourth order, and one as far from it as its error may be."""
     a, b, c = load_of(0, load, fine), load_of(1, load, fine), load_of(2, load, fine)
-    p, f, m = (4.0 * a[3] - b[3]) / 3.0, (4.0 * a[4] - b[4]) / 3.0, (4.0 * a[5] - b[5]) / 3.0
+    p, f, m = (4.0 * a.p - b.p) / 3.0, (4.0 * a.f - b.f) / 3.0, (4.0 * a.m - b.m) / 3.0
     fourth = SAFETY / 15.0
-    other_p = p + fourth * (p - (4.0 * b[3] - c[3]) / 3.0)
-    other_f = f + fourth * (f - (4.0 * b[4] - c[4]) / 3.0)
-    other_m = m + fourth * (m - (4.0 * b[5] - c[5]) / 3.0)
-    return (load[0], load[1], load[2], p, f, m, load[6]), (
-        load[0],
-        load[1],
-        load[2],
-        other_p,
-        other_f,
-        other_m,
-        load[6],
-    )
+    other_p = p + fourth * (p - (4.0 * b.p - c.p) / 3.0)
+    other_f = f + fourth * (f - (4.0 * b.f - c.f) / 3.0)
+    other_m = m + fourth * (m - (4.0 * b.m - c.m) / 3.0)
+    return under(load, p, f, m), under(load, other_p, other_f, other_m)
 
 
 @kernel

@@ -21,8 +21,8 @@ def pushing(alpha, beta, share, load):
     """Bit 1: the alpha family, of this multiplier, would have to push at a place, or is slack; bit 2: the beta family. What
     is not there is not slack.
     """
-    wall = load[2]
-    least = NOTHING if may_go_slack(wall) else -share * (load[3] + abs(load[4]))
+    wall = load.wall
+    least = NOTHING if may_go_slack(wall) else -share * (load.p + abs(load.f))
     return (1 if has_any_family(wall) and alpha < least else 0) | (2 if has_two_families(wall) and beta < least else 0)
 
 
@@ -31,7 +31,7 @@ def look_along(fine, n, base, tube, load, seen, numbers, bounds):
     """:func:`pushing` anywhere along a tube, whose finest meshes are ``fine``, the last of n cells. Of a physical one
     ``numbers`` and ``bounds``, as many as there is room for, take those of :mod:`places`; ``seen`` (4, > n + 1) is scratch.
     """
-    return _look_along(fine, n, base, tube, load, seen, numbers, bounds, load[2])
+    return _look_along(fine, n, base, tube, load, seen, numbers, bounds, load.wall)
 
 
 @kernel
@@ -53,8 +53,8 @@ def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
 def see(x, y, n, base, tube, load, seen):
     """Write what :mod:`places` looks at along a physical tube to the rows of ``seen``; returns the flag."""
     course, edges, cells, symmetric, _, _ = tube
-    own, size, near, flag = fill(course, edges, x, n, base, cells), load[3] + abs(load[4]), nothing_yet(0.0), 0
-    loose, any_family, both = may_go_slack(load[2]), has_any_family(load[2]), has_two_families(load[2])
+    own, size, near, flag = fill(course, edges, x, n, base, cells), load.p + abs(load.f), nothing_yet(0.0), 0
+    loose, any_family, both = may_go_slack(load.wall), has_any_family(load.wall), has_two_families(load.wall)
     least, at_ends = (NOTHING if loose else -TENSIONLESS * size), (NOTHING if loose else -TENSIONLESS_END * size)
     for k in range(n + 2):
         j = min(max(k - 1, 0), n - 1)
@@ -76,8 +76,8 @@ def see(x, y, n, base, tube, load, seen):
 @kernel
 def summed(seen, count, load):
     """``(share of alpha, its doubt, share of beta, its doubt, largest square, what lies above it)`` of ``count`` places."""
-    x, squares, faint = seen[places.PLACE], seen[places.SQUARE], places.FAINT * (load[3] + abs(load[4]))
-    loose = may_go_slack(load[2])
+    x, squares, faint = seen[places.PLACE], seen[places.SQUARE], places.FAINT * (load.p + abs(load.f))
+    loose = may_go_slack(load.wall)
     total, found = x[count - 1] - x[0], (0.0, 0.0, 0.0, 0.0)
     most, missed = max(squares[0], squares[count - 1]), 0.0
     for i in range(count - 1):

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...jit import kernel
 from ..guide import cell_along
+from ..load import NO_CHANGE
 from ..numerics import nested, newton
 from ..physics import lagrangian, uniform_tube
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, NOT_CONVERGED, OK
@@ -18,7 +19,6 @@ RUN_OUT = 0.05  # cosine of the meridian's angle at an end
 CLOSE = 0.02  # of the way: two traces' difference that is good enough
 CAUTION = 10.0  # times the bounds of shapes so steep: their errors fall to fourth order only on finer meshes
 STRAY = 0.02  # share of |middle - 1| by which a mesh's middle may differ from the trace's
-FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -54,7 +54,7 @@ def _retrace(course, space, tube, origin, before, load, accuracy):
         else:
             status, unstable, doublings, _ = nested.solve(
                 lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, x, y, tube, load,
-                nested.PLAIN, FLAT, 0.0, 0.0, 0, accuracy / CAUTION, space.fine, space.work, space.table, out,
+                nested.PLAIN, NO_CHANGE, 0.0, 0.0, 0, accuracy / CAUTION, space.fine, space.work, space.table, out,
             )  # fmt: skip
             for k in range(nested.OUTPUTS):
                 out[1, k] *= CAUTION

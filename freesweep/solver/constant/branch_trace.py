@@ -37,8 +37,8 @@ def load_for(cell, y, sign, drive, start, end, t):
 
     What is too far away counts in loads: on a short way it is many times the way.
     """
-    size = abs(end[3]) + abs(end[4]) + abs(end[5])
-    farthest = FARTHEST * (1.0 + size / (abs(end[3] - start[3]) + abs(end[4] - start[4]) + abs(end[5] - start[5])))
+    size = abs(end.p) + abs(end.f) + abs(end.m)
+    farthest = FARTHEST * (1.0 + size / (abs(end.p - start.p) + abs(end.f - start.f) + abs(end.m - start.m)))
     for _ in range(20):
         here = sign * lagrangian.density(y, 0.0, cell, between(start, end, t))[1] - drive
         after = sign * lagrangian.density(y, 0.0, cell, between(start, end, t + PROBE))[1] - drive

@@ -79,7 +79,7 @@ def trace(cell, load, top, drive_at_top, gap, scale, nodes, crowding, curve):
         at = top - sign * (gap + z_middle)
         between[k] = at
         room = 1.0 + lagrangian.kinematics(at, cell, load)[3]
-        T = load[3] * at * at + load[4]
+        T = load.p * at * at + load.f
         if not (R_middle > 0.0 and room > 0.0 and T > 0.0 and at > 0.0):
             return np.nan
         F = T * sqrt(room)

@@ -152,7 +152,5 @@ def misses(cell, load, direction, target, half, now, free, nodes, curve, row, ot
     row[nested.MULTIPLIER] = now[MU]
     _, pull, at_middle = lagrangian.uniform_tube(now[MIDDLE], cell, loaded)
     out[0] = x / half - 1.0
-    out[1] = (row[0] * direction[4] + row[2] * direction[5] - target) / (
-        half * max(abs(direction[4]), abs(direction[5]))
-    )
+    out[1] = (row[0] * direction.f + row[2] * direction.m - target) / (half * max(abs(direction.f), abs(direction.m)))
     out[2] = (lagrangian.uniform_tube(now[NECK], cell, loaded)[2] - at_middle) / pull

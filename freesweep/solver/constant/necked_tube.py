@@ -3,9 +3,9 @@
 import numpy as np
 
 from ...jit import kernel
+from ..load import loaded
 from ..numerics import finest, nested
 from ..numerics.dense import eliminate
-from ..numerics.held import loaded
 from ..physics import lagrangian
 from ..status import INACCURATE, NOT_CONVERGED, OK
 from . import necked_shape, quadrature
@@ -132,7 +132,7 @@ def solve(cell, tube, x, y, mu, path, t, scale, accuracy, base, fine, curve, tab
     units, floors = lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE)
     for k in range(nested.OUTPUTS):
         out[2, k], out[3, k] = units[k], floors[k]
-    unit = max(abs(direction[4]), abs(direction[5]))
+    unit = max(abs(direction.f), abs(direction.m))
     out[2, nested.MULTIPLIER] /= max(unit, 1.0)
     out[3, nested.MULTIPLIER] /= unit
     largest = quadrature.finish(table, out)

@@ -56,7 +56,7 @@ def gives_way(cell, load, half, nodes, curve):
     """Whether the wall would have to be pushed in the middle: a compressive force and a tube drawn in let p y^2 + f vanish
     before any middle lies as far from the end as ``half``.
     """
-    p, f = load[3], load[4]
+    p, f = load.p, load.f
     if not 0.0 < -f < p:
         return False
     least = sqrt(-f / p) * (1.0 + JUST_INSIDE)

@@ -6,9 +6,9 @@ from ...jit import kernel
 from .. import guide
 from ..constant import quadrature
 from ..constant.branch import is_upright
+from ..load import loaded
 from ..numerics.bordered import FOLLOWED
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
-from ..numerics.held import loaded
 from ..numerics.properties_along import fill
 from ..physics import lagrangian
 from ..stability import pushed

@@ -136,7 +136,7 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     least = SMALL * abs(third)  # where rounding counts, nothing need fall
     estimate = max(abs(third - second), abs(second - first))
     if changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least:
-        smooth = not may_go_slack(path.origin[2])
+        smooth = not may_go_slack(path.origin.wall)
         order, before = (15.0, 225.0) if smooth else (1.0, 4.0)  # as in nested.extrapolate
         estimate = max(abs(third - second) / order, abs(second - first) / before)
     if not estimate < AGREED * abs(third):

@@ -13,9 +13,9 @@ from .. import guide
 from ..along import places
 from ..constant import quadrature
 from ..constant.branch import retrace
+from ..load import Load, by, loaded, under
 from ..numerics import nested
 from ..numerics.bordered import FOLLOWED
-from ..numerics.held import loaded
 from ..numerics.path import NOTHING, Path
 from ..numerics.properties_along import Tube, make_cells, of_problems, seat, volume
 from ..numerics.shapes import differ, extremes
@@ -66,7 +66,7 @@ def first_states(path, first, tube, space, rows, accuracy):
     for i in range(len(rows.pressures)):
         p = rows.pressures[i]
         if rows.status[i] == PENDING and p < first:
-            load = (path.origin[0], path.origin[1], path.origin[2], p, 0.0, 0.0, 1.0)
+            load = under(path.origin, p, 0.0, 0.0)
             for k in range(len(space.u)):
                 space.u[k] = 1.0
             if guide.follow(tube, space.u, path.origin, load, space.ahead) == 1.0:
@@ -113,15 +113,16 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
     """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way
     from rest along which the wall fades.
     """
-    load = (problem[GAMMA], rubber_of(problem), wall_of(problem, walls), 1.0, 0.0, 0.0, 0.0)
+    load = Load(problem[GAMMA], rubber_of(problem), wall_of(problem, walls), 1.0, 0.0, 0.0, 0.0)
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
             guide.locked(tube, problem[GAMMA], space.ahead)
             guide.start(tube, space.ahead, load, space.x, space.y)
             status, doublings = cold(space, tube, load, accuracy)
             if status == NOT_CONVERGED:
-                rest = (1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0)
-                way = Path(rest, (load[0] - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0), 0.0, may_go_slack(load[2]), NOTHING)
+                rest = Load(1.0, load.rubber, load.wall, 0.0, 0.0, 0.0, 1.0)
+                fading = Load(load.gamma - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0)
+                way = Path(rest, fading, 0.0, may_go_slack(load.wall), NOTHING)
                 found, _, middle = settle_loads(way, track, roomy, space, tube, rows, limit, accuracy)
                 if found == OK:
                     for k in range(len(space.x)):
@@ -183,7 +184,7 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
         return
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
     rubber, wall = rubber_of(problem), wall_of(problem, walls)
-    rest, pressure = (1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    rest, pressure = Load(1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), by(1.0, 0.0, 0.0)
     if f == 0.0 and m == 0.0 and gamma == 1.0:
         path = Path(rest, pressure, 0.0, may_go_slack(wall), NOTHING)
         status, mu, tangent_mu = begin(track, space, tube, path)
@@ -197,11 +198,10 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
             )
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
-    first = Path(rest, (gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), 0.0, may_go_slack(wall), NOTHING)
-    path, n = (
-        Path((gamma, rubber, wall, 0.0, f, m, 1.0), pressure, max(f, 0.0), may_go_slack(wall), NOTHING),
-        len(track.x) - 1,
-    )
+    rise = Load(gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0)
+    first, n = Path(rest, rise, 0.0, may_go_slack(wall), NOTHING), len(track.x) - 1
+    origin = Load(gamma, rubber, wall, 0.0, f, m, 1.0)
+    path = Path(origin, pressure, max(f, 0.0), may_go_slack(wall), NOTHING)
     status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
     if status == NOT_CONVERGED and tube.half:

@@ -12,6 +12,7 @@ from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
 from ..constant import quadrature
+from ..load import NO_CHANGE, by
 from ..numerics import held, nested, newton
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
@@ -19,7 +20,6 @@ from ..physics import lagrangian
 from ..status import INACCURATE, NOT_CONVERGED, OK
 
 ROOT_STEPS, ROOT = 40, 1e-9  # of the pressure, relative
-FLAT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 REGRADES, COLD = 1, 3  # of the base mesh, from a good guess and from a rough one
 PLAIN, HELD = nested.PLAIN, nested.HELD
 
@@ -40,7 +40,7 @@ def solve(space, tube, load, goal, direction, target, regrades, accuracy):
 @kernel
 def free(space, tube, load, regrades, accuracy):
     """The state at ``load``, from a guess."""
-    status, doublings = solve(space, tube, load, PLAIN, FLAT, 0.0, regrades, accuracy)
+    status, doublings = solve(space, tube, load, PLAIN, NO_CHANGE, 0.0, regrades, accuracy)
     if status != NOT_CONVERGED and tube.half:
         status, doublings = quadrature.sharpen(tube, load, accuracy, space, status, doublings)
     return status, doublings
@@ -68,7 +68,7 @@ def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
     n = len(space.x) - 1
     course, edges, cells, _, _, _ = tube
     own = fill(course, edges, track.x, n, n, cells)
-    direction = (0.0, 0.0, 0.0, pressure, 0.0, 0.0, 0.0)
+    direction = by(pressure, 0.0, 0.0)
     low, _ = held.hold(lagrangian.conjugate, track.x, track.y, n, own, path.origin, direction, space.work[8])
     high, _ = held.hold(lagrangian.conjugate, track.x, track.next_y, n, own, path.origin, direction, space.work[8])
     start, whole = low, high - low

@@ -12,6 +12,7 @@ import numpy as np
 from ...jit import kernel
 from ..free.fold import carry, locate
 from ..free.meshes import take
+from ..load import Load, by, loaded, under
 from ..numerics import held, nested, newton
 from ..numerics.bordered import FOLLOWED, LOST
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike, make_unit
@@ -28,7 +29,7 @@ from .ways import EVERY, cylinder_multiplier, even_mesh, held_at
 AMPLITUDES = (0.003, 0.01, 0.03, 0.1)  # of the sine, tried in turn: with fiber extension no cylinder is straight
 STEPS, TOLERANCE = 600, 1e-10
 FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
-DIRECTION = (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+DIRECTION = Load(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 BUCKLED = 1e-3  # |y - 1| from which a tube counts as swollen, or as thinned
 PRESSURE_STEP = 0.005  # of it, where a front is too steep for steps along the branch
 
@@ -38,8 +39,8 @@ def critical(cell, load, length):
     """The pressure at which y = 1 loses its stability to a whole sine; L_yy and L_vv are linear in it. NaN: never."""
     found = np.zeros(2)
     for k in range(2):
-        now = (load[0], load[1], load[2], 1.0 * k, load[4], 0.0, 1.0)
-        now = held.loaded(now, DIRECTION, cylinder_multiplier(cell, now, DIRECTION))
+        now = under(load, 1.0 * k, load.f, 0.0)
+        now = loaded(now, DIRECTION, cylinder_multiplier(cell, now, DIRECTION))
         _, _, _, L_yy, _, L_vv = lagrangian.density(1.0, 0.0, cell, now)
         found[k] = L_yy + L_vv * (2.0 * pi / length) ** 2
     p = -found[0] / (found[1] - found[0])
@@ -56,7 +57,7 @@ def is_buckled(y):
 def on_meshes(room, tube, path, pressure, accuracy, out):
     """The buckled state of the track on nested meshes; NOT_CONVERGED where it is none that is stable."""
     space, track, unit = room.space, room.track, path.held.unit
-    n, load, wanted = len(track.x) - 1, held.loaded(path.origin, path.direction, pressure), path.held.first
+    n, load, wanted = len(track.x) - 1, loaded(path.origin, path.direction, pressure), path.held.first
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.y[i]
     status, unstable, doublings, _ = nested.solve(
@@ -66,13 +67,13 @@ def on_meshes(room, tube, path, pressure, accuracy, out):
     good = status == newton.CONVERGED or status == nested.UNREACHED
     if not good or unstable > 0 or not is_buckled(space.y) or not space.y[n // 4] > 1.0:
         return failed(NOT_CONVERGED, load)
-    now = held.loaded(load, unit, out[0, nested.MULTIPLIER])
+    now = loaded(load, unit, out[0, nested.MULTIPLIER])
     _, rounding = unstable_directions(
         space.fine[0], space.fine[1], n << doublings, n, tube, now, unit, abs(wanted), space.work
     )
     out[1, nested.MULTIPLIER] += rounding
-    out[0, nested.MULTIPLIER] *= unit[5]
-    out[1, nested.MULTIPLIER] *= unit[5]
+    out[0, nested.MULTIPLIER] *= unit.m
+    out[1, nested.MULTIPLIER] *= unit.m
     return Found(OK if status == newton.CONVERGED else INACCURATE, 0, doublings, now, 1.0, True, FROM_REST)
 
 
@@ -88,7 +89,7 @@ def by_pressure(room, tube, path, mu, pressure):
     for i in range(n + 1):
         track.x[i], track.y[i] = track.spare[i], track.other[i]
     while True:
-        load = held.loaded(path.origin, path.direction, mu)
+        load = loaded(path.origin, path.direction, mu)
         own = fill(course, edges, track.x, n, n, cells)
         status, unstable, track.y[n + 1], _ = held.solve_held(
             lagrangian.density, lagrangian.conjugate, track.x, track.y, n, False, own, load, path.held.unit, track.y[n + 1],
@@ -182,10 +183,10 @@ def _find_buckled(course, problem, walls, p, force, target, tube, accuracy, room
     p_c = critical(cell, load, places[len(places) - 1])
     if not p_c > 0.0 or not p_c + force > 0.0:
         return failed(HELD_IMPOSSIBLE, load)
-    at_critical = cylinder_multiplier(cell, (load[0], load[1], load[2], p_c, force, 0.0, 1.0), DIRECTION)
+    at_critical = cylinder_multiplier(cell, under(load, p_c, force, 0.0), DIRECTION)
     scale = max(p, abs(at_critical))
-    unit = (0.0, 0.0, 0.0, 0.0, 0.0, scale, 0.0)
-    nothing, pressure = (load[0], load[1], load[2], 0.0, force, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    unit = by(0.0, 0.0, scale)
+    nothing, pressure = under(load, 0.0, force, 0.0), by(1.0, 0.0, 0.0)
     path = Path(nothing, pressure, 0.0, False, held_at(unit, target * scale, target * scale, EVERY))
     status, mu, tangent_mu = leave_cylinder(room, tube, path, p_c, at_critical / scale)
     if status != FOLLOWED:

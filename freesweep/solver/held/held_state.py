@@ -72,7 +72,7 @@ def first_way(room, tube, sought):
             return end
     allowed = 1 if sought.varies and mirrored(tube) else 0
     end = ways.from_rest(room, tube, sought.cell, there, held_at(unit, natural, natural, allowed))
-    if end.status == COMPRESSED and sought.varies and sought.raised[3] != there[3]:
+    if end.status == COMPRESSED and sought.varies and sought.raised.p != there.p:
         end = ways.from_rest(room, tube, sought.cell, sought.raised, held_at(unit, natural, natural, allowed))
         if end.status == OK and wanted != natural:
             end = ways.go(room, tube, ways.moving(sought.raised, held_at(unit, natural, wanted, EVERY)))

@@ -58,7 +58,7 @@ def extrapolate(shares, level, scales, broken, unit, space):
     """The share and its bound from the last four ``shares``, the outputs and theirs from as many rows of the table, with the
     ``scales`` and floors of these; returns ``(share, its bound, largest scaled bound of the outputs)``.
     """
-    out, table, size = space.out, space.table, max(abs(unit[4]), abs(unit[5]))
+    out, table, size = space.out, space.table, max(abs(unit.f), abs(unit.m))
     third = (4.0 * shares[level] - shares[level - 1]) / 3.0
     second = (4.0 * shares[level - 1] - shares[level - 2]) / 3.0
     first = (4.0 * shares[level - 2] - shares[level - 3]) / 3.0

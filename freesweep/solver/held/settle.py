@@ -3,9 +3,9 @@
 from ...jit import kernel
 from ..constant import necked_shape, necked_tube
 from ..free.fold import locate
+from ..load import loaded
 from ..numerics import nested, newton
 from ..numerics.continuation import is_flat
-from ..numerics.held import loaded
 from ..numerics.path import load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
@@ -23,7 +23,7 @@ NEAR = 0.05  # of the way behind its end: as far it is looked for a turn where n
 @kernel
 def lower(room, tube, end, start, load, sought):
     """From the ``end`` of a way to the same state under the pressure of another load."""
-    if start[3] == load[3]:
+    if start.p == load.p:
         return end
     return ways.go(room, tube, ways.falling(start, load, held_at(sought.unit, sought.wanted, sought.wanted, EVERY)))
 
@@ -32,7 +32,7 @@ def lower(room, tube, end, start, load, sought):
 def settle(room, tube, end, sought, path, accuracy, out):
     """The state at the ``end`` of a way, or before its turn, on finer meshes; and where its branch was left at last."""
     load, space, track = sought.load, room.space, room.track
-    if end.status == OK and sought.with_pressure[3] != load[3]:
+    if end.status == OK and sought.with_pressure.p != load.p:
         end = lower(room, tube, end, sought.with_pressure, load, sought)
         if end.status == NOT_CONVERGED and end.here[0] > 1.0 - NEAR:
             return Found(COMPRESSED, 0, 0, load, end.here[0], False, path), end
@@ -44,7 +44,7 @@ def settle(room, tube, end, sought, path, accuracy, out):
     turned = end.status == BEYOND_LIMIT and end.path.held.any and end.ahead[2] > 0.0
     if turned and is_flat(end.ahead[0], end.ahead[1], end.path):
         found = at_turn(room, tube, end, sought, path, accuracy, out)
-    if valued(found.status) and not found.load[3] + found.load[4] > 0.0:  # at the clamped ends, where y = 1
+    if valued(found.status) and not found.load.p + found.load.f > 0.0:  # at the clamped ends, where y = 1
         return Found(COMPRESSED, 0, 0, load, 1.0, True, path), end
     return found, end
 
@@ -54,8 +54,8 @@ def leads_to(path, sought):
     """Whether a path is the last one of its way."""
     first, wanted = path.held.first, sought.wanted
     missed, size = abs(first + path.held.change - wanted), max(abs(first), abs(wanted))
-    pressure, p = path.origin[3] + path.direction[3], sought.load[3]
-    return missed <= ROUNDED * size and abs(pressure - p) <= ROUNDED * max(path.origin[3], p)
+    pressure, p = path.origin.p + path.direction.p, sought.load.p
+    return missed <= ROUNDED * size and abs(pressure - p) <= ROUNDED * max(path.origin.p, p)
 
 
 @kernel

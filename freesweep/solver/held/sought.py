@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ...jit import kernel
 from .. import guide
-from ..numerics.held import loaded
+from ..load import Load, at_pressure, by, loaded
 from ..physics import lagrangian
 from ..problem import GAMMA, rubber_of, wall_of
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, OK, PENDING
@@ -51,22 +51,16 @@ class Found(NamedTuple):
 
 
 @kernel
-def at_pressure(load, p):
-    """The load under another pressure."""
-    return load[0], load[1], load[2], p, load[4], load[5], load[6]
-
-
-@kernel
 def unit_of(kind, scale):
     """The load that holds."""
-    return (0.0, 0.0, 0.0, 0.0, scale, 0.0, 0.0) if kind == HELD_LENGTH else (0.0, 0.0, 0.0, 0.0, 0.0, scale, 0.0)
+    return by(0.0, scale, 0.0) if kind == HELD_LENGTH else by(0.0, 0.0, scale)
 
 
 @kernel
 def load_of(problem, walls, p, other, kind):
     """The load but for what holds."""
     force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
-    return problem[GAMMA], rubber_of(problem), wall_of(problem, walls), p, force, torque, 1.0
+    return Load(problem[GAMMA], rubber_of(problem), wall_of(problem, walls), p, force, torque, 1.0)
 
 
 @kernel
@@ -90,9 +84,9 @@ def refused(load, target, kind, tube):
     if course.shape[0] == 1 and lagrangian.conjugate(1.0, 0.0, cell, load, unit_of(kind, 1.0))[1] == 0.0:
         return HELD_IMPOSSIBLE
     if kind == HELD_LENGTH and not varies:
-        if target > (1.0 + LONGER) * places[len(places) - 1] * lagrangian.longest(cell, load[0], load[2]):
+        if target > (1.0 + LONGER) * places[len(places) - 1] * lagrangian.longest(cell, load.gamma, load.wall):
             return HELD_IMPOSSIBLE
-    if kind == HELD_ROTATION and not load[3] + load[4] > 0.0:  # at the clamped ends
+    if kind == HELD_ROTATION and not load.p + load.f > 0.0:  # at the clamped ends
         return COMPRESSED
     return PENDING
 
@@ -103,17 +97,17 @@ def describe(load, target, kind, tube):
     course, places = tube.course, tube.places
     varies = course.shape[0] > 1 or course.shape[1] > 1
     cell, unit = guide.cell_along(tube, 0.5), unit_of(kind, 1.0)
-    there = at_pressure(load, load[3] if load[3] > 0.0 or kind == HELD_ROTATION else WITHOUT_PRESSURE * cell[2])
+    there = at_pressure(load, load.p if load.p > 0.0 or kind == HELD_ROTATION else WITHOUT_PRESSURE * cell[2])
     raised, stands = there, False
     for attempt in range((guide.PLACES if varies else 1) * RAISES):
         share = ((attempt // RAISES) * 0.5 / (guide.PLACES - 1) + 0.5) % 1.0
         cell = guide.cell_along(tube, share)
-        raised = at_pressure(there, there[3] * 1.5 ** (attempt % RAISES))
+        raised = at_pressure(there, there.p * 1.5 ** (attempt % RAISES))
         now = loaded(raised, unit, cylinder_multiplier(cell, raised, unit))
         stands = lagrangian.density(1.0, 0.0, cell, now)[0] > 0.0
         if stands:
             break
-    scale = max(there[3], abs(load[4]))
+    scale = max(there.p, abs(load.f))
     if stands:
         scale = max(scale, abs(cylinder_multiplier(cell, raised, unit)))
     natural = places[len(places) - 1] * scale if kind == HELD_LENGTH else 0.0

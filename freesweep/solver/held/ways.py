@@ -11,10 +11,10 @@ from ..free.branch import begin
 from ..free.fold import FINEST
 from ..free.meshes import stand, take
 from ..free.space import Space, make_space, make_track
+from ..load import NO_CHANGE, Load, by, loaded
 from ..numerics import held
 from ..numerics.bordered import FOLLOWED
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
-from ..numerics.held import loaded
 from ..numerics.path import NOTHING, Held, Path, Track, load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
@@ -27,7 +27,6 @@ EVERY = 1 << 30  # unstable directions allowed: any number
 MOST_STEPS = 1000
 SMALL_STRAIN = 0.02  # of the first state on the way from rest: there the wall has one state only
 HALVINGS = 60  # of its load, until that holds
-NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Room(NamedTuple):
@@ -60,7 +59,7 @@ def make_room(base, half, varying):
 @kernel
 def at_rest(load):
     """No load on the same tube."""
-    return 1.0, load[1], load[2], 0.0, 0.0, 0.0, 1.0
+    return Load(1.0, load.rubber, load.wall, 0.0, 0.0, 0.0, 1.0)
 
 
 @kernel
@@ -72,21 +71,21 @@ def held_at(unit, first, last, allowed):
 @kernel
 def rising(load, what):
     """Pressure, the other load and fiber extension - 1 rise in proportion."""
-    direction = (load[0] - 1.0, 0.0, 0.0, load[3], load[4], load[5], 0.0)
-    return Path(at_rest(load), direction, 0.0, may_go_slack(load[2]), what)
+    direction = Load(load.gamma - 1.0, 0.0, 0.0, load.p, load.f, load.m, 0.0)
+    return Path(at_rest(load), direction, 0.0, may_go_slack(load.wall), what)
 
 
 @kernel
 def moving(load, what):
     """What is held moves to its target."""
-    return Path(load, NO_LOAD, 1.0, may_go_slack(load[2]), what)
+    return Path(load, NO_CHANGE, 1.0, may_go_slack(load.wall), what)
 
 
 @kernel
 def falling(start, load, what):
     """The pressure falls."""
-    direction = (0.0, 0.0, 0.0, load[3] - start[3], 0.0, 0.0, 0.0)
-    return Path(start, direction, 1.0, may_go_slack(load[2]), what)
+    direction = by(load.p - start.p, 0.0, 0.0)
+    return Path(start, direction, 1.0, may_go_slack(load.wall), what)
 
 
 @kernel

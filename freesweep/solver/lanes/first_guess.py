@@ -44,7 +44,7 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
     risen, least, most = asked, spread(HUGE), spread(0.0)
     first, second = spread(0.0), spread(0.0)
     drawn, before, after = lagrangian.drawn_in(cell, end), between(start, end, low), between(start, end, high)
-    bent = asked if leaves_choice(end[2]) else asked & (abs(end[0] - start[0]) > 0.0)
+    bent = asked if leaves_choice(end.wall) else asked & (abs(end.gamma - start.gamma) > 0.0)
     i = 0
     while True:
         within = asked & (samples + 1.0 > i)
@@ -61,7 +61,7 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
         far = L_yy * half * half < FAR * FAR * L_vv
         slope = -L_yy
         risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
-        if i >= 2 and not may_go_slack(end[2]):
+        if i >= 2 and not may_go_slack(end.wall):
             dips = within & (second < first) & (second < slope)
             bend = first - 2.0 * second + slope
             lowest = second - (slope - first) * (slope - first) / (8.0 * bend)

@@ -8,6 +8,7 @@ long tube, so none needs another one. No lane's numbers depend on its neighbours
 import numpy as np
 
 from ...jit import entry_point, kernel
+from ..load import Load
 from ..numerics.properties_along import Tube
 from ..physics import lagrangian
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
@@ -22,7 +23,7 @@ def first_leg(before, fresh):
     """The load before, where the ``fresh`` lanes begin without any."""
     zero, one = spread(0.0), spread(1.0)
     gamma, rubber, k, p, f, m, e = before
-    return select(fresh, one, gamma), rubber, k, p, select(fresh, zero, f), select(fresh, zero, m), e
+    return Load(select(fresh, one, gamma), rubber, k, p, select(fresh, zero, f), select(fresh, zero, m), e)
 
 
 @kernel
@@ -30,7 +31,7 @@ def locked(problem):
     """Uniform stretch of the locked tube, and its end's cosine."""
     cell, gamma = (problem[H], problem[D], problem[AREA]), problem[GAMMA]
     u = lagrangian.locked_stretch(cell, gamma)
-    return u, layer.end_cosine(u, cell, (gamma, rubber_of(problem), (0.0,), 1.0, 0.0, 0.0, 0.0))
+    return u, layer.end_cosine(u, cell, Load(gamma, rubber_of(problem), (0.0,), 1.0, 0.0, 0.0, 0.0))
 
 
 @kernel
@@ -76,7 +77,7 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
                 u, cell, first_leg(before, mask_of(active & ~started)), now, get(columns, HALF), mask_of(active)
             )
             u = select(arrived, ahead, u)
-            put(columns, BEFORE, select(arrived, now[3], get(columns, BEFORE)))
+            put(columns, BEFORE, select(arrived, now.p, get(columns, BEFORE)))
             put(found, 0, ahead)
             put(found, 1, layer.end_cosine(ahead, cell, now))
             for lane in range(count):

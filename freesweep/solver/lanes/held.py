@@ -16,6 +16,7 @@ from math import pi, sqrt
 
 from ...jit import entry_point, kernel
 from ..held.sought import RAISES
+from ..load import Load, at_pressure, under
 from ..physics import lagrangian
 from ..physics.lagrangian import ROUNDING
 from ..problem import FORCE, SOURCE, TORQUE
@@ -24,7 +25,7 @@ from . import first_guess, layer
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
-OF_LENGTH, OF_ROTATION = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+OF_LENGTH, OF_ROTATION = Load(0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0), Load(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 RAISE = 1.5  # of the pressure, where the wall of the straight cylinder is not under tension
 TRIALS, CLOSE = 12, 1e-6  # of the search for u, and the share of the way in C that may be left
 LEAST_SHARE, MOST_SHARE = 0.4, 2.5  # of u less where it begins, from one trial to the next
@@ -37,17 +38,9 @@ LONGER = 1e-9  # relative: more than rounding
 
 
 @kernel
-def under(load, length_held, mu):
+def holding(load, length_held, mu):
     """The load with its multiplier: a force, or a torque."""
-    if length_held:
-        return load[0], load[1], load[2], load[3], mu, load[5], load[6]
-    return load[0], load[1], load[2], load[3], load[4], mu, load[6]
-
-
-@kernel
-def at_pressure(load, p):
-    """The load under another pressure."""
-    return load[0], load[1], load[2], p, load[4], load[5], load[6]
+    return under(load, load.p, mu, load.m) if length_held else under(load, load.p, load.f, mu)
 
 
 @kernel
@@ -94,23 +87,23 @@ def straight_start(cell, load, length_held, asked):
     """The straight cylinder's load at the lowest pressure, of ``load`` or raised, at which its wall is under tension; and
     where there is one.
     """
-    one, p, fits = spread(1.0), load[3], mask_of(0)
+    one, p, fits = spread(1.0), load.p, mask_of(0)
     for _ in range(RAISES):
         now = at_pressure(load, p)
-        now = under(now, length_held, multiplier(one, cell, now, length_held))
+        now = holding(now, length_held, multiplier(one, cell, now, length_held))
         fits = fits | (lagrangian.density(one, 0.0, cell, now)[0] > 0.0)
         if not some(asked & ~fits):
             break
         p = select(fits, p, RAISE * p)
     now = at_pressure(load, p)
-    return under(now, length_held, multiplier(one, cell, now, length_held)), fits
+    return holding(now, length_held, multiplier(one, cell, now, length_held)), fits
 
 
 @kernel
 def free_start(cell, load, half, asked, work, more):
     """The uniform stretch with nothing held, carried from rest, and the length that belongs to it; where there is one."""
     one, zero = spread(1.0), spread(0.0)
-    rest = one, load[1], load[2], zero, zero, zero, one
+    rest = Load(one, load.rubber, load.wall, zero, zero, zero, one)
     u, came = first_guess.follow(one, cell, rest, load, half, asked)
     u = select(asked & came, u, one)
     return u, held_integral(u, cell, load, half, True, work, more), asked & came
@@ -129,16 +122,16 @@ def search(origin, first, target, half, cell, load, length_held, asked, work, mo
     """The uniform stretch u whose tube has C = ``target``, by secants from the one at ``origin``, which has C = ``first``:
     ``(u, multiplier, dC/d(multiplier), where they were found)``.
     """
-    u = uniform_stretch(target, half, cell, load[0], length_held)
+    u = uniform_stretch(target, half, cell, load.gamma, length_held)
     todo, found = asked & (abs(u - origin) > NEAR), mask_of(0)
     u = select(todo, u, origin)
     mu = multiplier(origin, cell, load, length_held)
     u_before, c_before, mu_before, sigma = origin, first, mu, spread(0.0)
     for _ in range(TRIALS):
         mu = select(todo, multiplier(u, cell, load, length_held), mu)
-        now = under(load, length_held, mu)
+        now = holding(load, length_held, mu)
         room, _, _, L_yy, _, _ = lagrangian.density(u, 0.0, cell, now)
-        fits = todo & (min(room, now[3] + now[4]) > 0.0) & (L_yy < 0.0)
+        fits = todo & (min(room, now.p + now.f) > 0.0) & (L_yy < 0.0)
         c = held_integral(select(fits, u, origin), cell, now, half, length_held, work, more)
         sigma = select(fits, (c - c_before) / (mu - mu_before), sigma)
         close = fits & (abs(c - target) <= CLOSE * abs(target - first))
@@ -159,9 +152,9 @@ def refused(origin, start, first, target, half, cell, load, length_held, asked, 
     """Where no force or torque holds what is wanted, and where that is too close to tell."""
     pushed, near = mask_of(0), mask_of(0)
     if not length_held:
-        return asked & ~(load[3] + load[4] > 0.0), near
+        return asked & ~(load.p + load.f > 0.0), near
     if some(asked):
-        limit = under(load, True, -load[3])
+        limit = holding(load, True, -load.p)
         u, came = first_guess.follow(origin, cell, start, limit, half, asked)
         came = came & (u > 1.0)  # the clamped ends are the first to be pushed
         u = select(came, u, origin)
@@ -204,29 +197,29 @@ def seek_lanes(
         todo = mask_of(valid) & (abs(c_y) > POLE * (cell[0] * cell[0] + cell[1] * cell[1]))
         too_long = mask_of(0)
         if length_held:
-            too_long = todo & (target > (1.0 + LONGER) * half * lagrangian.longest(cell, load[0], load[2]))
+            too_long = todo & (target > (1.0 + LONGER) * half * lagrangian.longest(cell, load.gamma, load.wall))
             todo = todo & ~too_long
         start, fits = straight_start(cell, load, length_held, todo)
         pushed, origin = mask_of(0), one
-        straight = todo & fits & (start[3] == load[3]) & (target == first)
+        straight = todo & fits & (start.p == load.p) & (target == first)
         if not length_held:  # p + f alone decides
             pushed, todo = todo & ~fits, todo & fits
         elif some(todo & ~fits):
             origin, at_free, freely = free_start(cell, load, half, todo & ~fits, work, more)
             first = select(freely, at_free, first)
-            start_p, start_mu = select(freely, load[3], start[3]), select(freely, spread(0.0), start[4])
-            start = under(at_pressure(load, start_p), True, start_mu)
+            start_p, start_mu = select(freely, load.p, start.p), select(freely, spread(0.0), start.f)
+            start = holding(at_pressure(load, start_p), True, start_mu)
             todo = todo & (fits | freely)
         again, near = refused(origin, start, first, target, half, cell, load, length_held, todo & ~straight, work, more)
         pushed, todo = pushed | again, todo & ~(again | near)
         firm, clear = cylinder_stability(cell, start, half)
         straight, todo = straight & todo & clear, todo & ~straight
-        mu = start[4] if length_held else start[5]
-        put(found, 1, ROUNDING * max(abs(load[3]), max(abs(start[4]), abs(start[5]))))
+        mu = start.f if length_held else start.m
+        put(found, 1, ROUNDING * max(abs(load.p), max(abs(start.f), abs(start.m))))
         put(found, 2, mu)
         if some(todo):
             u, ahead, sigma, there = search(origin, first, target, half, cell, load, length_held, todo, work, more)
-            now = under(load, length_held, ahead)
+            now = holding(load, length_held, ahead)
             carried, came = first_guess.follow(origin, cell, start, now, half, todo & there)
             todo = todo & there & came & (abs(carried - u) < SAME * u)
             put(found, 0, u)

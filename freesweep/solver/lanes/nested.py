@@ -47,7 +47,7 @@ def integrate(x, y, n, cell, load, row):
             0.5 * (y_left + y_right), (y_right - y_left) / h, behind(cell, h, near), load
         )
         if j > 0:
-            broken = broken | differ(kind, before, load[2])
+            broken = broken | differ(kind, before, load.wall)
         before = kind
         length = length + h * s
         volume = volume + h * v
@@ -152,7 +152,7 @@ def solve(
 
     ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, > OUTPUTS, WIDTH) takes values
     and bounds of the lanes that are met, of physical tubes those of :mod:`..along.places` behind them; ``found`` (2, ...) is
-    scratch. ``kept`` (WIDTH, 5, ...), unless None, takes their finest meshes as :func:`profile.at_stations` reads them, with
+    scratch. ``kept`` (WIDTH, 5, ...), unless None, takes their finest meshes as :func:`..along.profile.at_stations` reads them, with
     ``doublings``. Returns masks: ``(met, alpha fibers would have to push, beta fibers would)``.
     """
     # the energy at a low pressure is little beside the work whose error it takes: more than the accuracy of the rest

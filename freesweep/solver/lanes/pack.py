@@ -7,6 +7,7 @@ import numpy as np
 from ...jit import entry_point, kernel
 from ..along.places import OUTER
 from ..along.profile import at_stations
+from ..load import Load, at_pressure, fibers_alone
 from ..physics import lagrangian
 from ..physics.wall import layers, reciprocal
 from ..problem import (
@@ -78,8 +79,8 @@ def loads(columns, constants, walls, count):
     gamma, wall = get(columns, GAMMA), wall_in(columns, walls, count)
     rubber = rubber_in(columns, constants)
     f, m, e = get(columns, FORCE), get(columns, TORQUE), get(columns, WEIGHT)
-    now = (gamma, rubber, wall, get(columns, PRESSURE), f, m, e)
-    return cell, (gamma, rubber, wall, get(columns, BEFORE), f, m, e), now
+    now = Load(gamma, rubber, wall, get(columns, PRESSURE), f, m, e)
+    return cell, at_pressure(now, get(columns, BEFORE)), now
 
 
 @kernel
@@ -104,7 +105,7 @@ def seat(lane, columns, tube):
     for k in range(3):
         course[0, 0, k, 0] = columns[k, lane]
     places[1] = columns[LENGTH, lane]
-    return (
+    return Load(
         columns[GAMMA, lane], rubber_of(columns[:, lane]), (columns[SHEAR, lane],), columns[PRESSURE, lane],
         columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
     )  # fmt: skip
@@ -113,8 +114,8 @@ def seat(lane, columns, tube):
 @kernel
 def is_clamped(problem):
     """Whether the fibers leave the clamped ends any meridional stretch."""
-    rest = (problem[GAMMA], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return 1.0 + lagrangian.kinematics(1.0, (problem[H], problem[D], problem[AREA]), rest)[3] > 0.0
+    cell = problem[H], problem[D], problem[AREA]
+    return 1.0 + lagrangian.kinematics(1.0, cell, fibers_alone(problem[GAMMA]))[3] > 0.0
 
 
 @kernel

@@ -15,10 +15,10 @@ from .vector import get, mask_of, put, select, spread
 @kernel
 def look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready):
     """Masks: where the alpha, and where the beta family would have to push, or is slack, somewhere along half a tube, on its
-    finest mesh of n cells. Of physical tubes ``out`` (2, > first + 2, WIDTH) takes the numbers of :mod:`places` and their
+    finest mesh of n cells. Of physical tubes ``out`` (2, > first + 2, WIDTH) takes the numbers of :mod:`..along.places` and their
     bounds in the lanes that are ``ready``, from the row ``first`` on; ``seen`` (4, > n + 1, WIDTH) is scratch.
     """
-    return _look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready, load[2])
+    return _look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready, load.wall)
 
 
 @kernel
@@ -38,7 +38,7 @@ def _look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready
 @kernel
 def pushing(x, y, n, cell, load):
     """The masks of the source's tubes."""
-    allowed = -TENSIONLESS * (load[3] + abs(load[4]))
+    allowed = -TENSIONLESS * (load.p + abs(load.f))
     alpha, beta = mask_of(0), mask_of(0)
     _, _, constant = lagrangian.uniform_tube(get(y, n), cell, load)
     for j in range(n + 1):
@@ -51,9 +51,9 @@ def pushing(x, y, n, cell, load):
 
 @kernel
 def see(x, y, n, cell, load, seen):
-    """Write what :mod:`places` looks at along half a physical tube to the rows of ``seen``; returns the masks."""
-    least, at_end = -TENSIONLESS * (load[3] + abs(load[4])), -TENSIONLESS_END * (load[3] + abs(load[4]))
-    if may_go_slack(load[2]):
+    """Write what :mod:`..along.places` looks at along half a physical tube to the rows of ``seen``; returns the masks."""
+    least, at_end = -TENSIONLESS * (load.p + abs(load.f)), -TENSIONLESS_END * (load.p + abs(load.f))
+    if may_go_slack(load.wall):
         least = at_end = NOTHING + 0.0 * least
     alpha, beta, near = mask_of(0), mask_of(0), nothing_yet(0.0 * least)
     for k in range(n + 2):
@@ -74,9 +74,9 @@ def see(x, y, n, cell, load, seen):
         put(seen[places.ALPHA], k, of_alpha - below)
         put(seen[places.BETA], k, of_beta - below)
         put(seen[places.SQUARE], k, square)
-    if not has_two_families(load[2]):  # what is not there is not slack
+    if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
-    if not has_any_family(load[2]):
+    if not has_any_family(load.wall):
         alpha = mask_of(0)
     return alpha, beta
 
@@ -85,7 +85,7 @@ def see(x, y, n, cell, load, seen):
 def summed(seen, count, load):
     """As :func:`freesweep.solver.along.slack.summed`."""
     x, a, b, squares = seen[places.PLACE], seen[places.ALPHA], seen[places.BETA], seen[places.SQUARE]
-    faint, loose = places.FAINT * (load[3] + abs(load[4])), may_go_slack(load[2])
+    faint, loose = places.FAINT * (load.p + abs(load.f)), may_go_slack(load.wall)
     total, zero = get(x, count - 1) - get(x, 0), spread(0.0)
     share_a, doubt_a, share_b, doubt_b = zero, zero, zero, zero
     most, missed = max(get(squares, 0), get(squares, count - 1)), zero

@@ -7,6 +7,7 @@ along any number of directions are exact (:mod:`response`); they are extrapolate
 import numpy as np
 
 from ...jit import entry_point, kernel
+from ..load import Load
 from ..numerics.nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..numerics.newton import SMALL_STEP
 from ..physics import lagrangian
@@ -27,12 +28,15 @@ ROUNDING = 1e-11  # of what a derivative is measured by
 def paired(columns, changes, constants):
     """``(cell, load, relative change of the length)`` of the designs as tangents, from what each column changes by."""
     cell, _, load = loads(columns, constants, SOURCE, 1)
-    own, _, by = loads(changes, constants, SOURCE, 1)
+    own, _, change = loads(changes, constants, SOURCE, 1)
     gamma, rubber, wall, p, f, m, e = load
     longer = join(spread(1.0), get(changes, LENGTH) / get(columns, LENGTH))
     return (
         (join(cell[0], own[0]), join(cell[1], own[1]), join(cell[2], own[2])),
-        (join(gamma, by[0]), joined(rubber, by[1]), wall, join(p, by[3]), join(f, by[4]), join(m, by[5]), e),
+        Load(
+            join(gamma, change.gamma), joined(rubber, change.rubber), wall, join(p, change.p), join(f, change.f),
+            join(m, change.m), e,
+        ),
         longer,
     )  # fmt: skip
 
@@ -135,7 +139,7 @@ def solve(x, y, n, u, straight, columns, changes, constants, active, accuracy, m
         put(sizes, 0, scale[0])
         put(sizes, 1, scale[1])
         put(sizes, 2, scale[2])
-        work_done = abs(load[3] * outputs[1]) + abs(load[4] * outputs[0]) + abs(load[5] * outputs[2])
+        work_done = abs(load.p * outputs[1]) + abs(load.f * outputs[0]) + abs(load.m * outputs[2])
         put(sizes, 3, max(scale[3], LITTLE * work_done))
         put(sizes, 4, scale[4])
         largest = spread(0.0)
@@ -153,7 +157,7 @@ def solve(x, y, n, u, straight, columns, changes, constants, active, accuracy, m
 def is_straight(cell, load):
     """Where the undeformed cylinder is an equilibrium: what holds it may keep it from buckling, which loads alone do not."""
     _, L_y, _, _, _, _ = lagrangian.density(spread(1.0), 0.0, cell, load)
-    size = (abs(load[3]) + abs(load[4]) + abs(load[5])) * (1.0 + cell[0] * cell[0] + cell[1] * cell[1])
+    size = (abs(load.p) + abs(load.f) + abs(load.m)) * (1.0 + cell[0] * cell[0] + cell[1] * cell[1])
     return abs(L_y) <= STRAIGHT * size
 
 

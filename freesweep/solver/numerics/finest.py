@@ -5,6 +5,7 @@ relative error that Newton's last steps left, or NO_MESH where the meshes are cu
 """
 
 from ...jit import kernel
+from ..load import under
 
 MESHES = 3
 LEFT = 3 * MESHES  # the place of that error
@@ -25,7 +26,7 @@ def mesh_of(which, n, fine):
 def load_of(which, load, fine):
     """The load of one of the meshes."""
     k = 3 * which
-    return load[0], load[1], load[2], load[3] + fine[3, k], load[4] + fine[3, k + 1], load[5] + fine[3, k + 2], load[6]
+    return under(load, load.p + fine[3, k], load.f + fine[3, k + 1], load.m + fine[3, k + 2])
 
 
 @kernel
@@ -34,4 +35,4 @@ def leave_loads(multipliers, level, multiplier, direction, left, fine):
     fine[3, LEFT] = left
     for which in range(MESHES):
         change, k = multipliers[level - which] - multiplier, 3 * which
-        fine[3, k], fine[3, k + 1], fine[3, k + 2] = change * direction[3], change * direction[4], change * direction[5]
+        fine[3, k], fine[3, k + 1], fine[3, k + 2] = change * direction.p, change * direction.f, change * direction.m

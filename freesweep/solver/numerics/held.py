@@ -11,6 +11,7 @@ is stable under given loads; through a turning point of mu, 1/sigma falls smooth
 
 from ...jit import kernel
 from ..cells import cell_at, of_length
+from ..load import loaded
 from .newton import (
     CONVERGED,
     INFEASIBLE,
@@ -23,20 +24,6 @@ from .newton import (
     settled,
     substitute,
 )
-
-
-@kernel
-def loaded(load, direction, mu):
-    """The load changed by ``mu`` along ``direction``, component by component; rubber and wall stay."""
-    return (
-        load[0] + mu * direction[0],
-        load[1],
-        load[2],
-        load[3] + mu * direction[3],
-        load[4] + mu * direction[4],
-        load[5] + mu * direction[5],
-        load[6] + mu * direction[6],
-    )
 
 
 @kernel

@@ -12,8 +12,8 @@ middle, and the multiplier of a held integral.
 
 from ...jit import kernel
 from ..cells import behind, cell_at, largest_sizes, nothing_yet
+from ..load import loaded
 from . import finest, held, mesh, middle, newton
-from .held import loaded
 from .properties_along import fill
 
 OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
@@ -234,7 +234,7 @@ def solve(
             for k in range(OUTPUTS):
                 out[2, k], out[3, k] = units[k], floors[k]
             if goal == HELD:  # the multiplier counts in units of its direction
-                unit = max(abs(direction[3]), max(abs(direction[4]), abs(direction[5])))
+                unit = max(abs(direction.p), max(abs(direction.f), abs(direction.m)))
                 out[2, MULTIPLIER] /= max(unit, 1.0)
                 out[3, MULTIPLIER] /= unit
             met = extrapolate(table, level, out[2], out[3], missed, broken, out[0], out[1]) <= accuracy

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from .held import loaded
+from ..load import NO_CHANGE, Load, loaded
 
 LOAD_SHARE = 0.1  # weight of a relative change of the load against one of y: its steps may be that much longer
 
@@ -22,7 +22,7 @@ class Held(NamedTuple):
     allowed: int
 
 
-NOTHING = Held((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0, 0.0, False, 0)
+NOTHING = Held(NO_CHANGE, 0.0, 0.0, False, 0)
 
 
 class Path(NamedTuple):
@@ -30,8 +30,8 @@ class Path(NamedTuple):
     smooth, the branch ``bends`` at once where all cells change their kind together.
     """
 
-    origin: tuple
-    direction: tuple
+    origin: Load
+    direction: Load
     floor: float
     bends: bool
     held: Held = NOTHING

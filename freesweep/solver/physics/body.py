@@ -19,6 +19,7 @@ are a tube's own, to which none of this does anything.
 from math import sqrt
 
 from ...jit import kernel
+from ..load import Load, under
 
 
 @kernel
@@ -28,8 +29,8 @@ def as_tube(y, v, cell, load):
         return cell, v, load
     R, square = cell[3], cell[3] * cell[3]
     w = (cell[4] * y + R * v) / sqrt(1.0 + cell[4] * cell[4])
-    wall = own_wall(cell, load[2])
-    own = load[0], load[1], wall, load[3], load[4] / square, load[5] / (square * R), load[6]
+    wall = own_wall(cell, load.wall)
+    own = Load(load.gamma, load.rubber, wall, load.p, load.f / square, load.m / (square * R), load.e)
     return (cell[0], cell[1], cell[2]), w, own
 
 
@@ -47,10 +48,7 @@ def own_direction(cell, direction):
     if len(cell) == 3:
         return direction
     square = cell[3] * cell[3]
-    return (
-        direction[0], direction[1], direction[2], direction[3], direction[4] / square, direction[5] / (square * cell[3]),
-        direction[6],
-    )  # fmt: skip
+    return under(direction, direction.p, direction.f / square, direction.m / (square * cell[3]))
 
 
 @kernel

@@ -14,6 +14,7 @@ from math import sqrt
 
 from ...jit import kernel
 from ..cells import as_expected, expecting, passed_on, point_of
+from ..load import fibers_alone
 from . import body, membrane, over_cell, physical
 from .membrane import (  # noqa: F401
     DRAWN_IN,
@@ -36,14 +37,14 @@ from .wall import has_two_families
 def clamped(cell, gamma, wall):
     """G at the clamped ends, positive where fibers can meet them; fewer families than two always can."""
     if has_two_families(wall):
-        return 1.0 + kinematics(1.0, cell, (gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))[3]
+        return 1.0 + kinematics(1.0, cell, fibers_alone(gamma))[3]
     return 1.0 + 0.0 * cell[0]
 
 
 @kernel
 def drawn_in(cell, load):
     """The stretch below 1 from which a tube counts as drawn in."""
-    if has_two_families(load[2]):
+    if has_two_families(load.wall):
         return membrane.drawn_in(cell, load)
     return 1.0 - DRAWN_IN + 0.0 * cell[0]
 
@@ -62,7 +63,7 @@ def density(y, v, cell, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv)``; a state is admissible where ``room`` is positive. Behind them, what is handed
     on, where something was handed to the cell.
     """
-    return _density(y, v, cell, load, load[2])
+    return _density(y, v, cell, load, load.wall)
 
 
 @kernel
@@ -89,7 +90,7 @@ def integrands(y, v, cell, load):
     """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w; and the kind of state. Behind
     them, what is handed on, where something was handed to the cell.
     """
-    return _integrands(y, v, cell, load, load[2])
+    return _integrands(y, v, cell, load, load.wall)
 
 
 @kernel
@@ -114,7 +115,7 @@ def _integrands_at(y, v, point, load, wall):
 @kernel
 def conjugate(y, v, cell, load, direction):
     """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load: what is held when that load is unknown."""
-    return _conjugate(y, v, cell, load, direction, load[2])
+    return _conjugate(y, v, cell, load, direction, load.wall)
 
 
 @kernel
@@ -140,7 +141,7 @@ def _conjugate_at(y, v, point, load, direction, wall):
 @kernel
 def uniform_tube(y, point, load):
     """``(sqrt(G), T sqrt(G), L)`` at slope 0: meridional stretch and resultant, and the density itself."""
-    return _uniform_tube(y, point, load, load[2])
+    return _uniform_tube(y, point, load, load.wall)
 
 
 @kernel
@@ -154,7 +155,7 @@ def _uniform_tube(y, point, load, wall):
 @kernel
 def at_slope(y, v, point, load):
     """``(room of the slope, tau alpha, tau beta)``, the multipliers of both families."""
-    return _at_slope(y, v, point, load, load[2])
+    return _at_slope(y, v, point, load, load.wall)
 
 
 @kernel
@@ -168,7 +169,7 @@ def _at_slope(y, v, point, load, wall):
 @kernel
 def at_flux(y, flux, point, load):
     """``(psi, G - 1, tau alpha, tau beta)`` where the flux T v/s is known, and not the slope."""
-    return _at_flux(y, flux, point, load, load[2])
+    return _at_flux(y, flux, point, load, load.wall)
 
 
 @kernel

@@ -46,14 +46,14 @@ def kinematics(y, cell, load):
     G - 1 and not G: near the undeformed state the strain energy lives in its last digits.
     """
     H, D = cell[0], cell[1]
-    gg = load[0] * load[0]
+    gg = load.gamma * load.gamma
     r = 1.0 / y
     t = gg * r * r
     psi = H * (t - 1.0)
     psi_y = -2.0 * H * t * r
     psi_yy = 6.0 * H * t * r * r
     b = gg * H * H * t
-    stretch = (load[0] - 1.0) * (load[0] + 1.0)
+    stretch = (load.gamma - 1.0) * (load.gamma + 1.0)
     G_1 = stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * t - D * D)
     G_y = -2.0 * D * D * y + 2.0 * b * r
     G_yy = -2.0 * D * D - 6.0 * b * r * r
@@ -88,7 +88,7 @@ def yeoh(rubber, i, i_y, i_yy):
 def strain_energy(y, cell, load):
     """``(w, w_y, w_yy)``: strain energy density over C10, its first and second derivative along y (Eq. 2.5)."""
     psi, psi_y, psi_yy, G_1, G_y, G_yy = kinematics(y, cell, load)
-    rubber, k = load[1], load[2][0]
+    rubber, k = load.rubber, load.wall[0]
     c = rubber[0]
     G = 1.0 + G_1
     r = 1.0 / y
@@ -118,10 +118,10 @@ def density(y, v, cell, load):
     Returns ``(room, L_y, L_v, L_yy, L_yv, L_vv)``. A state is admissible where ``room`` is positive: s is real, and the
     meridional resultant p y^2 + f is a tension.
     """
-    p, f, m = load[3], load[4], load[5]
+    p, f, m = load.p, load.f, load.m
     _, psi_y, psi_yy, G_1, G_y, G_yy = kinematics(y, cell, load)
     _, w_y, w_yy = strain_energy(y, cell, load)
-    a = load[6] * cell[2]
+    a = load.e * cell[2]
     G = 1.0 + G_1
     square = G - v * v
     s = sqrt(max(square, NO_ROOM))
@@ -146,8 +146,8 @@ def uniform_tube(y, cell, load):
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
     w, _, _ = strain_energy(y, cell, load)
     s = sqrt(max(1.0 + G_1, NO_ROOM))
-    pull = (load[3] * y * y + load[4]) * s
-    return s, pull, pull - load[6] * cell[2] * w + load[5] * psi
+    pull = (load.p * y * y + load.f) * s
+    return s, pull, pull - load.e * cell[2] * w + load.m * psi
 
 
 @kernel
@@ -182,7 +182,7 @@ def drawn_in(cell, load):
     """The stretch below 1 from which a tube counts as drawn in: DRAWN_IN of its radius, and under force or torque as soon as
     its length has changed by that share.
     """
-    size = abs(load[4]) + abs(load[5])
+    size = abs(load.f) + abs(load.m)
     loaded = size / (size + NO_ROOM)  # 1, or 0
     _, _, _, G_1, G_y, _ = kinematics(1.0, cell, load)
     return 1.0 - DRAWN_IN * (1.0 + loaded * (min(2.0 * (1.0 + G_1) / max(abs(G_y), NO_ROOM), 1.0) - 1.0))
@@ -197,9 +197,9 @@ def conjugate(y, v, cell, load, direction):
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     s_y = 0.5 * G_y / s
     s_v = -v / s
-    T = direction[3] * y * y + direction[4]
-    T_y = 2.0 * direction[3] * y
-    return T * s + direction[5] * psi, T_y * s + T * s_y + direction[5] * psi_y, T * s_v, 0.0
+    T = direction.p * y * y + direction.f
+    T_y = 2.0 * direction.p * y
+    return T * s + direction.m * psi, T_y * s + T * s_y + direction.m * psi_y, T * s_v, 0.0
 
 
 @kernel
@@ -209,8 +209,8 @@ def fiber_multipliers(y, s, cell, load):
     They take the axial stretch ``s``, not the slope: where the meridian stands upright, that has no digits to spare for it.
     The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of pi r0^2 C10.
     """
-    H, D, a = cell[0], cell[1], load[6] * cell[2]
-    rubber, k, f, m = load[1], load[2][0], load[4], load[5]
+    H, D, a = cell[0], cell[1], load.e * cell[2]
+    rubber, k, f, m = load.rubber, load.wall[0], load.f, load.m
     c = rubber[0]
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
     G = 1.0 + G_1
@@ -220,8 +220,8 @@ def fiber_multipliers(y, s, cell, load):
     slope = yeoh_slope(rubber, excess(G_1, (y - 1.0) * (y + 1.0), e * z) + y2 * k * psi * psi)
     w_G = slope * (1.0 - e * e * z) + c * (y2 - q * e * e)
     w_psi = 2.0 * k * psi * (slope * y2 + c * e)
-    total = 0.5 * (load[3] * y2 + f) / s - a * w_G
-    difference = (0.5 * (m - a * w_psi) - total * H * load[0] * load[0]) * z / D
+    total = 0.5 * (load.p * y2 + f) / s - a * w_G
+    difference = (0.5 * (m - a * w_psi) - total * H * load.gamma * load.gamma) * z / D
     return 0.5 * (total + difference), 0.5 * (total - difference)
 
 
@@ -254,21 +254,21 @@ def scales(outputs, cell, load, length, tolerance):
     """
     share = ROUNDING + LAST_STEP * tolerance
     volume, turn, energy = outputs[1], outputs[2], outputs[3]
-    work = abs(load[3] * volume) + abs(load[4] * outputs[0]) + abs(load[5] * turn)
-    gg, wrong = load[0] * load[0], length * tolerance
+    work = abs(load.p * volume) + abs(load.f * outputs[0]) + abs(load.m * turn)
+    gg, wrong = load.gamma * load.gamma, length * tolerance
     turned = 2.0 * abs(cell[0]) * gg * wrong  # psi_y at y = 1
     longer = abs(gg * gg * cell[0] * cell[0] - cell[1] * cell[1]) * wrong  # G_y/2 there
     larger = longer * volume / length
     by_turn = max(0.5, abs(turn))  # half a tube: half a radian
     by_energy = max(energy, 1e-9 * work)
-    by_load = max(abs(load[3]), max(abs(load[4]), abs(load[5])))
+    by_load = max(abs(load.p), max(abs(load.f), abs(load.m)))
     return (length, volume, by_turn, by_energy, 1.0, by_load), (
         share * length + longer,
         share * volume + larger,
         share * by_turn + turned,
         share * by_energy
         + (ENERGY_ROUNDING + WORK_STEP * tolerance) * work
-        + (abs(load[3]) * larger + abs(load[4]) * longer + abs(load[5]) * turned),
+        + (abs(load.p) * larger + abs(load.f) * longer + abs(load.m) * turned),
         share + ROUNDING * outputs[4],
         share * by_load,
     )

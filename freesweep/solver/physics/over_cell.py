@@ -82,7 +82,7 @@ def along_the_cell(part, y, v, cell, load, direction):
     point, h, before = parts_of(cell)
     at, near = look(y, v, point, load, before)
     middle, zero = part(at, y, v, 0.0, point, load, direction), 0.0 * y
-    if not may_go_slack(load[2]):
+    if not may_go_slack(load.wall):
         return at.room, middle, at.kind, near
     room, ends, between, changes = at.room, (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
     for k in range(0, EIGHTHS + 1, EIGHTHS):

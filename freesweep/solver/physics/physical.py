@@ -7,7 +7,7 @@ have no derivatives along the tube, so they are eliminated point by point: first
 of ``T s - e W + m psi - sum mu_i g_i``, whose second ones (``K``) give those of L along ``(1, dG/dy, dpsi/dy)``, from the
 stationarity system of the families that are taut. L is C1 and piecewise C2.
 
-Functions and arguments as in :mod:`membrane`; ``wall`` = load[2] is (k, inner, threads); ``near`` is what the neighbouring
+Functions and arguments as in :mod:`membrane`; ``wall`` = load.wall is (k, inner, threads); ``near`` is what the neighbouring
 cell handed on, see :func:`relaxed.beside`.
 """
 
@@ -74,9 +74,11 @@ def kind_of(taut_alpha, taut_beta):
 @kernel
 def place(y, v, T, cell, load):
     """``(room, G - 1, psi, taut alpha, taut beta)`` at one point under the resultant T; see :func:`relaxed.settle`."""
-    H, D, gg, wall = cell[0], cell[1], load[0] * load[0], load[2]
+    H, D, gg, wall = cell[0], cell[1], load.gamma * load.gamma, load.wall
     if wall[2] > 0.0:
-        room, G_1, psi, alpha, beta = settle(y, v, H, D, gg, max(T, NO_ROOM), load[5], load[6] * cell[2], load[1], wall)
+        room, G_1, psi, alpha, beta = settle(
+            y, v, H, D, gg, max(T, NO_ROOM), load.m, load.e * cell[2], load.rubber, wall
+        )
         return min(room, T), max(G_1, LEAST - 1.0), psi, alpha, beta
     psi, G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, gg - 1.0)
     room, least = min(1.0 + G_1 - v * v, T), least_square(y, max(1.0 + G_1, NO_ROOM), wall)
@@ -91,19 +93,19 @@ def place_beside(y, v, T, cell, load, near):
     Returns ``(room, G - 1, psi, dG, dpsi, taut alpha, taut beta, slopes of W)``; the last changes are not made yet, and too
     small to look once more.
     """
-    wall, area, zero = load[2], load[6] * cell[2], 0.0 * y
+    wall, area, zero = load.wall, load.e * cell[2], 0.0 * y
     if not wall[2] > 0.0:
         room, G_1, psi, alpha, beta = place(y, v, T, cell, load)
-        return room, G_1, psi, zero, zero, alpha, beta, slopes(y, G_1, psi, area, load[1], wall)
-    low, widest, _, _ = spread_of(y, v, cell[0], cell[1], load[0] * load[0], wall)
+        return room, G_1, psi, zero, zero, alpha, beta, slopes(y, G_1, psi, area, load.rubber, wall)
+    low, widest, _, _ = spread_of(y, v, cell[0], cell[1], load.gamma * load.gamma, wall)
     room = min(widest - low, T)
     known, kind, G_1, psi, dG, dpsi, W = beside(
-        y, v, cell[0], cell[1], load[0] * load[0], max(T, NO_ROOM), load[5], area, load[1], wall, near
+        y, v, cell[0], cell[1], load.gamma * load.gamma, max(T, NO_ROOM), load.m, area, load.rubber, wall, near
     )
     alpha, beta = is_taut(kind)
     if some(isnt(known)):
         other, width, twist, with_alpha, with_beta = place(y, v, T, cell, load)
-        V = slopes(y, width, twist, area, load[1], wall)
+        V = slopes(y, width, twist, area, load.rubber, wall)
         room, G_1, psi = select(known, room, other), select(known, G_1, width), select(known, psi, twist)
         dG, dpsi = select(known, dG, zero), select(known, dpsi, zero)
         alpha, beta = (known & alpha) | (isnt(known) & with_alpha), (known & beta) | (isnt(known) & with_beta)
@@ -118,9 +120,9 @@ def place_beside(y, v, T, cell, load, near):
 @kernel
 def state(y, v, cell, load, near):
     """The :class:`State` at one point."""
-    H, D, gg = cell[0], cell[1], load[0] * load[0]
-    p, m = load[3], load[5]
-    T, T_y = p * y * y + load[4], 2.0 * p * y
+    H, D, gg = cell[0], cell[1], load.gamma * load.gamma
+    p, m = load.p, load.m
+    T, T_y = p * y * y + load.f, 2.0 * p * y
     room, G_1, psi, dG, dpsi, taut_alpha, taut_beta, W = place_beside(y, v, T, cell, load, near)
     W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = W
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
@@ -171,7 +173,7 @@ def state(y, v, cell, load, near):
 @kernel
 def handed_on(at, y, v, load):
     """What the next cell may start from; bonded fibers leave it no choice."""
-    if not leaves_choice(load[2]):
+    if not leaves_choice(load.wall):
         return nothing_yet(0.0 * y)
     kind = select(at.room > 0.0, at.kind, -1.0)
     return kind, y, v, at.psi, at.psi_y, at.psi_v, at.G_1, at.G_y, at.G_v
@@ -180,14 +182,14 @@ def handed_on(at, y, v, load):
 @kernel
 def partials(at, y, v, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv)``."""
-    T = load[3] * y * y + load[4]
+    T = load.p * y * y + load.f
     L_yy = (
         at.K_yy
         + 2.0 * (at.K_yG * at.G_y + at.K_yp * at.psi_y)
         + (at.K_GG * at.G_y + 2.0 * at.K_Gp * at.psi_y) * at.G_y
         + at.K_pp * at.psi_y * at.psi_y
     )
-    L_yv = -2.0 * load[3] * y * v / at.s + at.K_vG * at.G_y
+    L_yv = -2.0 * load.p * y * v / at.s + at.K_vG * at.G_y
     L_vv = -T * (1.0 + at.G_1) / (at.s * at.s * at.s) + at.K_vG * at.G_v
     return at.room, at.L_y, at.L_v, L_yy, L_yv, L_vv
 
@@ -202,25 +204,25 @@ def density(y, v, cell, load):
 def uniform_tube(y, cell, load):
     """``(sqrt(G), T sqrt(G), L)`` at slope 0."""
     y = y + 0.0 * cell[0]  # a number beside a vector stands for all of it
-    T = load[3] * y * y + load[4]
+    T = load.p * y * y + load.f
     _, G_1, psi, _, _ = place(y, 0.0, T, cell, load)
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     pull = T * s
-    return s, pull, pull - stored(y, G_1, psi, load[6] * cell[2], load[1], load[2]) + load[5] * psi
+    return s, pull, pull - stored(y, G_1, psi, load.e * cell[2], load.rubber, load.wall) + load.m * psi
 
 
 @kernel
 def integrals(at, y, cell, load):
     """Axial length s, volume y^2 s, twist psi, strain energy W; and which families are taut."""
-    return at.s, y * y * at.s, at.psi, stored(y, at.G_1, at.psi, cell[2], load[1], load[2]), at.kind
+    return at.s, y * y * at.s, at.psi, stored(y, at.G_1, at.psi, cell[2], load.rubber, load.wall), at.kind
 
 
 @kernel
 def integrands(y, v, cell, load):
     """:func:`integrals` at one point."""
-    _, G_1, psi, taut_alpha, taut_beta = place(y, v, load[3] * y * y + load[4], cell, load)
+    _, G_1, psi, taut_alpha, taut_beta = place(y, v, load.p * y * y + load.f, cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    return s, y * y * s, psi, stored(y, G_1, psi, cell[2], load[1], load[2]), kind_of(taut_alpha, taut_beta)
+    return s, y * y * s, psi, stored(y, G_1, psi, cell[2], load.rubber, load.wall), kind_of(taut_alpha, taut_beta)
 
 
 @kernel
@@ -232,7 +234,7 @@ def conjugate(y, v, cell, load, direction):
 @kernel
 def along(at, y, v, direction):
     """:func:`conjugate` where the :class:`State` is known."""
-    T, T_y, m = direction[3] * y * y + direction[4], 2.0 * direction[3] * y, direction[5]
+    T, T_y, m = direction.p * y * y + direction.f, 2.0 * direction.p * y, direction.m
     pull, c_mu = 0.5 * T / at.s, 0.0
     if at.kind == NONE_TAUT:
         det = at.K_GG * at.K_pp - at.K_Gp * at.K_Gp
@@ -259,11 +261,11 @@ def tensions(y, v, cell, load, near):
 @kernel
 def at_slope(y, v, cell, load):
     """``(G - v^2, tau alpha, tau beta)``: the room of the slope, and the multipliers of both families."""
-    T = load[3] * y * y + load[4]
+    T = load.p * y * y + load.f
     room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
-    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load.e * cell[2], load.rubber, load.wall)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], T, load[5], W_G, W_p)
+    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], T, load.m, W_G, W_p)
     return room, a, b
 
 
@@ -272,10 +274,10 @@ def at_flux(y, flux, cell, load):
     """``(psi, G - 1, tau alpha, tau beta)`` where the flux q = T v/s is known and not the slope, which an upright meridian
     has no digits for: T/s is sqrt(T^2 + q^2)/sqrt(G), as at slope 0 under that resultant.
     """
-    T = load[3] * y * y + load[4]
+    T = load.p * y * y + load.f
     pull = sqrt(T * T + flux * flux)
     _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, pull, cell, load)
-    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load[6] * cell[2], load[1], load[2])
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load.e * cell[2], load.rubber, load.wall)
     s = sqrt(max(1.0 + G_1, NO_ROOM))
-    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load[5], W_G, W_p)
+    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load.m, W_G, W_p)
     return psi, G_1, a, b

@@ -5,6 +5,7 @@ the tube with clamped ends, and its stretch lies between 1 and the uniform one. 
 """
 
 from ...jit import kernel
+from ..load import Load
 from .wall import may_go_slack
 
 FIRST_STEP = 0.25  # of the way from one load to the other
@@ -19,14 +20,14 @@ FAR = 8.0  # end layers per half tube, up to which clamped ends may turn back a 
 @kernel
 def between(start, end, t):
     """The load a fraction ``t`` of the way from ``start`` to ``end``."""
-    return (
-        start[0] + t * (end[0] - start[0]),
-        end[1],
-        end[2],
-        start[3] + t * (end[3] - start[3]),
-        start[4] + t * (end[4] - start[4]),
-        start[5] + t * (end[5] - start[5]),
-        end[6],
+    return Load(
+        start.gamma + t * (end.gamma - start.gamma),
+        end.rubber,
+        end.wall,
+        start.p + t * (end.p - start.p),
+        start.f + t * (end.f - start.f),
+        start.m + t * (end.m - start.m),
+        end.e,
     )
 
 
@@ -85,7 +86,7 @@ def dips(density, u, trial, cell, start, end, low, high, half, drawn):
         slope = -L_yy
         if not slope > 0.0 or may_let_go(here, L_yy, L_vv, half, drawn):
             return True
-        if i >= 2 and second < first and second < slope and not may_go_slack(end[2]):
+        if i >= 2 and second < first and second < slope and not may_go_slack(end.wall):
             bend = first - 2.0 * second + slope
             if second - (slope - first) * (slope - first) / (8.0 * bend) <= 0.0:
                 return True
@@ -103,7 +104,7 @@ def rising(density, u, trial, cell, start, end, low, high, half, drawn):
 def follow(density, u, cell, start, end, half, drawn):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the fraction reached (1: all)."""
     t, step = 0.0, FIRST_STEP
-    by_load = start[0] == end[0]
+    by_load = start.gamma == end.gamma
     while t < 1.0:
         ahead = min(1.0, t + step)
         load = between(start, end, ahead)
