@@ -14,7 +14,8 @@ ALONG = ("slack_alpha", "slack_beta", "outer_radius")  # and behind them those o
 
 def problem_rows(design, energy, thick=False, threads=0.0) -> np.ndarray:
     """Dimensionless problems (n, 11), or (n, 13) where the wall is ``thick`` or the ``threads`` are not two bonded families
-    (:data:`.description.tube_model.THREADS`), of a ``design``: name -> array (n,), in SI units and degrees, loads among them.
+    (:data:`.description.tube_model.THREADS`), of a ``design``: name -> array (n,), in SI units and degrees, loads among
+    them.
     """
     return np.column_stack(problem_columns(design, energy, thick, threads))
 

@@ -152,8 +152,8 @@ def solve(
 
     ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, > OUTPUTS, WIDTH) takes values
     and bounds of the lanes that are met, of physical tubes those of :mod:`..along.places` behind them; ``found`` (2, ...) is
-    scratch. ``kept`` (WIDTH, 5, ...), unless None, takes their finest meshes as :func:`..along.profile.at_stations` reads them, with
-    ``doublings``. Returns masks: ``(met, alpha fibers would have to push, beta fibers would)``.
+    scratch. ``kept`` (WIDTH, 5, ...), unless None, takes their finest meshes as :func:`..along.profile.at_stations`
+    reads them, with ``doublings``. Returns masks: ``(met, alpha fibers would have to push, beta fibers would)``.
     """
     # the energy at a low pressure is little beside the work whose error it takes: more than the accuracy of the rest
     tolerance = max(min(accuracy * accuracy, LARGEST_TOLERANCE), SMALLEST_TOLERANCE)

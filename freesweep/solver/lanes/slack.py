@@ -15,8 +15,9 @@ from .vector import get, mask_of, put, select, spread
 @kernel
 def look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready):
     """Masks: where the alpha, and where the beta family would have to push, or is slack, somewhere along half a tube, on its
-    finest mesh of n cells. Of physical tubes ``out`` (2, > first + 2, WIDTH) takes the numbers of :mod:`..along.places` and their
-    bounds in the lanes that are ``ready``, from the row ``first`` on; ``seen`` (4, > n + 1, WIDTH) is scratch.
+    finest mesh of n cells. Of physical tubes ``out`` (2, > first + 2, WIDTH) takes the numbers of :mod:`..along.places`
+    and their bounds in the lanes that are ``ready``, from the row ``first`` on; ``seen`` (4, > n + 1, WIDTH) is
+    scratch.
     """
     return _look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready, load.wall)
 
