@@ -154,7 +154,7 @@ def test_both_energies_agree_for_mckibben_muscles(seed):
     draw = rng(50 + seed)
     alpha, y = draw.uniform(20, 80), draw.uniform(0.9, 1.02)
     cell = (0.0, tan(radians(alpha)), 0.7)
-    principal, full = ((1.01, (0.4, 0.3, 0.1), (shear,), 1.5, 0.2, 0.0, 1.0) for shear in (0.0, 1.0))
+    principal, full = (Load(1.01, (0.4, 0.3, 0.1), (shear,), 1.5, 0.2, 0.0, 1.0) for shear in (0.0, 1.0))
     assert lagrangian.strain_energy(y, cell, principal) == lagrangian.strain_energy(y, cell, full)
     assert lagrangian.density(y, 0.1, cell, principal) == lagrangian.density(y, 0.1, cell, full)
 
