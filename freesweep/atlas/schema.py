@@ -74,12 +74,9 @@ VARIABLES = {
     },
     "locked_strain_energy": Variable("J", "strain energy of the wall, locked", (*LOADS, *HELD)),
     **{
-        f"locked_{name}": Variable(
-            units,
-            f"{long_name}, locked",
-            (*LOADS, *HELD, *(each for each in MATERIAL if units == "1" or each != "wall")),
-        )
+        f"locked_{name}": Variable(units, f"{long_name}, locked", (*LOADS, *HELD, *MATERIAL))
         for name, (units, long_name) in _ALONG.items()
+        if name.startswith("slack")
     },
     "blocked_force": Variable("N", "force that holds the length, free to rotate", ("force", "held_rotation")),
     "blocked_torque": Variable("N m", "torque that holds the rotation, length free", ("torque", *HELD_LENGTHS)),
@@ -160,7 +157,6 @@ SHORT = {
     **{"locked_deformed_length": "locked length", "locked_rotation": "locked rotation"},
     **{"locked_mid_radius": "locked radius", "locked_volume": "locked volume"},
     "locked_strain_energy": "locked strain energy",
-    "locked_outer_radius": "locked outer radius",
     **{"locked_slack_alpha": "locked slack share, alpha", "locked_slack_beta": "locked slack share, beta"},
     **{"blocked_force": "blocked force", "blocked_torque": "blocked torque"},
     **{"ideal_blocked_force": "ideal blocked force", "ideal_blocked_torque": "ideal blocked torque"},

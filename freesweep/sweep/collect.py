@@ -42,7 +42,7 @@ def groups(sweep) -> list:
         (FREE, _locked, shapes, []),
         (FREE, _locked, ["locked_strain_energy"], ["locked_status"]),
     ]
-    wanted += [(FREE, _locked, [f"locked_{name}"], []) for name in along]
+    wanted += [(FREE, _locked, [f"locked_{name}" for name in ALONG[:2]], [])] if along else []
     wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
     if (
         not {"alpha", "beta", "radius"} & set(sweep.profiles) and not sweep.model.is_loose
