@@ -22,6 +22,7 @@ from .unit_warnings import doubts, warn_of
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
 SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
+APART = SMALLEST_DIFFERENCE * (1.0 - 1e-9)  # what rounding may leave of it, as a search along that border needs
 LARGEST_EXTENSION = 10.0  # of fibers: a stretch, not a percentage
 ENERGIES = ("full", "principal")
 HASHED = np.linspace(0.0, 1.0, 9)  # places of profiles whose values go into a hash
@@ -263,7 +264,7 @@ class Actuator:
                 f" locked shape free; choose angles at least {SMALLEST_DIFFERENCE:g} degree apart, or beta=None, or loose"
                 " fibers that share the angle all along"
             ]
-        if abs(alpha[closest] - beta[closest]) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
+        if abs(alpha[closest] - beta[closest]) < APART or len(set(np.sign(alpha - beta))) > 1:
             return [
                 f"alpha, beta: {alpha[closest]:g} and {beta[closest]:g} degree are less than {SMALLEST_DIFFERENCE:g} degree"
                 " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"

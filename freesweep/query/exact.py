@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numba import config
 
-from ..description.actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
+from ..description.actuator import APART, LARGEST_ANGLE
 from ..description.tube_model import MODELS
 from ..scaling import ALONG, OUTPUTS, output_scales, problem_rows, wall_volume_inside
 from ..solver.status import PENDING
@@ -32,7 +32,7 @@ def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["s
     wide = np.maximum(np.abs(design["alpha"]), np.abs(design["beta"])) >= LARGEST_ANGLE
     outer = design["radius"] + design["wall"]
     fibers = (design["fiber_radius"] < design["radius"]) | (design["fiber_radius"] > outer * (1.0 + 1e-12))
-    status[(apart < SMALLEST_DIFFERENCE * (1.0 - 1e-12)) | wide | fibers] = INVALID
+    status[(apart < APART) | wide | fibers] = INVALID
     status[apart == 0.0] = DEGENERATE
     good = np.flatnonzero(status == NOT_CONVERGED)
     own = {name: column[good] for name, column in design.items()}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..description.actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
+from ..description.actuator import APART, LARGEST_ANGLE
 from ..description.tube_model import fiber_surface
 from ..ideal import ideal_blocked
 from ..status import INVALID, OK, OUTSIDE
@@ -22,7 +22,7 @@ def ideal_answer(frame, name, values) -> dict:
     with np.errstate(all="ignore"):
         value, error, status = ideal_blocked(name, alpha, beta, fiber_surface(own, frame.model), pressure)
         apart, widest = np.abs(alpha - beta), np.maximum(np.abs(alpha), np.abs(beta))
-    close = (apart < SMALLEST_DIFFERENCE * (1.0 - 1e-9)) & (apart > 0.0)
+    close = (apart < APART) & (apart > 0.0)
     status = np.where(close | (widest >= LARGEST_ANGLE), INVALID, status)
     inside = np.ones(alpha.shape, bool)
     for key in own:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..description.actuator import LARGEST_ANGLE, SMALLEST_DIFFERENCE
+from ..description.actuator import APART, LARGEST_ANGLE, SMALLEST_DIFFERENCE
 from ..description.profiles import as_profile, together
 from ..scaling import problem_rows
 from ..status import DEGENERATE, INVALID, OK
@@ -74,7 +74,7 @@ def known_status(design, profiles) -> np.ndarray:
     if "wall" in profiles:
         wall = as_profile(profiles["wall"]).samples().min()
     fibers, outer = design["fiber_radius"], design["radius"] + wall
-    invalid = (apart < SMALLEST_DIFFERENCE) | (largest >= LARGEST_ANGLE)
+    invalid = (apart < APART) | (largest >= LARGEST_ANGLE)
     if "radius" not in profiles:  # of bodies it is given by a word
         invalid |= (fibers < design["radius"]) | (fibers > outer * (1.0 + 1e-12))
     return np.where(apart == 0.0, DEGENERATE, np.where(invalid, INVALID, OK))

@@ -34,7 +34,7 @@ from pathlib import Path
 import numpy as np
 
 from ..atlas.schema import HELD, PARAMETERS, YEOH
-from ..description.actuator import ENERGIES, SMALLEST_DIFFERENCE
+from ..description.actuator import APART, ENERGIES, SMALLEST_DIFFERENCE
 from ..description.families import FAMILIES, is_none
 from ..description.profiles import as_profile, together
 from ..description.tube_model import DEFAULT, FIBER_PLACES, MODELS, TubeModel, word_faults
@@ -253,7 +253,7 @@ def _check_profiles(faults, profiles, fixed, given):
     if None in angles or not any(name in profiles for name in ("alpha", "beta")):
         return
     alpha, beta = together(*map(as_profile, angles))
-    if np.min(np.abs(alpha - beta)) < SMALLEST_DIFFERENCE or len(set(np.sign(alpha - beta))) > 1:
+    if np.min(np.abs(alpha - beta)) < APART or len(set(np.sign(alpha - beta))) > 1:
         faults.add(
             "actuator.alpha, actuator.beta",
             f"the fiber families cross, or are less than {SMALLEST_DIFFERENCE:g} degree apart, somewhere along the tube: no"

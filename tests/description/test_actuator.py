@@ -98,6 +98,13 @@ def test_one_fiber_family_leaves_the_shape_free():
     assert Actuator(**PAM | {"alpha": 30, "beta": 30.5}).beta == 30.5
 
 
+def test_angles_that_rounding_brings_a_little_too_close_are_allowed():
+    """2.018 - 1.518 is less than 0.5."""
+    assert 2.018 - 1.518 < 0.5
+    tube = Actuator(alpha=1.518, beta=2.018, length=0.1, radius=5e-3, wall=1e-3, material=MooneyRivlin(1e5, 5e4))
+    assert (tube.alpha, tube.beta) == (1.518, 2.018)
+
+
 def test_fibers_lie_in_the_wall():
     outer = PAM["radius"] + PAM["wall"]
     assert Actuator(**PAM).fiber_surface == PAM["radius"]
