@@ -2,6 +2,8 @@
 
 from types import FunctionType
 
+from ..solver.load import Load
+
 OPERATIONS = ("+", "-", "*", "/", "sqrt")  # signs, minima and maxima are not counted
 
 
@@ -68,8 +70,8 @@ def density_flops(module) -> int:
         return next(value for value in values if isinstance(value, Expression))._make("either", *values)
 
     density = _plain(module, sqrt=sqrt, min=either, max=either)["density"]
-    y, v = Expression(known, "y"), Expression(known, "v")
-    todo, seen, flops = list(density(y, v, (0.1, 0.6, 0.7), (1.01, (0.5,), (1.0,), 1.0, 0.1, 0.1, 1.0))), set(), 0
+    y, v, load = Expression(known, "y"), Expression(known, "v"), Load(1.01, (0.5,), (1.0,), 1.0, 0.1, 0.1, 1.0)
+    todo, seen, flops = list(density(y, v, (0.1, 0.6, 0.7), load)), set(), 0
     while todo:
         value = todo.pop()
         if isinstance(value, Expression) and id(value) not in seen:

@@ -153,6 +153,8 @@ class PhysicalTube(Physics):
 
     def _first(self, place, y, v, share, H, D, gg, T, m, area, rubber, wall):
         """From the kernel itself, in some cells."""
+        from ..solver.load import Load
+
         some = np.unique(np.linspace(0, len(y) - 1, min(len(y), FIRST_CELLS)).astype(int))
         four, taut = np.zeros((4, len(some))), np.ones((2, len(some)), bool)
 
@@ -164,7 +166,7 @@ class PhysicalTube(Physics):
         for k, j in enumerate(some):
             cell = at(H, j), at(D, j), at(area, j)
             own, layers = tuple(at(c, j) for c in rubber), tuple(at(c, j) for c in wall)
-            load = (gamma, own, layers, 0.0, 0.0, float(m[j]), 1.0)
+            load = Load(gamma, own, layers, 0.0, 0.0, float(m[j]), 1.0)
             _, four[0, k], four[1, k], taut[0, k], taut[1, k] = place(float(y[j]), float(v[j]), float(T[j]), cell, load)
         return Settled(share[some], four, taut[0], taut[1])
 
