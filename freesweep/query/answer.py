@@ -13,8 +13,8 @@ from .slack import UNKNOWN
 
 CUBIC, LINEAR = "cubic", "linear"
 SORTED = 2000  # points from which on sorting pays
-# [degree], and of the length: smaller rotations, and shares, are held to the tolerance of these
-FLOORS = {reference.ROTATION: 0.1, reference.SLACK_ALPHA: 1.0, reference.SLACK_BETA: 1.0}
+# [degree]: smaller rotations are held to the tolerance of this one; shares of the length to a hundredth at the usual one
+FLOORS = {reference.ROTATION: 0.1, reference.SLACK_ALPHA: 10.0, reference.SLACK_BETA: 10.0}
 LOAD_FLOOR = 0.01  # of pi r^2 P, pi r^3 P: the same for blocked force and torque
 
 
