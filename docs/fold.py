@@ -17,6 +17,7 @@ from freesweep.scaling import problem_rows
 from freesweep.solver.free.branch import begin
 from freesweep.solver.free.meshes import take
 from freesweep.solver.free.space import make_space, make_track
+from freesweep.solver.load import Load, by
 from freesweep.solver.numerics.bordered import FOLLOWED
 from freesweep.solver.numerics.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike
 from freesweep.solver.numerics.path import NOTHING
@@ -43,8 +44,8 @@ def branch():
     course[0, 0, :, 0] = problem[:3]
     cells, edges, places = problem[None, :3].copy(), np.array([0, CELLS]), np.array([0.0, half])
     tube = Tube(course, edges, cells, True, CELLS, places)
-    rest = 1.0, rubber_of(problem), wall_of(problem, SOURCE), 0.0, 0.0, 0.0, 1.0
-    path = Loads(rest, (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0), 0.0, False, NOTHING)
+    rest = Load(1.0, rubber_of(problem), wall_of(problem, SOURCE), 0.0, 0.0, 0.0, 1.0)
+    path = Loads(rest, by(1.0, 0.0, 0.0), 0.0, False, NOTHING)
     space, track = make_space(CELLS, 1), make_track(CELLS, True, False)
     how = lagrangian.density, lagrangian.conjugate, track, CELLS, cells, path
     _, mu, slope = begin(track, space, tube, path)

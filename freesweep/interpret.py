@@ -113,6 +113,7 @@ def _is_done(entry, arguments, spent, seconds):
         return False
     finally:
         spent[1] += time.thread_time() - begun
+        _clock.allow(np.inf)
     for argument, copy in zip(arguments, copies):
         if isinstance(argument, np.ndarray):
             argument[...] = copy

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize
 
 from freesweep.solver.cells import nothing_yet
-from freesweep.solver.load import Load
+from freesweep.solver.load import Load, loaded
 from freesweep.solver.physics import membrane, physical, relaxed, wall
 
 QUICK, MANY = 2000, 100_000
@@ -166,7 +166,7 @@ def test_a_bonded_membrane_is_the_source_s():
     draw = np.random.default_rng(5)
     for _ in range(300):
         y, v, cell, load = random_point(draw, loose=0.0, room=0.05)
-        thin, source = (*load[:2], (1.0, 0.0, 0.0), *load[3:]), (*load[:2], (1.0,), *load[3:])
+        thin, source = Load(*load[:2], (1.0, 0.0, 0.0), *load[3:]), Load(*load[:2], (1.0,), *load[3:])
         if membrane.density(y, v, cell, source)[0] < 0.05:
             continue
         direction = Load(0.0, 0.0, 0.0, 0.3, -0.7, 1.9, 0.0)
@@ -187,7 +187,7 @@ def test_what_is_conjugate_to_a_load_is_the_change_of_the_density_with_it():
     for _ in range(300):
         y, v, cell, load = random_point(draw, room=0.05)
         direction = Load(0.0, 0.0, 0.0, 0.3, 0.7, 1.9, 0.0)
-        low, high = ((*load[:3], *(load[k] + e * direction[k] for k in (3, 4, 5)), 1.0) for e in (-d, d))
+        low, high = (loaded(load, direction, e) for e in (-d, d))
         c, c_y, c_v, c_mu = physical.conjugate(y, v, cell, load, direction)
         first, last = physical.density(y, v, cell, low), physical.density(y, v, cell, high)
         assert (value(y, v, cell, high) - value(y, v, cell, low)) / (2 * d) == pytest.approx(c, rel=1e-5, abs=1e-6)

@@ -253,6 +253,7 @@ def test_what_is_not_there_for_such_tubes_is_refused_with_a_reason():
 # --- held
 
 
+@pytest.mark.long  # as the next: the scalar kernels of held physical tubes are compiled for them alone
 @pytest.mark.parametrize(
     ("more", "tolerance"), [({}, 1e-7), ({"alpha": 30, "fibers": "loose"}, 2e-5)], ids=["balloon", "one loose family"]
 )
@@ -266,6 +267,7 @@ def test_a_held_length_is_that_of_brute_force(more, tolerance):
     assert found["force"].item() / (np.pi * r**2 * RUBBER.c10) == pytest.approx(expected[5], rel=tolerance)
 
 
+@pytest.mark.long
 def test_a_held_rotation_of_one_family_is_that_of_brute_force():
     actuator, pressure = tube(30, fibers="loose"), 4e4
     found = blocked_torque(actuator, pressure, x=0.0)

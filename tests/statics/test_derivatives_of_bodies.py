@@ -11,6 +11,7 @@ from freesweep.derivative.asked import Asked
 from freesweep.derivative.dual import Dual
 from freesweep.derivative.physics import BY_V, BY_Y, OWN
 from freesweep.solver import batch, hold_batch
+from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian as kernels
 from freesweep.statics import read_course
 from freesweep.status import OK
@@ -82,7 +83,7 @@ def test_a_body_s_density_is_that_of_the_kernels(more):
     c10 = tube.material.c10
     wall = (1.0, 1.0, 1.0) if tube.is_loose else (1.0,)
     rubber = (tube.material.c01 / c10, 0.0, 0.0) if tube.is_loose else (tube.material.c01 / c10,)
-    load = (1.0, rubber, wall, 5e4 / c10, 0.5 / (np.pi * r**2 * c10), 1e-3 / (np.pi * r**3 * c10), 1.0)
+    load = Load(1.0, rubber, wall, 5e4 / c10, 0.5 / (np.pi * r**2 * c10), 1e-3 / (np.pi * r**3 * c10), 1.0)
     for k in range(3):
         place = 0 if share[k] < 0.5 else 1  # the spline's pieces
         cell = tuple(parts.numbers(0.5 * place, 0.5 * place + 0.5, 2.0 * share[k] - place).tolist())

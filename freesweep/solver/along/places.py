@@ -92,14 +92,26 @@ def together(fine, coarse):
 
 
 @kernel
+def square_at(course, segment, k, wall):
+    """Outer radius squared of the undeformed tube at one of the SAMPLES along a segment."""
+    return outer_square(1.0, 0.0, at_point(course, segment, k / SAMPLES), wall)
+
+
+@kernel
 def rest(course, wall, numbers, bounds):
     """The numbers of the undeformed tube: nothing pulls, and nothing is slack."""
     if len(wall) == 1:
         return
-    most = 0.0
+    most, missed = 0.0, 0.0
     for segment in range(course.shape[0]):
         for k in range(SAMPLES + 1):
-            cell = at_point(course, segment, k / SAMPLES)
-            most = max(most, outer_square(1.0, 0.0, cell, wall))
+            inner = min(max(k, 1), SAMPLES - 1)  # a curve bends at its ends as beside them
+            before, middle, after = (
+                square_at(course, segment, inner - 1, wall), square_at(course, segment, inner, wall),
+                square_at(course, segment, inner + 1, wall),
+            )  # fmt: skip
+            here = square_at(course, segment, k, wall)
+            if here > most:
+                most, missed = here, CURVED * abs(before - 2.0 * middle + after)
     for k in range(len(numbers)):
-        numbers[k], bounds[k] = (sqrt(most) if k == OUTER else 0.0), 0.0
+        numbers[k], bounds[k] = (sqrt(most), 0.5 * missed / sqrt(most)) if k == OUTER else (0.0, 0.0)
