@@ -16,7 +16,6 @@ from freesweep import (
     blocked_force,
     blocked_torque,
     closed_form,
-    holding,
     inflate,
     interpret,
     lock,
@@ -57,7 +56,7 @@ def no_clock(monkeypatch):
 @pytest.fixture
 def plain(monkeypatch):
     """States of membranes without the compiler: there is no machine code of bodies for all tests."""
-    for states in (batch, hold_batch, holding):
+    for states in (batch, hold_batch, interpret):
         monkeypatch.setattr(
             states, "at_once", lambda _, __, entry, *arguments: interpret._is_done(entry, arguments, [0, 0.0], 300.0)
         )
