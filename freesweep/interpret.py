@@ -18,10 +18,7 @@ from numba.core.dispatcher import Dispatcher
 from .jit import cache_folder
 from .kernel_cache import KernelCache, compiled, stem
 
-FEW, SECONDS = (
-    32,
-    3.0,
-)  # states, and [s] of processor time, in one process: from here on the compiler's time is well spent
+FEW, SECONDS = 32, 3.0  # states, and [s] of processor time, in one process: from here on compiling is worth its time
 FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
 _spent = {}  # awaited entry point -> [states, seconds] in plain Python

@@ -14,9 +14,7 @@ from ..numerics.properties_along import at_point
 from ..physics import body, lagrangian, over_cell
 
 NUMBERS = SLACK_ALPHA, SLACK_BETA, OUTER = range(3)  # shares without a pull, and the largest outer radius
-PLACE, ALPHA, BETA, SQUARE = range(
-    4
-)  # rows of what is seen: where, multipliers less the least pull, outer radius squared
+PLACE, ALPHA, BETA, SQUARE = range(4)  # rows of what is seen: multipliers less the least pull, outer radius squared
 DOUBT = 0.5  # of the way between two places: how far off the end of a pull may be
 FAINT = 1e-6  # of the load: less of a pull may be none
 CURVED = 0.125  # of a second difference: by how much a curve passes the largest of its samples
