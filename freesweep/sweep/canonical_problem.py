@@ -14,14 +14,8 @@ from ..scaling import problem_rows
 from ..status import DEGENERATE, INVALID, OK
 
 H, D, FORCE, TORQUE = 0, 1, 6, 7  # columns of a problem
-PHYSICAL, TARGET, SIZE, BLOCK, COLUMNS = (
-    11,
-    13,
-    14,
-    15,
-    16,
-)  # after them: two of physical tubes, 0 of others; what is held;
-# radius if the wall varies; block of materials
+# after them: two of physical tubes, 0 of others; what is held; radius if the wall varies; block of materials
+PHYSICAL, TARGET, SIZE, BLOCK, COLUMNS = 11, 13, 14, 15, 16
 KEPT_BITS = 43  # of 52: rounding differs by the way units were given (13 digits)
 
 

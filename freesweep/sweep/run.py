@@ -34,12 +34,8 @@ from .spec import Sweep, read_file
 from .unit_doubts import doubts_of
 
 SHARD_EQUILIBRIA = 8192  # a second of work or less: what an interruption can cost, for each thread
-HELD_COST, VARYING_COST, PHYSICAL_COST = (
-    32,
-    8,
-    16,
-)  # of a held state, of tubes that vary, of physical ones: in those of a
-# free state of others
+# of a held state, of tubes that vary, of physical ones: in those of a free state of others
+HELD_COST, VARYING_COST, PHYSICAL_COST = 32, 8, 16
 
 
 def run_sweep(

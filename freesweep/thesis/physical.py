@@ -23,11 +23,8 @@ from .rotating import COLOURS
 
 PRESSURES = np.linspace(5e3, 100e3, 20)  # [Pa]
 HELD = 0.1e6  # of Figure 2-13 [Pa]
-STEPS, FIRST, CLOSE = (
-    20,
-    0.01,
-    1e-5,
-)  # secants at each pressure; the first, of the torque; degrees that are as good as none
+# secants at each pressure; the first, of the torque; degrees that are as good as none
+STEPS, FIRST, CLOSE = 20, 0.01, 1e-5
 
 
 def _free(name, pressure, torque):

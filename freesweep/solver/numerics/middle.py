@@ -15,10 +15,8 @@ from ...jit import kernel
 
 NEAR = 1e-3  # share of the layer that is left at the node
 LONG = 1e-3  # and in the middle, at most: else the last node tells its stretch
-MISSED, BENT = (
-    0.005,
-    0.5,
-)  # of what is left in the middle; times the change of k^2 from u to the node: it is not linear there
+# of what is left in the middle; times the change of k^2 from u to the node: it is not linear there
+MISSED, BENT = 0.005, 0.5
 ALLOWED = 0.1  # of the accuracy may be missed
 STEPS = 6  # of Newton's method, from the stretch of the last node to u
 NOT_LONG = -1
