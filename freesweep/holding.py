@@ -10,25 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .derivative.request import asked_of
 from .description.actuator import Actuator
 from .description.faults import ActuatorError
 from .description.given import numbers
-from .description.loads import read_load, read_stations, warn_of_loads
 from .description.options import read_switch
-from .description.profiles import SENSITIVITY, widened
 from .description.quantities import Names, Quantities
-from .results import dataset, near_stations
-from .scaling import problem_rows
-from .statics import inflate, is_solved_whole, read_course, undeformed
-from .thick_wall import thin_wall_attributes
-from .worst_places import with_own
+from .held_states import hold
+from .statics import inflate
 
 if TYPE_CHECKING:
     import xarray as xr
 
-HALF_CELLS = 48  # of half a tube that is the same all along
-MANY = 200  # states among which it is worth to look first for those that nothing holds
 CORRECTION_STATIONS = 2001
 
 
@@ -69,8 +61,8 @@ def blocked_force(
     if rotation is not None:
         raise ActuatorError([f"rotation: {BOTH_HELD}"])
     held = tube.length if deformed_length is None and isinstance(tube, Actuator) else deformed_length
-    arguments = tube, "deformed_length", held, "torque", torque, "force", pressure, x, accuracy
-    return _hold(*arguments, derivatives=derivatives, tied=deformed_length is None)
+    given = {"deformed_length": held, "torque": torque, "pressure": pressure}
+    return hold(tube, given, x, accuracy, derivatives=derivatives, tied=deformed_length is None)
 
 
 def blocked_torque(
@@ -124,123 +116,7 @@ def blocked_torque(
             )
         if buckled and tube.varies:
             raise ActuatorError(["buckled: only a tube that is the same all along has a straight state to buckle from"])
-    return _hold(tube, "rotation", rotation, "force", force, "torque", pressure, x, accuracy, buckled, derivatives)
-
-
-def _hold(
-    tube, held_name, held, load_name, load, unknown, pressure, x, accuracy, buckled=False, derivatives=None, tied=False
-):  # fmt: skip
-    from .interpret import at_once
-    from .solver.along.profile import FIELDS
-    from .solver.batch import uniform
-    from .solver.halves import in_two_halves
-    from .solver.held.held_state import HELD_LENGTH, HELD_ROTATION
-    from .solver.held.held_states import hold_many
-    from .solver.hold_batch import refuse
-    from .solver.problem import wall_columns
-    from .solver.status import OK, PENDING
-
-    faults = []
-    units = {"deformed_length": "m", "rotation": "degree", "force": "N", "torque": "N m", "pressure": "Pa"}
-    domains = {"pressure": {"least": 0.0}, "deformed_length": {"positive": True}}
-    axes = {
-        name: read_load(name, value, units[name], faults, **domains.get(name, {}))
-        for name, value in ((held_name, held), (load_name, load), ("pressure", pressure))
-    }
-    names = asked_of(tube, derivatives, faults, ("pressure", load_name), held_name)
-    stations, accuracy = read_stations(tube, x, accuracy, faults)
-    warn_of_loads(tube, **{name: axes[name] for name in (load_name, "pressure")}, stacklevel=4)
-    grid = np.meshgrid(*axes.values(), indexing="ij")
-    shape, count = grid[0].shape, grid[0].size
-    targets, others, pressures = (array.ravel() for array in grid)
-    r, c10 = tube.fiber_surface, tube.material.c10
-    design = {name: np.full(1, value) for name, value in tube.design().items()}
-    row = problem_rows(
-        design | {"force": np.zeros(1), "torque": np.zeros(1)}, tube.energy, tube.is_thick, tube.threads
-    )[0]
-    whole, error = is_solved_whole(tube) or buckled, 0.0
-    if tube.varies:
-        solved, error = read_course(tube, accuracy)
-    else:
-        solved = in_two_halves(row, HALF_CELLS) if whole else uniform(HALF_CELLS)
-    every = with_own(tube, stations)
-    unique, index = near_stations(tube, every, whole)
-    values, bounds = np.full((2, count, 6), np.nan)
-    codes = np.full(count, PENDING)
-    stable, slack, paths = np.zeros((3, count), np.int64)
-    least = np.full((count, 2), np.nan)
-    fields = np.full((count, FIELDS, len(unique)), np.nan)
-    held_is_length = held_name == "deformed_length"
-    states = (
-        pressures / c10, others / (np.pi * r ** (3 if held_is_length else 2) * c10),
-        targets / r if held_is_length else np.radians(targets), HELD_LENGTH if held_is_length else HELD_ROTATION,
-    )  # fmt: skip
-    if count >= MANY and not whole:
-        refuse(row, *states, codes)
-    arguments = (
-        row[None], wall_columns(row), np.array([0, count]), *states, bool(buckled), *solved,
-        accuracy - SENSITIVITY * error, values, bounds, codes, stable, slack, paths, least, unique, fields,
-    )  # fmt: skip
-    if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
-        hold_many(*arguments)
-    bounds = widened(values, bounds, error)
-    profiles = fields.reshape(*shape, FIELDS, -1)[..., index]
-    if tube.varies:  # whose angles at rest the kernels do not know
-        at_rest = (codes == OK) & (pressures == 0.0) & (others == 0.0) & (values[:, 5] == 0.0)
-        profiles[at_rest.reshape(shape)] = undeformed(tube, every, whole)
-    scale = np.pi * r ** (2 if held_is_length else 3) * c10
-    found = {
-        "status": codes.reshape(shape),
-        "stable": stable.reshape(shape),
-        "slack_fiber": slack.reshape(shape),
-        "values": values[:, :5].reshape(*shape, 5),
-        "bounds": bounds[:, :5].reshape(*shape, 5),
-        "fields": (profiles, whole),
-        "extra": {
-            unknown: (tuple(axes), values[:, 5].reshape(shape) * scale),
-            f"{unknown}_error": (tuple(axes), bounds[:, 5].reshape(shape) * scale),
-        },
-    }
-    if buckled:
-        found["extra"] |= {
-            name: (tuple(axes), least[:, k].reshape(shape) * c10)
-            for k, name in enumerate(("least_buckled_pressure", "least_buckled_pressure_error"))
-        }
-    else:
-        found["extra"]["held_path"] = tuple(axes), paths.astype(np.int8).reshape(shape)
-    result = dataset(tube, axes, stations, found, without=(held_name,))
-    result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy, "buckled": int(buckled)}
-    if tube.is_loose:
-        result.attrs["fibers"] = "loose"
-    result.attrs |= thin_wall_attributes(tube)
-    if not buckled and np.any(result["held_path"] == 1):
-        result.attrs["comment"] = (
-            "held_path: the way from rest with the undeformed length or rotation held ends elsewhere, or the wall would have"
-            " to be pushed on it; some states were found from the free one"
-        )
-    if not names:
-        return result
-    from .derivative.asked import Asked
-    from .derivative.attach import attach
-
-    asked = Asked(
-        tube,
-        names,
-        accuracy,
-        solved if tube.varies else None,
-        error,
-        held_name,
-        unknown,
-        tied,
-        buckled,
-    )
-    at = [array.reshape(result["status"].shape) for array in (pressures, others, targets)]
-    loads = {"pressure": at[0], load_name: at[1], unknown: result[unknown].values}
-
-    def again(x, guess):
-        return _hold(tube, held_name, held, load_name, load, unknown, pressure, x, guess, buckled)
-
-    return attach(result, asked, loads, again, at[2])
+    return hold(tube, {"rotation": rotation, "force": force, "pressure": pressure}, x, accuracy, buckled, derivatives)
 
 
 def corrected_torque(tube: Actuator, pressure: Quantities) -> Any:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import freesweep as fs
-from freesweep import holding
+from freesweep import held_states
 from freesweep.first_integral import held as quadrature
 from freesweep.first_integral.uniform import Tubes
 from freesweep.solver import batch, hold_batch
@@ -145,6 +145,6 @@ def test_a_force_stroke_curve_of_many_states_refuses_what_few_states_refuse():
     lengths, pressures = 0.1 * np.linspace(0.8, 1.2, 21), np.array([1e4, 5e4, 2e5])
     few = [fs.blocked_force(muscle, p, lengths, x=0.0)["status"].values for p in pressures]
     many = fs.blocked_force(muscle, pressures, lengths, [-0.01, 0.0, 0.01, 0.02], x=0.0)
-    assert many["status"].size >= holding.MANY
+    assert many["status"].size >= held_states.MANY
     assert np.array_equal(many["status"].sel(torque=0.0), np.array(few).T)
     assert {OK, HELD_IMPOSSIBLE} <= {*np.unique(few)}
