@@ -5,7 +5,7 @@ from pathlib import Path
 from .atlas.store import Atlas, open_atlas
 
 HERE = Path(__file__).parent
-FOLDERS = (HERE / "examples", HERE.parent / "sweeps")  # of an installed package, of a checkout
+SWEEPS = HERE / "examples" / "sweeps"  # in a checkout a link to the folder of that name
 
 
 def example_atlas() -> Atlas:
@@ -15,7 +15,7 @@ def example_atlas() -> Atlas:
 
 def specifications() -> dict[str, Path]:
     """Specifications of sweeps by name."""
-    return {path.stem: path for folder in FOLDERS for path in sorted(folder.glob("*.toml"))}
+    return {path.stem: path for path in sorted(SWEEPS.glob("*.toml"))}
 
 
 def specification(name: str) -> Path:
