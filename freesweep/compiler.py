@@ -101,7 +101,11 @@ class _Part(JITCodeLibrary):
 
 
 class _Whole(JITCodeLibrary):
-    """The code of a kernel that Python calls, and of all others that it needs, which no one calls from outside."""
+    """The code of a kernel that Python calls, and of all others that it needs, which no one calls from outside.
+
+    Those keep no name, so LLVM may drop arguments, and what it has put in everywhere. Its linker takes the first function of
+    a name, be it another library's own: code compiled later for the same kernel would call one that has fewer arguments.
+    """
 
     def finalize(self):
         self._doors = {one.name for one in self.get_defined_functions()}
@@ -110,7 +114,7 @@ class _Whole(JITCodeLibrary):
     def _optimize_final_module(self):
         for one in self.get_defined_functions():
             if one.name not in self._doors and one.name.startswith("_ZN"):  # of Python's; Numba's own count references
-                one.linkage = "internal"  # so LLVM may drop arguments, and what it has put in everywhere
+                one.linkage = "private"
         super()._optimize_final_module()
 
 

@@ -1,8 +1,12 @@
-"""Kernels hand tuples of arrays on, to one another and back: the numbers are those of Python, and no array stays behind."""
+"""Kernels hand tuples of arrays on, to one another and back: the numbers are those of Python, and no array stays behind.
+
+What one entry point made of a kernel is its own.
+"""
 
 import sys
 from typing import NamedTuple
 
+import numba
 import numpy as np
 from numba.core.runtime import _nrt_python, rtsys
 
@@ -69,3 +73,24 @@ def test_kernels_count_the_holders_of_arrays_right():
     assert (sys.getrefcount(one), sys.getrefcount(other)) == holders
     assert np.array_equal(out, plain)
     assert out[0] > 0.0
+
+
+@kernel
+def total(values, first, unused):
+    """LLVM drops what is not used, and cannot put in everywhere what calls itself."""
+    return 0.0 if first == len(values) else values[first] + total(values, first + 1, unused)
+
+
+@kernel
+def asked(values):
+    return total(values, 0, 7.0)
+
+
+@numba.njit
+def asked_by_another(values):
+    return total(values, 0, 7.0)
+
+
+def test_what_an_entry_point_made_of_a_kernel_no_other_code_calls():
+    values = np.arange(9.0)
+    assert asked(values) == asked_by_another(values) == 36.0
