@@ -25,25 +25,24 @@ def reference(tmp_path_factory):
 
 
 STATES = """
+import numpy as np
 import freesweep as fs
 from freesweep import interpret
+from freesweep.sweep import kernels
 interpret.FEW = interpret.FEWER = -1
 sections = dict(length=0.1, radius=5e-3, wall=1.5e-3, material=fs.MooneyRivlin(1e5, 5e4))
 alike, varying = fs.Actuator(alpha=40, beta=-20, **sections), fs.Actuator(alpha=[(0, 40), (1, 41)], beta=-20, **sections)
+physical = fs.Actuator(alpha=30, beta=-30, model="physical", **sections)
 """
-HELD = """
+SCALAR = """
 fs.blocked_force(alike, 1e4)
-"""
-FREE = """
-import numpy as np
-from freesweep.sweep import kernels
-fs.inflate(alike, np.linspace(1e4, 2e4, 70), derivatives="alpha")
 fs.inflate(varying, 1e4)
-fs.inflate(alike, 1e4)
-kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes", "seek_lanes", "query"])
+kernels.compile_idle(["Mooney-Rivlin", "seek_lanes", "query"])
 """
-PHYSICAL = """
-fs.inflate(fs.Actuator(alpha=30, beta=-30, model="physical", **sections), 1e4)
+VECTORS = """
+fs.inflate(physical, 1e4)
+fs.inflate(alike, np.linspace(1e4, 2e4, 70), derivatives="alpha")
+kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes"])
 """
 
 
@@ -83,6 +82,6 @@ def pytest_sessionstart(session):
     options = session.config.option
     whole = [*session.config.args] in ([], ["tests"], ["tests/"])
     if whole and not hasattr(session.config, "workerinput") and not options.collectonly and not options.keyword:
-        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (HELD, FREE, PHYSICAL)]
+        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (SCALAR, VECTORS)]
         for part in parts:
             part.wait()

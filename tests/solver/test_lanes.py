@@ -245,6 +245,7 @@ def test_what_vectors_leave_they_solve_on_a_finer_mesh(monkeypatch):
     assert np.array_equal(alone.bounds[0], found.bounds[3])
 
 
+@pytest.mark.long  # they are compiled for this test alone
 def test_narrow_vectors_give_the_same_numbers_to_rounding(tmp_path):
     """A machine without AVX-512: the same states, with bounds that differ by less than a bound."""
     program = (
