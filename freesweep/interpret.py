@@ -21,7 +21,7 @@ from .kernel_cache import KernelCache, compiled, stem
 FEW, SECONDS = 32, 3.0  # states, and [s] of processor time, in one process: from here on compiling is worth its time
 FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
-_spent = {}  # awaited entry point -> [states, seconds] in plain Python
+_spent = {}  # (awaited entry point, kinds of arguments) -> [states, seconds] in plain Python
 _twins = {}
 _making = threading.RLock()  # of twins: one that is found knows all its names
 
@@ -55,23 +55,22 @@ def at_once(states, awaited, entry, *arguments) -> bool:
 
     False, with all arguments as they were, where the ``awaited`` entry point's machine code is at hand, where many states
     are asked for or those asked for take long, fewer and less long if that code need only be loaded, and where plain Python
-    raises an error at a number that kernels take for infinite.
+    raises an error at a number that kernels take for infinite. What serves a tube serves no body: code is that for the kinds
+    of the arguments, where the entry point itself is awaited.
     """
     if not isinstance(awaited, Dispatcher):
         return False
-    folder = _folder(awaited)
-    if awaited.signatures:
-        if awaited is entry and not _is_made(entry, arguments):
-            _tell(folder)
+    kinds = tuple(map(entry.typeof_pyval, arguments)) if awaited is entry else None
+    if kinds in awaited.overloads if kinds else awaited.signatures:
         return False
-    on_disk = stem(awaited.py_func) in compiled(folder)
-    most, seconds = (FEWER, LESS) if on_disk else (FEW, SECONDS)
-    spent = _spent.setdefault(awaited, [0, 0.0])
+    kept = _is_kept(entry, kinds) if kinds else is_at_hand(awaited)
+    most, seconds = (FEWER, LESS) if kept else (FEW, SECONDS)
+    spent = _spent.setdefault((awaited, kinds), [0, 0.0])
     spent[0] += states
     if spent[0] <= most and spent[1] < seconds and _is_done(entry, arguments, spent, seconds):
         return True
-    if spent[0] < NEVER and not (_is_made(entry, arguments) if awaited is entry else on_disk):
-        _tell(folder)
+    if spent[0] < NEVER and not kept:
+        _tell(_folder(awaited))
     spent[0] = NEVER
     return False
 
@@ -81,12 +80,9 @@ def _tell(folder):
     print(f"freesweep: compiling the kernels, {where}: half a minute to three", file=sys.stderr)
 
 
-def _is_made(entry, arguments):
-    """Whether there is machine code for arguments of these kinds: those of a body, or a thick wall, are not a tube's."""
-    kinds, cache = tuple(map(entry.typeof_pyval, arguments)), entry._cache
-    return kinds in entry.overloads or (
-        isinstance(cache, KernelCache) and cache.holds(kinds, entry.targetctx.codegen())
-    )
+def _is_kept(entry, kinds):
+    """Whether machine code for arguments of these kinds need only be loaded."""
+    return isinstance(entry._cache, KernelCache) and entry._cache.holds(kinds, entry.targetctx.codegen())
 
 
 def is_at_hand(entry) -> bool:

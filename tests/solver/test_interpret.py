@@ -190,12 +190,16 @@ def test_twins_are_whole_whichever_thread_asks_first():
 
 
 def test_machine_code_for_other_kinds_of_arguments_is_not_at_hand(entry, capsys):
-    """What a tube was solved with is not what a body, with one more number along it, is solved with."""
+    """What a tube was solved with is not what a body, with one more number along it, is solved with: its first states need
+    no compiler, either.
+    """
     entry(np.ones(2))
-    other = np.ones(2, np.float32)
+    other = np.full(2, 2.0, np.float32)
     assert not interpret.at_once(1, entry, entry, np.ones(2))
+    assert interpret.at_once(2, entry, entry, other)
+    np.testing.assert_array_equal(other, [0.5, 0.5])
     assert not capsys.readouterr().err
-    assert not interpret.at_once(1, entry, entry, other)
+    assert not interpret.at_once(interpret.FEW, entry, entry, other)
     assert "compiling the kernels" in capsys.readouterr().err
     entry(other)
     assert not interpret.at_once(1, entry, entry, other)
