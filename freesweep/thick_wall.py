@@ -14,13 +14,16 @@ and a pressure deforms the tube in inverse proportion to the sum of w over the w
 
 import numpy as np
 
-from .description.profiles import as_profile
+from .atlas.schema import SHAPE
+from .description.local import Bodies, profile_of, rules_of
 from .description.tube_model import fiber_surface, model_of
 
 NOTES = ("thin_wall_ratio", "thin_wall_note")
 DESIGN = ("alpha", "beta", "radius", "wall", "fiber_radius")
 SHARE = np.linspace(0.0, 1.0, 33)  # places along a tube
-FEW = dict(zip(DESIGN, (33, 33, 5, 9, 5)))  # of an axis' values, the ends among them: enough to tell a size
+FEW = dict(
+    zip((*DESIGN, *SHAPE), (33, 33, 5, 9, 5, 3, 3))
+)  # of an axis' values, the ends among them: enough to tell a size
 THIN = 0.1  # of wall over radius: up to here the effect is that of other things a designer does not know
 
 
@@ -88,16 +91,22 @@ def grid_attributes(data) -> dict:
 
     if model_of(data.attrs).is_thick:
         return {}
-    arrays = {name: data[name] for name in DESIGN if name in data.coords}
-    for name in (name for name in DESIGN if f"profile_{name}" in data.attrs):
-        pairs = np.reshape(data.attrs[f"profile_{name}"], (-1, 2)).tolist()
-        arrays[name] = xr.DataArray(as_profile(pairs).at(SHARE), dims="x")
+    arrays = {name: data[name] for name in (*DESIGN, *SHAPE) if name in data.coords}
+    profiles = {name: found for name in DESIGN if (found := profile_of(data.attrs, name)) is not None}
+    arrays |= {name: xr.DataArray(profile.at(SHARE), dims="x") for name, profile in profiles.items()}
     few = {
         name: array.isel({name: _some(len(array), FEW[name])}) for name, array in arrays.items() if name in array.dims
     }
     arrays |= {name: array.reset_coords(drop=True) for name, array in (arrays | few).items()}
-    thinnest = arrays | {"wall": arrays["wall"].min("x") if "x" in arrays["wall"].dims else arrays["wall"]}
-    arrays["fiber_radius"] = fiber_surface(thinnest, model_of(data.attrs))
+    model = model_of(data.attrs)
+    thinnest = arrays | {"wall": arrays["wall"].min("x") if "wall" in profiles else arrays["wall"]}
+    if "radius" in profiles or set(SHAPE) & set(arrays):
+        bodies, near = Bodies(model.fiber_radius, rules_of(data.attrs)), None
+        if "radius" in profiles:
+            near = profiles["radius"].at(0.0)[0]
+        arrays = bodies.at(thinnest, xr.DataArray(SHARE, dims="x"), near) | {name: arrays[name] for name in profiles}
+    else:
+        arrays["fiber_radius"] = fiber_surface(thinnest, model)
     alpha, beta, radius, wall, fibers = (array.values for array in xr.broadcast(*(arrays[name] for name in DESIGN)))
     inside = (fibers >= radius) & (fibers <= (radius + wall) * (1.0 + 1e-12))  # others are no tubes
     return attributes_of(

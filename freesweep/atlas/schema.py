@@ -21,6 +21,8 @@ PARAMETERS = {
     "beta": Parameter("degree", "angle of the second fiber family from the axis"),
     "length": Parameter("m", "undeformed length"),
     "radius": Parameter("m", "undeformed inner radius"),
+    "taper": Parameter("1", "share by which the far end of the undeformed radius is slimmer than the near one"),
+    "bulge": Parameter("1", "share by which a smooth bulge widens the undeformed radius at half length"),
     "wall": Parameter("m", "undeformed wall thickness"),
     "fiber_radius": Parameter("m", "radius at which the fibers lie"),
     "fiber_extension": Parameter("1", "stretch of the fibers at any pressure"),
@@ -39,6 +41,7 @@ HELD_LENGTHS = ("held_length", "held_length_ratio")
 HELD = (*HELD_LENGTHS, "held_rotation")
 LOADS = ("force", "torque", "pressure")
 YEOH = ("c20", "c30")  # 0 where a dataset has none
+SHAPE = ("taper", "bulge")  # the same
 MATERIAL = ("wall", "c10", "c01", *YEOH)
 
 
@@ -148,6 +151,7 @@ PROFILES = {
 # xarray writes long names beside axes, and breaks them after 30 characters, the unit among them
 SHORT = {
     **{"alpha": "fiber angle alpha", "beta": "fiber angle beta", "x": "distance from fixed end"},
+    **{"taper": "taper of the radius", "bulge": "bulge of the radius"},
     **{"fiber_radius": "radius of the fibers", "fiber_extension": "stretch of the fibers"},
     **{"c10": "first rubber constant", "c01": "second Mooney constant"},
     **{"force": "axial force", "torque": "torque", "held_length": "held length", "held_rotation": "held rotation"},

@@ -49,6 +49,8 @@ def add_actuator(commands, name, text, run, rubber=True):
         command.add_argument(
             f"--{size}", required=True, metavar="L", help=f"undeformed {size}, such as '4.76 mm'{more}"
         )
+    command.add_argument("--taper", default=0.0, metavar="T", help="share by which the far end is slimmer (default 0)")
+    command.add_argument("--bulge", default=0.0, metavar="B", help="share by which the middle is wider (default 0)")
     add_rubber(command, "" if rubber else "; the locked shape needs none")
     command.add_argument("--fiber-extension", default=1.0, metavar="G", help="stretch of the fibers, 1 or more")
     command.add_argument(
@@ -86,7 +88,7 @@ def tube_of(options):
     from ..description.actuator import Actuator
 
     faults = []
-    names = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")
+    names = ("alpha", "beta", "length", "radius", "wall", "taper", "bulge", "fiber_extension", "fiber_radius")
     is_word = options.fiber_radius in FIBER_PLACES
     along = {name: found for name in ALONG if (found := _along(name, getattr(options, name), faults)) is not None}
     plain = [name for name in (names[:-1] if is_word else names) if name not in along]

@@ -16,7 +16,7 @@ from .options import read_choice
 from .profiles import Along as AlongTube
 from .profiles import ProfileError, as_profile, is_profile, together
 from .quantities import Along, Quantities, Quantity
-from .revolution import resolved
+from .revolution import inner_radius, is_body, resolved
 from .tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
 from .unit_warnings import doubts, warn_of
 
@@ -28,6 +28,7 @@ ENERGIES = ("full", "principal")
 HASHED = np.linspace(0.0, 1.0, 9)  # places of profiles whose values go into a hash
 VARYING = {"alpha": "degree", "beta": "degree", "wall": "m", "radius": "m"}
 POSITIVE = ("wall", "radius")
+SHAPE = {"taper": (-10.0, math.nextafter(1.0, 0.0)), "bulge": (math.nextafter(-1.0, 0.0), 10.0)}  # least, most: no cusp
 EVENLY = np.linspace(0.0, 1.0, 257)  # places of a body at which its wall is held against its radius
 
 
@@ -73,6 +74,9 @@ class Actuator:
         is a balloon. Loose fibers may also have one angle: two families that are one
     length, radius : undeformed length, inner radius [m]; numbers, texts with units ("4.76 mm") or what carries units. The
         radius may be a profile over x/l along the axis, which may bend but not jump: a body of revolution
+    taper, bulge : what makes a body of any radius, which counts ``(1 - taper x/l) (1 + bulge sin^2(pi x/l))`` times: the
+        share by which the far end is slimmer than the near one (-10 to 1; negative: wider), and that by which the middle is
+        wider than without (-1 to 10), smoothly
     wall : wall thickness [m], number or profile; of a body also "constant volume 1.5 mm": the section stays that at x = 0
     material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or a rubber of the library,
         :func:`freesweep.material`
@@ -96,6 +100,8 @@ class Actuator:
     radius: Any
     wall: Any
     material: MooneyRivlin | Yeoh
+    taper: float = 0.0
+    bulge: float = 0.0
     fiber_extension: float = 1.0
     fiber_radius: float | str | None = None
     energy: str = "full"
@@ -114,6 +120,8 @@ class Actuator:
             radius: Along,
             wall: Along,
             material: MooneyRivlin | Yeoh,
+            taper: Quantity = 0.0,
+            bulge: Quantity = 0.0,
             fiber_extension: Quantity = 1.0,
             fiber_radius: Quantity | None = None,
             energy: str = "full",
@@ -130,7 +138,9 @@ class Actuator:
                 read[name] = _read_along(name, getattr(self, name), VARYING[name], faults)
             else:
                 read[name] = read_number(name, getattr(self, name), "m", faults, positive=True)
-        if isinstance(read["radius"], float):  # rules follow a radius that varies
+        for name, (least, most) in SHAPE.items():
+            read[name] = read_number(name, getattr(self, name), "1", faults, least=least, most=most)
+        if isinstance(read["radius"], float) and not (read["taper"] or read["bulge"]):  # rules follow what varies
             for name in VARYING:
                 if text := rule_of(name, read[name]):
                     read[name] = read_number(name, text, VARYING[name], faults)
@@ -211,8 +221,8 @@ class Actuator:
 
     def __hash__(self):
         fields = (
-            self.length, self.material, self.fiber_extension, self.fiber_radius, self.energy, self.model, self.wall_model,
-            self.fibers,
+            self.length, self.taper, self.bulge, self.material, self.fiber_extension, self.fiber_radius, self.energy,
+            self.model, self.wall_model, self.fibers,
         )  # fmt: skip
         profiles = [self.profile(name) for name in VARYING if getattr(self, name) is not None]
         varying = (given_by(self), *(tuple(profile.at(HASHED).tolist()) for profile in profiles))
@@ -279,12 +289,12 @@ class Actuator:
     @property
     def varies(self) -> bool:
         """Whether a fiber angle, the wall or the radius is a profile along the tube."""
-        return any(is_profile(getattr(self, name)) for name in VARYING)
+        return self.is_body or any(is_profile(getattr(self, name)) for name in VARYING)
 
     @property
     def is_body(self) -> bool:
         """Whether the radius varies: a body of revolution."""
-        return is_profile(self.radius)
+        return is_body(self)
 
     def angles(self, share: Quantities) -> tuple[Any, Any]:
         """Both fiber angles [degree] at shares x/l of the length, 0 to 1; on a jump the left ones. NaN where there is no
@@ -322,6 +332,8 @@ class Actuator:
         value = getattr(self, name)
         if value is None:
             raise ActuatorError([f"name: this tube has no fibers of the family {name}"])
+        if name == "radius":
+            return inner_radius(self)
         return resolved(self).named(name) if rule_of(name, value) else as_profile(value, VARYING[name])
 
     @property

@@ -1,5 +1,12 @@
 """Bodies of revolution: what follows from an inner radius that varies along the axis.
 
+The radius may be given along the tube; a taper and a bulge change what is given::
+
+    radius(x) = given(x) (1 - taper x/l) (1 + bulge sin^2(pi x/l))
+
+so a taper is the share by which the far end is slimmer than the near one, a bulge that by which the middle is wider than
+without it; a bulge leaves the ends as they are, and their slopes.
+
 The fibers lie a part of the wall outside the inner radius, on a surface R(x); a wall that varies counts where it is
 thinnest, unless it follows the radius ("constant volume": the section stays that at x = 0). Along that surface::
 
@@ -68,10 +75,43 @@ class Resolved(NamedTuple):
         return np.stack(found)
 
 
+def is_body(tube) -> bool:
+    """Whether the inner radius of a ``tube`` varies."""
+    return is_profile(tube.radius) or tube.taper != 0.0 or tube.bulge != 0.0
+
+
+def inner_radius(tube) -> Along:
+    """Inner radius [m] along a ``tube``, with its taper and its bulge."""
+    given = as_profile(tube.radius, "m")
+    if tube.taper == 0.0 and tube.bulge == 0.0:
+        return given
+
+    def width(low, high, share):
+        return given.within(low, high, share) * shape(low + (high - low) * share, tube.taper, tube.bulge)
+
+    def slope(low, high, share):
+        at = low + (high - low) * share
+        own = given.slope(low, high, share) * shape(at, tube.taper, tube.bulge)
+        return own + given.within(low, high, share) * shape_slope(at, tube.taper, tube.bulge)
+
+    return Derived(width, [given], slope)
+
+
+def shape(share, taper, bulge):
+    """Radius at shares x/l of the length over what is given there [-]; arrays broadcast."""
+    return (1.0 - taper * share) * (1.0 + bulge * np.sin(np.pi * share) ** 2)
+
+
+def shape_slope(share, taper, bulge):
+    """Its derivative by x/l."""
+    swollen = 1.0 + bulge * np.sin(np.pi * share) ** 2
+    return np.pi * bulge * np.sin(2.0 * np.pi * share) * (1.0 - taper * share) - taper * swollen
+
+
 def resolved(tube) -> Resolved:
     """What varies along a ``tube``, with its rules resolved. Raises :class:`ProfileError`."""
-    radius = as_profile(tube.radius, "m")
-    body, wall = is_profile(tube.radius), _wall(tube.wall, radius)
+    radius = inner_radius(tube)
+    body, wall = is_body(tube), _wall(tube.wall, radius)
     fibers = None
     if body:
         part = tube.fiber_share

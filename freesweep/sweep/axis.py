@@ -5,12 +5,11 @@ import math
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..description.profiles import Profile, ProfileError
+from ..description.actuator import SHAPE
 from ..description.units import quantity, shown
 from .faults import Faults
 
 MAX_AXIS = 10_000  # values of one axis: beyond it a typing slip is likelier than a purpose
-MAX_PAIRS = 64  # of a profile: each place where it bends makes a segment of the mesh
 COUNTED = 10**18  # a larger count is not spelt out
 RANGE = ("start", "stop", "step", "num", "spacing")
 OTHERS = {"start": ("from", "min"), "stop": ("to", "end", "max"), "num": ("n", "count", "number", "points", "size")}
@@ -27,6 +26,8 @@ DOMAIN = {
     "beta": _ANGLE,
     "length": _SIZE,
     "radius": _SIZE,
+    "taper": (*SHAPE["taper"], "the far end is slimmer by that share: 1 would be a tip"),
+    "bulge": (*SHAPE["bulge"], "the middle is wider by that share: -1 would close it"),
     "wall": _SIZE,
     "fiber_radius": _SIZE,
     "fiber_extension": (1.0, 10.0, "it is a stretch: fibers 0.5 % longer have 1.005"),
@@ -61,30 +62,6 @@ def value(faults: Faults, path: str, name: str, given) -> float | None:
         faults.add(path, f"found {shown(given)}, allowed is {bounds}{unit}" + (f"; {reason}" if reason else ""))
         return None
     return number
-
-
-def profile(faults: Faults, path: str, name: str, given: list) -> tuple | None:
-    """A profile along the tube: pairs (x/l, value in the unit of schema.PARAMETERS); None after noting its faults."""
-    if not all(isinstance(pair, list) and len(pair) == 2 for pair in given) or len(given) > MAX_PAIRS:
-        hint = "a profile is a list of pairs, as in [[0, 30], [0.5, 40], [1, 30]]; several values belong in [axes]"
-        faults.add(path, f"found {shown(given)} ({len(given)} entries); {hint}; at most {MAX_PAIRS} pairs are allowed")
-        return None
-    pairs = []
-    for i, (place, entry) in enumerate(given):
-        try:
-            share = quantity(place, "1")
-        except ValueError as error:
-            faults.add(f"{path}[{i}][0]", str(error))
-            share = None
-        pairs.append((share, value(faults, f"{path}[{i}][1]", name, entry)))
-    if any(None in pair for pair in pairs):
-        return None
-    try:
-        Profile(pairs)
-    except ProfileError as error:
-        faults.add(path, str(error))
-        return None
-    return tuple(pairs)
 
 
 def values(faults: Faults, path: str, name: str, given) -> np.ndarray | None:

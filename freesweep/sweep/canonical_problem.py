@@ -14,8 +14,8 @@ from ..scaling import problem_rows
 from ..status import DEGENERATE, INVALID, OK
 
 H, D, FORCE, TORQUE = 0, 1, 6, 7  # columns of a problem
-# after them: two of physical tubes, 0 of others; what is held; radius if the wall varies; block of materials
-PHYSICAL, TARGET, SIZE, BLOCK, COLUMNS = 11, 13, 14, 15, 16
+# after them: two of physical tubes, 0 of others; what is held; radius if the wall varies; block of materials; shape
+PHYSICAL, TARGET, SIZE, BLOCK, TAPER, BULGE, COLUMNS = 11, 13, 14, 15, 16, 17, 18
 KEPT_BITS = 43  # of 52: rounding differs by the way units were given (13 digits)
 
 
@@ -40,11 +40,12 @@ def reduced(design, sweep, kind) -> Reduced:
     problems = problem_rows(design, sweep.energy, sweep.model.is_thick, sweep.model.is_loose)
     rows[:, : problems.shape[1]] = problems
     rows[:, TARGET] = _target(design, kind)
-    if sweep.profiles:
+    rows[:, TAPER], rows[:, BULGE] = design.get("taper", 0.0), design.get("bulge", 0.0)
+    if sweep.varies:
         rows[:, SIZE] = design["fiber_radius"] if {"wall", "radius"} & set(sweep.profiles) else 0.0
-        return Reduced(known_status(design, sweep.profiles), rows + 0.0, zeros > 0.0, zeros > 0.0)
+        return Reduced(known_status(design, sweep), rows + 0.0, zeros > 0.0, zeros > 0.0)
     odd = [H, D, TARGET if kind == "blocked_torque" else TORQUE]
-    return Reduced(known_status(design, {}), *canonical(rows, odd))
+    return Reduced(known_status(design, sweep), *canonical(rows, odd))
 
 
 def _target(design, kind):
@@ -58,8 +59,9 @@ def _target(design, kind):
     return design["held_length_ratio"] * (design["length"] / design["fiber_radius"])
 
 
-def known_status(design, profiles) -> np.ndarray:
+def known_status(design, sweep) -> np.ndarray:
     """DEGENERATE or INVALID where no solution has to be tried, else OK."""
+    profiles = sweep.profiles
     alpha, beta = design["alpha"], design["beta"]
     apart, largest = np.abs(alpha - beta), np.maximum(np.abs(alpha), np.abs(beta))
     if "alpha" in profiles or "beta" in profiles:
@@ -69,7 +71,7 @@ def known_status(design, profiles) -> np.ndarray:
         wall = as_profile(profiles["wall"]).samples().min()
     fibers, outer = design["fiber_radius"], design["radius"] + wall
     invalid = (apart < APART) | (largest >= LARGEST_ANGLE)
-    if "radius" not in profiles:  # of bodies it is given by a word
+    if not sweep.is_of_bodies:  # of those it is given by a word
         invalid |= (fibers < design["radius"]) | (fibers > outer * (1.0 + 1e-12))
     return np.where(apart == 0.0, DEGENERATE, np.where(invalid, INVALID, OK))
 

@@ -44,9 +44,8 @@ def groups(sweep) -> list:
     ]
     wanted += [(FREE, _locked, [f"locked_{name}" for name in ALONG[:2]], [])] if along else []
     wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
-    if (
-        not {"alpha", "beta", "radius"} & set(sweep.profiles) and not sweep.model.is_loose
-    ):  # bars may push, threads do not
+    uniform = not {"alpha", "beta"} & set(sweep.profiles) and not sweep.is_of_bodies
+    if uniform and not sweep.model.is_loose:  # bars may push, threads do not
         wanted += [(FREE, _ideal, [name], [f"{name}_status"]) for name in ideal.NAMES]
     return [_group(sweep, *each) for each in wanted]
 
@@ -55,7 +54,7 @@ def _along(sweep):
     """What an atlas tells of physical tubes along their length: of a thick wall its outer radius, too, but of bodies."""
     if not sweep.model.is_physical:
         return ()
-    return ALONG if sweep.model.is_thick and "radius" not in sweep.profiles else ALONG[:2]
+    return ALONG if sweep.model.is_thick and not sweep.is_of_bodies else ALONG[:2]
 
 
 def _group(sweep, kind, make, values, codes):
@@ -88,8 +87,8 @@ def _outputs(table, records, at, rows):
     codes, solved, valued = _codes(found, states)
     design = {name: column[:, None] for name, column in table.grid.columns(at).items()}
     scales, inside = output_scales(design), wall_volume_inside(design)
-    if body := table.grid.surface_of_bodies(design):
-        scales["mid_radius"], inside = body
+    if table.grid.sweep.is_of_bodies:
+        scales["mid_radius"], inside = table.grid.surface_of_bodies(at)[..., None]
     arrays = {"status": codes}
     for k, name in enumerate((*OUTPUTS, *_along(table.grid.sweep))):
         value = _spread(states["values"][..., k], solved, valued, np.nan) * scales[name]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..atlas.schema import HELD, LOADS, PARAMETERS, YEOH
+from ..atlas.schema import HELD, LOADS, PARAMETERS, SHAPE, YEOH
 from ..description.units import shown
 from . import axis
 from .faults import Faults
@@ -10,7 +10,7 @@ from .rubber import SYNONYMS
 
 AT_REST = {"held_length_ratio": 1.0, "held_rotation": 0.0}
 DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0} | AT_REST  # fiber_radius: the inner radius
-DEFAULTS |= dict.fromkeys(YEOH, 0.0)
+DEFAULTS |= dict.fromkeys((*YEOH, *SHAPE), 0.0)
 OWN = tuple(name for name in PARAMETERS if name != "pressure")  # what may differ between designs
 ELSEWHERE = SYNONYMS | {
     "pressure": "all designs share the pressures; give them in [axes] or [load]",

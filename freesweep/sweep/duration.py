@@ -24,7 +24,7 @@ VARIED = KERNELS | {FREE: ("follow_many",)}
 
 def time_of(sweep, tables, equilibria, threads) -> str:
     """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared."""
-    alone = PHYSICAL if sweep.model.is_physical else VARYING if sweep.profiles else None
+    alone = PHYSICAL if sweep.model.is_physical else VARYING if sweep.varies else None
     each = {kind: alone or (TYPICAL if kind == FREE else HELD) for kind in equilibria}
     sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and _is_compiled(equilibria, sweep)
     if sampled:

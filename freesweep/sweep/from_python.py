@@ -20,8 +20,10 @@ def sweep(
     alpha: Axis | Along | None = None,
     beta: Axis | Along | None = None,
     length: Axis | None = None,
-    radius: Axis | None = None,
+    radius: Axis | Along | None = None,
     wall: Axis | Along | None = None,
+    taper: Axis | None = None,
+    bulge: Axis | None = None,
     pressure: Axis | None = None,
     material: MooneyRivlin | Yeoh | str | None = None,
     c10: Axis | None = None,
@@ -55,10 +57,11 @@ def sweep(
     Parameters
     ----------
     out : path of the atlas to make
-    alpha, beta, length, radius, wall, pressure, ... : each parameter of the actuator and its load [degree, m, Pa, N, N m]: a
-        number; an array or a list of values, which makes an axis; a range ``(start, stop, step)`` or ``{"start": 0, "stop":
-        3e5, "num": 41, "spacing": "sqrt"}``; for alpha, beta, wall, radius a profile, pairs ``[(x/l, value), ...]``. Texts
-        with units ("4.76 mm") and what carries units are read as everywhere
+    alpha, beta, length, radius, wall, taper, bulge, pressure, ... : each parameter of the actuator and its load [degree, m,
+        Pa, N, N m]: a number; an array or a list of values, which makes an axis; a range ``(start, stop, step)`` or
+        ``{"start": 0, "stop": 3e5, "num": 41, "spacing": "sqrt"}``; for alpha, beta, wall, radius a profile, pairs
+        ``[(x/l, value), ...]`` or :class:`freesweep.Profile`. Texts with units ("4.76 mm") and what carries units are read
+        as everywhere; where the radius varies, "geodesic 30 deg" and "constant volume 1 mm", too
     material : a rubber or the name of one, instead of ``c10``, ``c01``, ``c20``, ``c30``
     held_length, held_length_ratio, held_rotation, blocked : ask for blocked force and torque
     designs : named designs, each combined with all axes: a list of ``{"name": "A", "beta": 50}``

@@ -6,8 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..description.profiles import ProfileError, as_profile, follow
+from ..description.actuator import APART, VARYING
+from ..description.along import written
+from ..description.profiles import ProfileError, as_profile, follow, together
+from ..description.revolution import resolved, wall_volume_inside
 from ..description.tube_model import SHARES, fiber_place
+
+NAMES = ("alpha", "beta", "wall", "length", "radius", "fiber_radius", "taper", "bulge")  # what a course is made of
 
 
 class Grid:
@@ -33,24 +38,36 @@ class Grid:
             wall = design["wall"]
             if "wall" in self.sweep.profiles:
                 wall = as_profile(self.sweep.profiles["wall"]).samples().min()
-            inner = self._radius.at(0.0)[0] if self._radius else design["radius"]
+            profile = self.sweep.profiles.get("radius")
+            inner = design["radius"] if profile is None else as_profile(profile).at(0.0)[0]
             design["fiber_radius"] = fiber_place(self.sweep.model.fiber_radius, inner, wall)
         return design
 
-    @property
-    def _radius(self):
-        """The profile of the inner radius of bodies of revolution, None of tubes."""
-        return as_profile(self.sweep.profiles["radius"]) if "radius" in self.sweep.profiles else None
-
-    def surface_of_bodies(self, design):
-        """Of bodies of revolution, whose design has the radius of the fibers at x = 0: ``(that at half length [m], volume
-        between cavity and fibers [m3])``; None of tubes.
+    def surface_of_bodies(self, at):
+        """Of designs ``at`` (n,), bodies of revolution: radius of the fibers at half length [m], and volume between cavity
+        and fibers [m3]; (2, n).
         """
-        if self._radius is None:
-            return None
-        inside = design["fiber_radius"] - self._radius.at(0.0)[0]
-        mean = np.trapezoid(self._radius.values, self._radius.x)
-        return self._radius.at(0.5)[0] + inside, np.pi * design["length"] * inside * (2.0 * mean + inside)
+        designs, which = self.distinct(at)
+        bodies = [self.tube(design) for design in designs]
+        found = np.array([(resolved(body).fibers.at(0.5)[0], wall_volume_inside(body)) for body in bodies])
+        return found.reshape(-1, 2)[which].T
+
+    def distinct(self, at):
+        """What of designs ``at`` (n,) makes their course, each once, (k, NAMES), and which is whose."""
+        columns = self.columns(at)
+        none = np.zeros(len(at))
+        return np.unique(np.column_stack([columns.get(name, none) for name in NAMES]), axis=0, return_inverse=True)
+
+    def tube(self, design):
+        """What :mod:`freesweep.description.revolution` takes for a tube, of a ``design`` of :meth:`distinct`."""
+        sweep, numbers = self.sweep, dict(zip(NAMES, design.tolist()))
+        numbers |= {name: written(name, numbers[name], VARYING[name]) for name in sweep.rules}
+        if sweep.is_of_bodies:  # the straight ones among them, too
+            numbers["radius"] = [(0.0, numbers["radius"]), (1.0, numbers["radius"])]
+        numbers |= sweep.profiles
+        numbers["fiber_surface"] = numbers.pop("fiber_radius")
+        model = sweep.model
+        return SimpleNamespace(**numbers, fiber_share=SHARES[model.fiber_radius], is_thick=model.is_thick)
 
     def within(self, other, at):
         """Where the designs ``at`` of this grid lie in ``other``, which has all its dimensions: first along the others."""
@@ -72,20 +89,20 @@ def coordinates(sweep) -> dict:
 
 def tubes(grid, at):
     """Courses, with errors, of the designs ``at`` where some profile varies, each once, and which is whose: see ``Job``."""
-    profiles = grid.sweep.profiles
-    if not profiles:
+    if not grid.sweep.varies:
         return [], np.zeros(len(at), np.int64)
-    columns = grid.columns(at)
-    names = ("alpha", "beta", "wall", "length", "radius", "fiber_radius")
-    designs, which = np.unique(np.column_stack([columns[name] for name in names]), axis=0, return_inverse=True)
-    found = []
-    for design in designs.tolist():
-        numbers = dict(zip(names, design)) | profiles
-        numbers["fiber_surface"] = numbers.pop("fiber_radius")
-        model = grid.sweep.model
-        numbers |= {"fiber_share": SHARES[model.fiber_radius], "is_thick": model.is_thick}
-        try:
-            found.append(follow(SimpleNamespace(**numbers), grid.sweep.accuracy))
-        except ProfileError:
-            found.append(None)
-    return found, which
+    designs, which = grid.distinct(at)
+    return [_followed(grid.tube(design), grid.sweep) for design in designs], which
+
+
+def _followed(tube, sweep):
+    """The course of a tube and its error; None of one that there is not."""
+    try:
+        if sweep.rules:  # whose angles are known at x = 0 only
+            parts = resolved(tube)
+            alpha, beta = together(parts.first, parts.second)
+            if np.abs(alpha - beta).min() < APART or len(set(np.sign(alpha - beta))) > 1:
+                return None
+        return follow(tube, sweep.accuracy)
+    except ProfileError:
+        return None

@@ -62,7 +62,7 @@ def _missing(kinds, sweep):
     names = ["carry_lanes", "solve_lanes"] if FREE in kinds else []
     names += ["seek_lanes", "solve_lanes"] if any(kind != FREE for kind in kinds) else []
     solver = set() if sweep.one_by_one else {*names} - _stored("solver")
-    query = is_measured(sweep) and not sweep.profiles and ANSWERS not in _stored("query")
+    query = is_measured(sweep) and not sweep.varies and ANSWERS not in _stored("query")
     return solver | ({"query"} if query else set())
 
 
@@ -148,10 +148,10 @@ def _typical(kind, constants, sweep):
     row = problem_rows(design, "full", sweep.model.is_thick, sweep.model.is_loose)
     target = np.array([TYPICAL["length"] if kind == "blocked_force" else 0.0])
     courses = []
-    if sweep.profiles:
+    if sweep.varies:
         halves = np.zeros((2, 1, 3, 4))
         halves[:, 0, :, 0] = row[0, :3]
-        if "radius" in sweep.profiles:
+        if sweep.is_of_bodies:
             halves = np.stack([halves, np.zeros_like(halves)], axis=2)
             halves[:, 0, 1, 0, 0] = 1.0
         courses = [((halves, np.arange(3) * BASE_CELLS, np.linspace(0.0, TYPICAL["length"], 3)), 0.0)]

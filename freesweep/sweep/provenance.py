@@ -6,11 +6,15 @@ import numpy as np
 
 from ..description.tube_model import ATTRIBUTES, attributes_of
 from ..thick_wall import grid_attributes
+from . import along
 from .grid import coordinates
 from .rubber import rubber_attributes
 
 # only of some specifications
-FOLLOWING = ("interpolation_tolerance", "material", "material_source", "largest_stretch", *ATTRIBUTES.values())
+FOLLOWING = (
+    *("interpolation_tolerance", "material", "material_source", "largest_stretch", *ATTRIBUTES.values()),
+    *(f"{kind}_{name}" for kind in ("profile", "smooth", "rule") for name in along.VARYING),
+)
 
 
 def specified(sweep) -> dict:
@@ -22,7 +26,7 @@ def specified(sweep) -> dict:
         "specification_sha256": sweep.sha256,
         "energy": sweep.energy,
         "accuracy": sweep.accuracy,
-        **{f"profile_{name}": np.ravel(pairs) for name, pairs in sweep.profiles.items()},
+        **along.attributes_of(sweep),
         **attributes_of(sweep.model),
         **({} if tolerance is None else {"interpolation_tolerance": tolerance}),
         **rubber_attributes(sweep),

@@ -39,7 +39,7 @@ def graded(sweep, say=lambda text: None):
 
     ``say`` is told of each round. A sweep of named designs, of tubes that vary along x, or without tolerance stays as it is.
     """
-    if sweep.interpolation_tolerance is None or sweep.designs or sweep.profiles:
+    if sweep.interpolation_tolerance is None or sweep.designs or sweep.varies:
         return sweep
     axes = {name: values for name, values in sweep.axes.items() if len(values) > 1 and name not in HELD}
     failing = {name: _failing(sweep, axes, name) for name in axes}

@@ -4,11 +4,11 @@ import warnings
 
 import numpy as np
 
-from ..atlas.schema import YEOH
+from ..atlas.schema import SHAPE, YEOH
 from ..description.elastomer import convex_to
 from ..description.faults import ActuatorError
+from ..description.local import Bodies, profile_of, rules_of
 from ..description.material_library import material
-from ..description.profiles import as_profile
 from ..description.strain import invariant, largest_principal, membrane
 from ..description.tube_model import fiber_surface, model_of
 
@@ -101,8 +101,12 @@ def _slices(dataset):
 def _strained(part, measure):
     """A ``measure`` of the strain at half length, NaN where there is no state."""
     own = {name: _middle(part, name) for name in ("alpha", "beta", "radius", "wall", "fiber_extension")}
-    own |= {"fiber_radius": part["fiber_radius"]} if "fiber_radius" in part.coords else {}
+    own |= {name: part[name] for name in ("fiber_radius", *SHAPE) if name in part.coords}
     model = model_of(part.attrs)
+    profile = profile_of(part.attrs, "radius")
+    if profile is not None or set(SHAPE) & set(own):
+        near = None if profile is None else profile.at(0.0)[0]
+        own = Bodies(model.fiber_radius, rules_of(part.attrs)).at(own, 0.5, near)
     own["fiber_radius"] = fiber_surface(own, model)
     if model.is_physical:
         return _of_physical(part, own, model, measure)
@@ -135,9 +139,9 @@ def _middle(part, name):
     """A parameter of the tubes; of a profile the value at half length, of a wall where it is thinnest, as fibers lie."""
     import xarray as xr
 
-    if f"profile_{name}" not in part.attrs:
+    profile = profile_of(part.attrs, name)
+    if profile is None:
         return part[name]
-    profile = as_profile(np.reshape(part.attrs[f"profile_{name}"], (-1, 2)).tolist())
     return xr.DataArray(profile.samples().min() if name == "wall" else profile.at(0.5)[0])
 
 

@@ -155,7 +155,7 @@ def _complete(out, identity, text, overwrite, progress):
 
 def split(table, sweep):
     """Shards of whole problems: a list of (first, last + 1)."""
-    cost = PHYSICAL_COST if sweep.model.is_physical else VARYING_COST if sweep.profiles else 1
+    cost = PHYSICAL_COST if sweep.model.is_physical else VARYING_COST if sweep.varies else 1
     cost *= 1 if table.kind == "free" else HELD_COST
     size = max(1, SHARD_EQUILIBRIA // cost)
     found, a = [], 0

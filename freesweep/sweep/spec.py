@@ -3,7 +3,11 @@
     title = "What this sweep is for"
     [actuator]                  # fixed values of the design, with units; plain numbers are SI and degrees
     wall = "1.59 mm"            # alpha, beta, wall, radius may vary along the tube: [[0, "30 deg"], [0.5, "40 deg"],
-                                # [1, "30 deg"]], pairs of x/l and value; a repeated x/l is a jump, but of the radius
+                                # [1, "30 deg"]], pairs of x/l and value; a repeated x/l is a jump, but of the radius;
+                                # {knots = [[0, "5 mm"], [0.5, "8 mm"], [1, "5 mm"]], smooth = true}: a spline
+    taper = 0.2                 # the far end is slimmer than the near one by that share, and the middle wider by that of
+    bulge = "10 %"              # bulge: what is given as the radius counts (1 - taper x/l) (1 + bulge sin^2(pi x/l)) times
+    alpha = "geodesic 30 deg"   # of such a body, there and in [axes]; and wall = "constant volume 1.5 mm"
     c10 = "0.17 MPa"            # and c01, or c20 and c30 of a Yeoh rubber; or material = "dragon-skin-30"
     energy = "full"             # or "principal"
     model = "source"            # or "physical": thick wall, loose fibers outside; or part by part: wall_model, fibers and
@@ -28,18 +32,18 @@ asks for the blocked force, a held rotation for the blocked torque; ``blocked = 
 
 import hashlib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from ..atlas.schema import HELD, PARAMETERS, YEOH
+from ..atlas.schema import HELD, PARAMETERS, SHAPE, YEOH
 from ..description.actuator import APART, ENERGIES, SMALLEST_DIFFERENCE
 from ..description.families import FAMILIES, is_none
 from ..description.profiles import as_profile, together
 from ..description.tube_model import DEFAULT, FIBER_PLACES, MODELS, TubeModel, word_faults
 from ..description.units import shown
-from . import axis, toml_guard
+from . import along, axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError
 from .rubber import SYNONYMS, check_rubber, read_material
@@ -47,7 +51,6 @@ from .solver_table import BUDGET, MAX_POINTS, read_accuracy, read_blocked, read_
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
-VARYING = ("alpha", "beta", "wall", "radius")  # may be profiles along the tube
 WORDS = ("energy", "model", "wall_model", "fibers")  # of [actuator]
 ONLY_TWO = (
     "is none, but a sweep's tubes have two families of fibers: their angles are what an atlas is asked by; freesweep inflate"
@@ -62,8 +65,9 @@ class Sweep:
 
     ``fixed`` holds single values; ``axes`` strictly increasing arrays, shape (n,), in the order of schema.PARAMETERS.
     ``designs`` is None, or {"names": tuple of texts, "columns": {parameter: array, shape (designs,)}}. Every parameter
-    stands in one of the three, or in ``profiles``: name -> pairs (x/l, value). Only ``fiber_radius`` may be in none, then
-    the fibers lie where the ``model`` says, and ``c20`` and ``c30``: then the rubber is no Yeoh rubber.
+    stands in one of the three, or in ``profiles``: name -> pairs (x/l, value), or a smooth profile of them. Only
+    ``fiber_radius`` may be in none, then the fibers lie where the ``model`` says; ``c20`` and ``c30``: then the rubber is no
+    Yeoh rubber; ``taper`` and ``bulge``. ``rules`` are words that numbers follow along a body: they are those at x = 0.
     """
 
     title: str
@@ -79,6 +83,7 @@ class Sweep:
     budget: int = BUDGET  # points to which axes may grow for the tolerance
     material: str = ""  # name of its rubber, if it came from the library
     model: TubeModel = MODELS["source"]
+    rules: dict[str, str] = field(default_factory=dict)
 
     @property
     def sha256(self) -> str:
@@ -101,9 +106,19 @@ class Sweep:
         return (*self.fixed, *self.axes, *(self.designs or {}).get("columns", ()))
 
     @property
+    def is_of_bodies(self) -> bool:
+        """Whether its radius varies along the tubes: a profile, or what has a taper or a bulge, if of 0."""
+        return "radius" in self.profiles or bool(set(SHAPE) & set(self.places))
+
+    @property
+    def varies(self) -> bool:
+        """Whether something varies along its tubes."""
+        return bool(self.profiles) or self.is_of_bodies
+
+    @property
     def one_by_one(self) -> bool:
         """Whether its tubes are solved by the scalar kernels: those that vary, and physical ones."""
-        return bool(self.profiles) or self.model.is_physical
+        return self.varies or self.model.is_physical
 
     @property
     def points(self) -> int:
@@ -130,8 +145,9 @@ def parse(text: str, name: str = "specification") -> Sweep:
     accuracy = read_accuracy(faults, tables["solver"])
     tolerance, budget = read_tolerance(faults, tables["solver"])
     given = {}  # parameter: where it is given, faulty or not
-    fixed, profiles = _fixed(faults, tables, given)
-    axes = _axes(faults, tables["axes"], given)
+    rules = {}  # parameter: word
+    fixed, profiles = _fixed(faults, tables, given, rules)
+    axes = _axes(faults, tables["axes"], given, rules)
     designs = read_designs(faults, document["designs"], given, fixed) if "designs" in document else None
     _check_profiles(faults, profiles, fixed, given)
     for parameter in REQUIRED:
@@ -139,7 +155,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
             others = ", or in every design" if designs and parameter in OWN else ""
             faults.add(parameter, f"is missing; give it in [{HOME[parameter]}] or [axes]{others}")
     blocked, at_rest = read_blocked(faults, tables["solver"], given)
-    absent = set(AT_REST) - set(at_rest) | set(YEOH)
+    absent = set(AT_REST) - set(at_rest) | set(YEOH) | set(SHAPE)
     defaults = {key: number for key, number in DEFAULTS.items() if key not in absent}
     fixed = {key: defaults.get(key) if key not in given else fixed.get(key) for key in PARAMETERS}
     fixed = {key: number for key, number in fixed.items() if number is not None}
@@ -157,9 +173,10 @@ def parse(text: str, name: str = "specification") -> Sweep:
     rubber = tables["actuator"].get("material", "")
     if "fiber_radius" in values:
         model = model._replace(fiber_radius="inner")  # it is not asked for
-    return Sweep(
-        title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget, rubber, model
+    found = Sweep(
+        title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget, rubber, model, rules
     )
+    return found if found.is_of_bodies else replace(found, rules={})  # of a tube a rule is the number it gives
 
 
 def _shape(axes, designs):
@@ -199,7 +216,7 @@ def _model(faults, actuator, energy):
     return MODELS[words.pop("model")]._replace(**words, **place)
 
 
-def _fixed(faults, tables, given):
+def _fixed(faults, tables, given, rules):
     fixed, profiles = {}, {}
     for section in ("actuator", "load"):
         table = tables[section]
@@ -211,15 +228,24 @@ def _fixed(faults, tables, given):
                 given[name] = f"{section}.{name}"
                 if name in FAMILIES and is_none(table[name]):
                     faults.add(given[name], ONLY_TWO)
-                elif name in VARYING and isinstance(table[name], list):
-                    profiles[name] = axis.profile(faults, given[name], name, table[name])
+                elif along.is_profile(name, table[name]):
+                    profiles[name] = along.profile(faults, given[name], name, table[name])
                 else:
-                    fixed[name] = axis.value(faults, given[name], name, table[name])
+                    number = _unworded(faults, given[name], name, table[name], rules)
+                    fixed[name] = axis.value(faults, given[name], name, number)
     fixed |= read_material(faults, tables["actuator"], given)
     return fixed, {name: pairs for name, pairs in profiles.items() if pairs}
 
 
-def _axes(faults, table, given):
+def _unworded(faults, path, name, found, rules):
+    """What is given without the word of its rule, which goes into ``rules``."""
+    rest, rule = along.unworded(faults, path, name, found)
+    if rule:
+        rules[name] = rule
+    return rest
+
+
+def _axes(faults, table, given, rules):
     faults.unknown_keys(
         table,
         tuple(PARAMETERS),
@@ -232,7 +258,7 @@ def _axes(faults, table, given):
             if name in given:
                 faults.add(f"axes.{name}", f"given twice, also as {given[name]}; remove one")
             given[name] = f"axes.{name}"
-            array = axis.values(faults, f"axes.{name}", name, table[name])
+            array = axis.values(faults, given[name], name, _unworded(faults, given[name], name, table[name], rules))
             if array is not None:
                 axes[name] = array
     return axes
@@ -243,12 +269,13 @@ def _check_profiles(faults, profiles, fixed, given):
     for name in profiles:
         if given[name] != f"actuator.{name}":
             faults.add(given[name], f"actuator.{name} is a profile already; give one of the two")
-    if "radius" in profiles:
-        x, values = np.array(profiles["radius"]).T
-        if np.any((np.diff(x) == 0.0) & (np.diff(values) != 0.0)):
-            faults.add("actuator.radius", "it jumps; a body's radius may bend at a place, but not jump")
+    if "radius" in profiles or set(SHAPE) & set(given):
         if "fiber_radius" in given:
             faults.add(given["fiber_radius"], f"the radius varies; choose one of {', '.join(FIBER_PLACES)}")
+    if "radius" in profiles:
+        x, values = np.array(along.pairs_of(profiles["radius"])).T
+        if np.any((np.diff(x) == 0.0) & (np.diff(values) != 0.0)):
+            faults.add("actuator.radius", "it jumps; a body's radius may bend at a place, but not jump")
     angles = [profiles.get(name, fixed.get(name)) for name in ("alpha", "beta")]
     if None in angles or not any(name in profiles for name in ("alpha", "beta")):
         return

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..description.unit_warnings import doubts
+from .along import pairs_of
 
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "c10")
 LOAD = ("pressure", "force", "torque")
@@ -21,6 +22,6 @@ def doubts_of(sweep) -> list:
 def _values(sweep, name):
     """Every value of a parameter, shape (n,)."""
     if name in sweep.profiles:
-        return np.array([value for _, value in sweep.profiles[name]])
+        return np.array([value for _, value in pairs_of(sweep.profiles[name])])
     given = sweep.fixed | sweep.axes | (sweep.designs or {}).get("columns", {})
     return np.atleast_1d(given[name])

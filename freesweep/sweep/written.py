@@ -8,13 +8,15 @@ from numbers import Integral
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from ..description.along import Profile
 from ..description.elastomer import ELASTOMERS
 from ..description.given import described, numbers
 from ..description.material_library import materials
+from .along import VARYING
 from .designs import HOME
 from .faults import Faults, SpecificationError
 from .rubber import CONSTANTS
-from .spec import VARYING, Sweep, parse
+from .spec import Sweep, parse
 
 HERE = "sweep"  # what errors call this specification
 ENDS = ("start", "stop", "step")  # of a tuple
@@ -58,7 +60,9 @@ def specification(given: dict, faults: Faults) -> str:
 
 def _varies(name, written):
     """Whether what is written is an axis: a range, or a list but no profile."""
-    return written[0] == "{" or (written[0] == "[" and not (name in VARYING and written[:2] == "[["))
+    if name in VARYING and written.startswith(("[[", "{knots")):
+        return False
+    return written[0] in "{["
 
 
 def _of_material(given, faults):
@@ -83,6 +87,9 @@ def _parameter(name, value, faults, path=None):
     """A value, an axis or a profile as TOML writes it; None after noting a fault."""
     units, path = PARAMETERS[name].units, path or name
     try:
+        if isinstance(value, Profile) and name in VARYING and not value.is_free:
+            knots = _profile(value.knots, units)
+            return f"{{knots = {knots}, smooth = true}}" if value.smooth else knots
         if isinstance(value, Mapping):
             return _range(value, units, path, faults)
         if isinstance(value, tuple) and not (name in VARYING and _is_profile(value)):
@@ -96,11 +103,15 @@ def _parameter(name, value, faults, path=None):
             )
             return None
         if name in VARYING and _is_profile(value):
-            return "[" + ", ".join(f"[{_number(u, '1')}, {_number(v, units)}]" for u, v in value) + "]"
+            return _profile(value, units)
         return _number(value, units)
     except ValueError as error:
         faults.add(path, str(error))
         return None
+
+
+def _profile(pairs, units):
+    return "[" + ", ".join(f"[{_number(u, '1')}, {_number(v, units)}]" for u, v in pairs) + "]"
 
 
 def _is_profile(value):

@@ -70,7 +70,7 @@ def _of_attributes(data, sweep):
     from ..sweep.provenance import FOLLOWING, specified
 
     wanted = specified(sweep)
-    names = {*wanted, *(name for name in data.attrs if name in FOLLOWING or name.startswith("profile_"))}
+    names = {*wanted, *(name for name in data.attrs if name in FOLLOWING)}
     for name in sorted(names):
         found, asked = data.attrs.get(name), wanted.get(name)
         if (found is None) != (asked is None) or not np.array_equal(found, asked):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from freesweep.atlas.schema import HELD, PARAMETERS, YEOH
+from freesweep.atlas.schema import HELD, PARAMETERS, SHAPE, YEOH
 from freesweep.description.tube_model import MODELS
 from freesweep.description.units import quantity
 from freesweep.sweep import toml_guard
@@ -160,7 +160,7 @@ def test_every_parameter_stands_in_exactly_one_place():
         sweep = parse(text)
         columns = sweep.designs["columns"] if sweep.designs else {}
         places = [*sweep.fixed, *sweep.axes, *columns]
-        assert sorted(places) == sorted(set(PARAMETERS) - {"fiber_radius", *HELD, *YEOH})
+        assert sorted(places) == sorted(set(PARAMETERS) - {"fiber_radius", *HELD, *YEOH, *SHAPE})
 
 
 @pytest.mark.parametrize(
