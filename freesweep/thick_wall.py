@@ -101,7 +101,7 @@ def grid_attributes(data) -> dict:
     model = model_of(data.attrs)
     thinnest = arrays | {"wall": arrays["wall"].min("x") if "wall" in profiles else arrays["wall"]}
     if "radius" in profiles or set(SHAPE) & set(arrays):
-        bodies, near = Bodies(model.fiber_radius, rules_of(data.attrs)), None
+        bodies, near = Bodies(model, rules_of(data.attrs)), None
         if "radius" in profiles:
             near = profiles["radius"].at(0.0)[0]
         arrays = bodies.at(thinnest, xr.DataArray(SHARE, dims="x"), near) | {name: arrays[name] for name in profiles}

@@ -29,7 +29,7 @@ def model_of(tube) -> TubeModel:
 
 
 def points_of(tube, pressure, force=0.0, torque=0.0, held=0.0):
-    """Points (n, 15) of one tube, as the exact solver takes them."""
+    """Points (n, 17) of one tube, as the exact solver takes them."""
     design = tube.design()
     own = design | {"pressure": pressure, "force": force, "torque": torque, "held": held}
     columns = np.broadcast_arrays(*(np.asarray(own.get(name, 0.0), float) for name in COLUMNS))

@@ -20,10 +20,11 @@ def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
     Not ``thorough``: what vectors cannot do has no value.
     """
     answers, count = {}, len(columns["alpha"])
+    none = np.zeros(count)  # of what makes bodies
     for kind in dict.fromkeys(state.kind for state in asked):
         states = [state for state in asked if state.kind == kind]
         parts = [_points(state, columns, count) for state in states]
-        points = np.concatenate([np.column_stack([part[name] for name in COLUMNS]) for part in parts])
+        points = np.concatenate([np.column_stack([part.get(name, none) for name in COLUMNS]) for part in parts])
         most = max(part["pressure"].max() for part in parts) if kind == "limit" else None
         found = solve(KINDS[kind], points, energy, accuracy, most, thorough=thorough)
         for k, (state, part) in enumerate(zip(states, parts)):

@@ -90,7 +90,7 @@ class Inquiry:
         """``(value, estimate, bound)`` at some places, (k,) each, from end effects, what they lack and their bounds."""
         family, (value, estimate, bound) = self.table.family, np.empty((3, len(effects)))
         args = (self.points[places], self.states[places], effects, rest, noise, value, estimate, bound)
-        reference.restore_all(family.variables[name], *args)
+        self.table.predictor.restore(family.variables[name], *args)
         return value, estimate, bound
 
     def answer(self, name, factors):

@@ -7,6 +7,9 @@ import numpy as np
 from numba import config
 
 from ..description.actuator import APART, LARGEST_ANGLE
+from ..description.courses import distinct, followed
+from ..description.local import COURSE
+from ..description.profiles import SENSITIVITY, widened
 from ..description.tube_model import MODELS
 from ..scaling import ALONG, OUTPUTS, output_scales, problem_rows, wall_volume_inside
 from ..solver.status import PENDING
@@ -18,12 +21,22 @@ CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
 SHARE = 512  # points that one thread solves at a time
 
 
-def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["source"], cells=CELLS, thorough=True):
-    """States of a kind at points (n, 15) of tubes of a ``model``: name -> (n,) of numbers and ``_error`` bounds, ``status``
+def solve(
+    kind,
+    points,
+    energy,
+    accuracy,
+    largest_pressure=None,
+    model=MODELS["source"],
+    cells=CELLS,
+    thorough=True,
+    bodies=None,
+):
+    """States of a kind at points (n, 17) of tubes of a ``model``: name -> (n,) of numbers and ``_error`` bounds, ``status``
     and flags, on base meshes of so many ``cells``.
 
     With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``. Not ``thorough``: what
-    vectors leave to the scalar kernels, a thousand times dearer, is left out.
+    vectors leave to the scalar kernels, a thousand times dearer, is left out. ``bodies``: the points are bodies'.
     """
     count = len(points)
     design = {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(COLUMNS)}
@@ -35,6 +48,8 @@ def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["s
     status[(apart < APART) | wide | fibers] = INVALID
     status[apart == 0.0] = DEGENERATE
     good = np.flatnonzero(status == NOT_CONVERGED)
+    courses, status[good] = _courses(design, good, accuracy, cells, bodies)
+    good = np.flatnonzero(status == NOT_CONVERGED)
     own = {name: column[good] for name, column in design.items()}
     rows = problem_rows(own, energy, model.is_thick, model.is_loose)
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
@@ -44,25 +59,29 @@ def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["s
     slack, stable, limits = np.zeros(count, np.int8), np.zeros(count, np.int8), np.full((count, 2), np.nan)
     pressure = np.full(len(good), np.inf) if kind == reference.LOCKED else own["pressure"] / own["c10"]
 
-    def part(begin):
-        some = slice(begin, begin + SHARE)
+    def part(some, followed):
         if held:
             part = {name: column[some] for name, column in own.items()}
-            return _held(kind, rows[some], part, accuracy, cells, thorough)
+            return _held(kind, rows[some], part, accuracy, followed, thorough)
         most = None if largest_pressure is None else largest_pressure / own["c10"][some]
-        return _free(rows[some], pressure[some], most, accuracy, cells, thorough or most is not None)
+        return _free(rows[some], pressure[some], most, accuracy, followed, thorough or most is not None)
 
+    order = [np.searchsorted(good, some) for some, _ in courses]
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        parts = list(pool.map(part, range(0, len(good), SHARE)))
+        parts = list(pool.map(part, order, [followed for _, followed in courses]))
     if parts:
+        good = good[np.concatenate(order)]
+        own = {name: column[good] for name, column in design.items()}
         values, bounds, codes, flags, second = (np.concatenate(arrays) for arrays in zip(*parts))
         status[good] = codes
         valued = np.isin(codes, VALUED)
-        scales = _scales(kind, own)
+        scales, inside = _scales(kind, own), wall_volume_inside(own)
+        if bodies is not None:
+            scales["mid_radius"], inside = bodies.surface(own)
         for k, name in enumerate(names):
             number = values[:, k] * scales[name]
             if name == "volume":
-                number = number - wall_volume_inside(own)
+                number = number - inside
             found[name][good] = np.where(valued, number, np.nan)
             found[f"{name}_error"][good] = np.where(valued, bounds[:, k] * scales[name], np.nan)
         slack[good] = np.where(valued, flags, 0)
@@ -76,6 +95,27 @@ def solve(kind, points, energy, accuracy, largest_pressure=None, model=MODELS["s
     return found
 
 
+def _courses(design, good, accuracy, cells, bodies):
+    """``(points, (course, its error))`` of each course along tubes, of those that are ``good``, and their statuses: of a
+    body that there is not INVALID.
+    """
+    from ..solver.batch import uniform
+
+    status = np.full(len(good), NOT_CONVERGED, np.int8)
+    if bodies is None:
+        return [(good[k : k + SHARE], (uniform(cells), 0.0)) for k in range(0, len(good), SHARE)], status
+    found = []
+    each, which = distinct({name: design[name][good] for name in COURSE}, COURSE)
+    for k, numbers in enumerate(each):
+        course = followed(bodies.tube(numbers.tolist()), accuracy, bool(bodies.rules))
+        if course is None:
+            status[which == k] = INVALID
+            continue
+        (rows, edges, places), error = course
+        found.append((good[which == k], ((rows, edges * (cells // CELLS), places), error)))
+    return found, status
+
+
 def _scales(kind, own):
     r, c10 = own["fiber_radius"], own["c10"]
     if kind == reference.LENGTH_HELD:
@@ -85,7 +125,7 @@ def _scales(kind, own):
     return output_scales(own)
 
 
-def _free(rows, pressure, most, accuracy, cells, thorough):
+def _free(rows, pressure, most, accuracy, followed, thorough):
     """Free states of problems (k, ...), each at its own pressure, and followed to ``most`` (k,) if that is given."""
     from ..solver import batch
 
@@ -94,20 +134,22 @@ def _free(rows, pressure, most, accuracy, cells, thorough):
     pressures = pressure if most is None else np.column_stack([pressure, np.maximum(most, pressure)]).ravel()
     first = steps * np.arange(count + 1, dtype=np.int64)
     rows, pressures = np.ascontiguousarray(rows), np.ascontiguousarray(pressures)
-    if thorough or config.DISABLE_JIT:
-        walks = batch.walk_all(rows, first, pressures, batch.uniform(cells), accuracy, soon=True)
+    tube, error = followed
+    if thorough or config.DISABLE_JIT or len(tube[0]):
+        walks = batch.walk_all(rows, first, pressures, tube, accuracy - SENSITIVITY * error, soon=True)
     else:
         walks = batch._nothing(rows, len(pressures), batch.NOTHING)
-        batch._walk_lanes(rows, first, pressures, cells, accuracy, batch.NOTHING, walks)
+        batch._walk_lanes(rows, first, pressures, int(tube[1][-1]), accuracy, batch.NOTHING, walks)
         walks.status[walks.status == PENDING] = NOT_CONVERGED
     own = slice(0, None, steps)
-    return walks.values[own], walks.bounds[own], walks.status[own], walks.slack[own], walks.limits
+    bounds, limits = widened(walks.values, walks.bounds, error)[own], walks.limits.copy()
+    limits[:, 1] = widened(*limits.T, error)
+    return walks.values[own], bounds, walks.status[own], walks.slack[own], limits
 
 
-def _held(kind, rows, own, accuracy, cells, thorough):
+def _held(kind, rows, own, accuracy, followed, thorough):
     """Held states of problems (k, ...), each at its own pressure."""
     from ..solver import hold_batch
-    from ..solver.batch import uniform
     from ..solver.held.held_state import HELD_LENGTH, HELD_ROTATION
     from ..solver.problem import LENGTH, PROBLEM_SIZE
 
@@ -118,11 +160,13 @@ def _held(kind, rows, own, accuracy, cells, thorough):
         np.ascontiguousarray(rows), targets, HELD_LENGTH if length else HELD_ROTATION, np.arange(count + 1),
         own["pressure"] / own["c10"],
     )  # fmt: skip
-    if thorough or config.DISABLE_JIT:
-        found = hold_batch.hold_all(*asked, uniform(cells), accuracy, soon=True)
+    tube, error = followed
+    if thorough or config.DISABLE_JIT or len(tube[0]):
+        found = hold_batch.hold_all(*asked, tube, accuracy - SENSITIVITY * error, soon=True)
     else:
         found = hold_batch._pending(count)
         if rows.shape[1] == PROBLEM_SIZE:  # vectors hold the source's tubes only
-            hold_batch._hold_lanes(*asked, cells, accuracy, found)
+            hold_batch._hold_lanes(*asked, int(tube[1][-1]), accuracy, found)
         found.status[found.status == PENDING] = NOT_CONVERGED
-    return found.values[:, None], found.bounds[:, None], found.status, np.zeros(count, np.int64), found.stable
+    bounds = widened(found.values, found.bounds, error)
+    return found.values[:, None], bounds[:, None], found.status, np.zeros(count, np.int64), found.stable

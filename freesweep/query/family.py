@@ -49,6 +49,17 @@ FAMILIES = {
     "limit": Family(r.NONE, {"limit_pressure": r.PLAIN}, None, "limit_found", "limit_pressure_status"),
 }
 FAMILY_OF = {name: key for key, family in FAMILIES.items() for name in family.variables}
+
+
+def family_of(key, of_bodies) -> Family:
+    """A family of an atlas of tubes, or ``of_bodies`` of revolution."""
+    family = FAMILIES[key]
+    if not of_bodies:
+        return family
+    variables = {name: r.BODY_RADIUS if kind == r.MID_RADIUS else kind for name, kind in family.variables.items()}
+    return family._replace(variables=variables)
+
+
 IDEAL = ("ideal_blocked_force", "ideal_blocked_torque")  # closed forms: evaluated, never interpolated
 
 MIRRORED = ("rotation", "locked_rotation", "blocked_torque", "ideal_blocked_torque")  # turn round with both angles

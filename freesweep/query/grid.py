@@ -3,13 +3,13 @@
 import numpy as np
 
 from .axis import LABEL
-from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, UNIFORM, WALL
+from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, WALL
 
 
 class GridPoints:
     """Points of a grid over ``axes``; ``columns`` (d,) says where in a point an axis goes, -1: nowhere.
 
-    ``fixed`` (designs, 15): what the grid fixes; ``fiber_share``: see :func:`.locate.place`; ``by_length``:
+    ``fixed`` (designs, 17): what the grid fixes; ``fiber_share``: see :func:`.locate.place`; ``by_length``:
     whether what is held is given as a length.
     """
 
@@ -19,7 +19,7 @@ class GridPoints:
         self.shape = tuple(len(axis.nodes) for axis in axes)
 
     def slabs(self):
-        """Points (slab, 15) of each slab in turn, in an array that is used again."""
+        """Points (slab, 17) of each slab in turn, in an array that is used again."""
         points = np.empty((*self.shape[1:], len(COLUMNS)))
         for k in range(self.shape[0]):
             points[...] = self.fixed[k if self.axes[0].kind == LABEL else 0]
@@ -50,10 +50,11 @@ class GridStates:
                 fixed[:, column] = axis.values[0]
         own = GridPoints(axes, columns, fixed, points.fiber_share, points.by_length)
         found = [predictor.states(kind, slab) for slab in own.slabs()]
-        self.states = np.concatenate(found).reshape(*self.shape, UNIFORM)
+        self.states = np.concatenate(found).reshape(*self.shape, found[0].shape[1])
         self.whole = points.shape
 
     def slab(self, k):
         """States (slab, UNIFORM) of one slab of the whole grid."""
         states = self.states[min(k, self.shape[0] - 1)]
-        return np.ascontiguousarray(np.broadcast_to(states, (*self.whole[1:], UNIFORM))).reshape(-1, UNIFORM)
+        width = states.shape[-1]
+        return np.ascontiguousarray(np.broadcast_to(states, (*self.whole[1:], width))).reshape(-1, width)

@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from ..atlas.schema import PARAMETERS
+from ..atlas.schema import PARAMETERS, SHAPE
+from ..description.local import Bodies, rules_of
 from ..description.tube_model import SHARES, model_of
 from .axis import make_axis
 
 DEFAULTS = {"fiber_extension": 1.0, "c01": 0.0, "c20": 0.0, "c30": 0.0, "force": 0.0, "torque": 0.0}
+DEFAULTS |= dict.fromkeys(SHAPE, 0.0)
 
 
 class Frame:
@@ -33,6 +35,7 @@ class Frame:
         self.sizes = dict(data.sizes)
         self.energy = data.attrs.get("energy", "full")
         self.model = model_of(data.attrs)
+        self.bodies = Bodies(self.model, rules_of(data.attrs)) if set(SHAPE) & set(self.values) else None
         self.accuracy = float(data.attrs.get("accuracy", 1e-6))
         self.title = data.attrs.get("title", "")
         self._axes = {}
@@ -63,6 +66,11 @@ class Frame:
         return [name for name in self.values if name not in self.by_design]
 
     @property
+    def in_numbers(self) -> bool:
+        """Whether numbers describe the designs in full: tubes that are the same all along, or bodies of a taper, a bulge."""
+        return {"alpha", "beta", "length", "radius", "wall", "c10"} <= set(self.values)
+
+    @property
     def uniform_along_x(self) -> bool:
         """Whether the designs are the same all along the tube, and described in full."""
-        return {"alpha", "beta", "length", "radius", "wall", "c10"} <= set(self.values)
+        return self.in_numbers and self.bodies is None

@@ -145,6 +145,6 @@ def _restore(table, name, points, states, effects, out):
     """Values at end effects (n,) into ``out[0]``."""
     nothing = np.zeros(len(effects))
     args = (effects, nothing, nothing, out[0], out[1], out[2])
-    reference.restore_all(table.family.variables[TOLD_FROM.get(name, name)], points, states, *args)
+    table.predictor.restore(table.family.variables[TOLD_FROM.get(name, name)], points, states, *args)
     if name in TOLD_FROM:
         out[0] = table.predictor.outer_radius(points, out[0], nothing, nothing)[0]

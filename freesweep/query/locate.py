@@ -47,11 +47,11 @@ def place(
 ):  # fmt: skip
     """Place points (n, k) in a table.
 
-    ``fixed`` (designs, 15): what the atlas fixes of a point. ``options``: share of the wall inside the fibers (-1: their
+    ``fixed`` (designs, 17): what the atlas fixes of a point. ``options``: share of the wall inside the fibers (-1: their
     radius is given), whether
     HELD is given as a length, whether there are statuses; which of what is asked are both angles and the design (-1: none).
     ``codes`` and ``cells`` (2, nodes): codes, and those of slack fibers, of the nodes and of their cells. Out: ``points``
-    (n, 15), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7): status, code, code of slack fibers, cell, node (-1: between
+    (n, 17), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7): status, code, code of slack fibers, cell, node (-1: between
     nodes), 1 if exchanged, 1 if mirrored.
     """
     fiber_share, by_length, has_status, a, b, design = options

@@ -19,6 +19,7 @@ from .refine import exact_answers
 SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
 FEWEST, FEW = 2_000, 10_000  # at least, and at most, of physical tubes, which take a thousand times as long
+FEWEST_BODIES = 500  # of bodies, each of which is followed along and solved by itself
 HELD_SHARE, SLACK_SHARE = 2, 4  # held states cost more, slack shares are solved for once more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
 LOOSE_SHARPER = 1.0  # where fibers go slack digits are dear, and what lies between nodes errs by far more
@@ -41,10 +42,12 @@ def measured(data, designs=None) -> dict:
     rotations to 0.1 degree, small loads to a hundredth of pi r^2 P).
     """
     reader = Reader(data)
-    if not reader.frame.uniform_along_x:
+    if not reader.frame.in_numbers:
         return {}
     answered, variables = {}, {}
     least, most = (FEWEST, FEW) if reader.frame.model.is_physical else (LEAST, MOST)
+    if reader.frame.bodies is not None:
+        least, most = FEWEST_BODIES, FEWEST
     count = designs or int(np.clip(data["status"].size // EACH, least, most))
     for key, family in FAMILIES.items():
         names = sorted((name for name in family.variables if name in data), key=lambda name: name != "mid_radius")

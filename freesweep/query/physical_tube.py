@@ -58,7 +58,7 @@ def rubber_at(point, columns):
 
 @kernel
 def problem(point, thick, loose, columns):
-    """``(cell, load)`` of a point (15,), as the solver takes them."""
+    """``(cell, load)`` of a point (17,), as the solver takes them."""
     ta, tb = math.tan(math.radians(point[ALPHA])), math.tan(math.radians(point[BETA]))
     r, c10, within = point[FIBERS], point[C10], point[RADIUS] / point[FIBERS]
     area = ((point[RADIUS] + point[WALL]) / r) ** 2 - within * within
@@ -134,7 +134,7 @@ def held_stretch(kind, point, cell, gamma):
 
 @kernel
 def uniform(kind, point, thick, loose, columns, out):
-    """The uniform state of a kind at a point (15,) into ``out`` (UNIFORM,), as :func:`reference.uniform` has it."""
+    """The uniform state of a kind at a point (17,) into ``out`` (UNIFORM,), as :func:`reference.uniform` has it."""
     cell, load = problem(point, thick, loose, columns)
     (h, d, area), (gamma, rubber, wall, p, f, m, _) = cell, load
     for k in range(len(out)):
@@ -187,7 +187,7 @@ def pulling(y, pull, G_1, psi, cell, load):
 
 @functools.partial(entry_point, others=("solver",))
 def physical_states(kind, points, thick, loose, columns, out):
-    """:func:`uniform` of points (n, 15) into ``out`` (n, UNIFORM); ``thick`` and ``loose``: 0.0 or 1.0; ``columns`` of the
+    """:func:`uniform` of points (n, 17) into ``out`` (n, UNIFORM); ``thick`` and ``loose``: 0.0 or 1.0; ``columns`` of the
     rubber's constants: MOONEY_RIVLIN or YEOH.
     """
     for k in range(len(points)):

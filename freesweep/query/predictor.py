@@ -4,15 +4,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..description.local import Bodies
 from ..description.tube_model import TubeModel
-from . import reference, slack
+from . import bodies, reference, slack
 
 
 class Predictor(NamedTuple):
-    """The uniform tubes of a ``model`` whose energy is ``energy``."""
+    """The uniform tubes of a ``model`` whose energy is ``energy``; of ``bodies`` those that they are locally."""
 
     model: TubeModel
     energy: str
+    bodies: Bodies | None = None
 
     @property
     def shear(self) -> float:
@@ -20,7 +22,24 @@ class Predictor(NamedTuple):
         return 0.0 if self.energy == "principal" else 1.0
 
     def states(self, kind, points) -> np.ndarray:
-        """Uniform states (n, UNIFORM) of a kind at points (n, 15)."""
+        """Uniform states of a kind at points (n, 17): (n, UNIFORM), of bodies (n, BODY)."""
+        if self.bodies is not None:
+            return bodies.states(kind, points, self.bodies, lambda local: self._tubes(kind, local))
+        return self._tubes(kind, points)
+
+    def terms(self, variable, points, states):
+        """What :mod:`reference` takes as the terms of a variable; None: its own."""
+        return None if self.bodies is None else bodies.terms(variable, points, states)
+
+    def restore(self, variable, points, states, *arrays):
+        """As :func:`reference.restore_all`."""
+        reference.restore_all(variable, points, states, *arrays, self.terms(variable, points, states))
+
+    def end_effects(self, variable, kind, points, states, *arrays):
+        """As :func:`reference.end_effects`."""
+        reference.end_effects(variable, kind, points, states, *arrays, self.terms(variable, points, states))
+
+    def _tubes(self, kind, points):
         if self.model.is_physical:
             return self.physical(kind, points)
         found = np.empty((len(points), reference.UNIFORM))
@@ -62,12 +81,14 @@ class Predictor(NamedTuple):
         return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0])
 
     def slack_families(self, points, states, mid_radius) -> np.ndarray:
-        """Flags (n,) of :func:`slack.slack_families` at points (n, 15), from the radius in the middle (n,) [m]."""
+        """Flags (n,) of :func:`slack.slack_families` at points (n, 17), from the radius in the middle (n,) [m]."""
         told = np.empty(len(points), np.uint8)
-        if not self.model.is_physical:
+        if self.bodies is not None:  # no first integral
+            told[:] = slack.UNKNOWN
+        elif not self.model.is_physical:
             slack.slack_families(points, states, mid_radius, self.shear, told)
-            return told
-        from .physical_tube import slack_somewhere
+        else:
+            from .physical_tube import slack_somewhere
 
-        slack_somewhere(points, mid_radius, *self._physical(points), told)
+            slack_somewhere(points, mid_radius, *self._physical(points), told)
         return told

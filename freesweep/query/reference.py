@@ -17,13 +17,15 @@ from .uniform_tube import energy, kinematics, locked_squared_stretch, squared_st
 # columns of a point: one design and its load, in SI units and degrees; HELD: length ratio [1] or rotation [degree]
 COLUMNS = (
     "alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "c10", "c01", "force", "torque",
-    "pressure", "held", "c20", "c30",
+    "pressure", "held", "c20", "c30", "taper", "bulge",
 )  # fmt: skip
 ALPHA, BETA, LENGTH, RADIUS, WALL, FIBERS, EXTENSION, C10, C01, FORCE, TORQUE, PRESSURE, HELD, C20, C30 = range(15)
+TAPER, BULGE = 15, 16
 
 NONE, LOADED, LOCKED, LENGTH_HELD, ROTATION_HELD = range(5)  # kinds of states; and variables:
 PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE = range(8)
 SLACK_ALPHA, SLACK_BETA, OUTER_RADIUS = range(8, 11)  # the last is told from the middle's
+BODY_RADIUS = 11  # the middle's of a body, which does not only lack something (:mod:`.bodies`)
 
 UNIFORM = 10  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier, its rounding, and
 TAUT = 9  # which fibers of a physical tube pull: 0 none, 1 alpha, 2 beta, 3 both
@@ -37,13 +39,13 @@ LEAST = 1e-7  # q - 1 or H below it: what the ends add cannot be told from round
 
 @kernel
 def rubber_at(point):
-    """C01, C20, C30 over C10 at a point (15,)."""
+    """C01, C20, C30 over C10 at a point (17,)."""
     return point[C01] / point[C10], point[C20] / point[C10], point[C30] / point[C10]
 
 
 @kernel
 def uniform(kind, point, shear, out):
-    """The uniform state of a kind at a point (15,) into ``out`` (UNIFORM,); NaN where there is none."""
+    """The uniform state of a kind at a point (17,) into ``out`` (UNIFORM,); NaN where there is none."""
     ta, tb = math.tan(math.radians(point[ALPHA])), math.tan(math.radians(point[BETA]))
     h, d, gamma = 0.5 * (ta + tb), 0.5 * (ta - tb), point[EXTENSION]
     r, c10 = point[FIBERS], point[C10]
@@ -119,32 +121,34 @@ def reference(variable, point, u):
 
 @entry_point
 def uniform_states(kind, points, shear, out):
-    """:func:`uniform` of points (n, 15) into ``out`` (n, UNIFORM)."""
+    """:func:`uniform` of points (n, 17) into ``out`` (n, UNIFORM)."""
     for k in range(len(points)):
         uniform(kind, points[k], shear, out[k])
 
 
 @entry_point
 def references(variable, points, states, terms):
-    """:func:`reference` of points (n, 15) with uniform states (n, UNIFORM) into ``terms`` (n, 3)."""
+    """:func:`reference` of points (n, 17) with uniform states (n, UNIFORM) into ``terms`` (n, 3)."""
     for k in range(len(points)):
         terms[k, 0], terms[k, 1], terms[k, 2] = reference(variable, points[k], states[k])
 
 
-def restore_all(variable, points, states, effects, rests, noise, values, estimates, bounds):
+def restore_all(variable, points, states, effects, rests, noise, values, estimates, bounds, terms=None):
     """From interpolated end effects (n,), what the next order would add and their bounds, to values and theirs, (n,) each.
 
-    ``points`` (n, 15) with uniform states (n, UNIFORM).
+    ``points`` (n, 17) with uniform states (n, UNIFORM); ``terms`` (n, 3), if they are not those of :func:`references`.
     """
-    terms = np.empty((len(points), 3))
-    references(variable, points, states, terms)
+    if terms is None:
+        terms = np.empty((len(points), 3))
+        references(variable, points, states, terms)
     _restore(variable, points, states, terms, effects, rests, noise, values, estimates, bounds)
 
 
-def end_effects(variable, kind, points, states, stored, errors, effects, noise):
+def end_effects(variable, kind, points, states, stored, errors, effects, noise, terms=None):
     """Stored numbers (n,) and their bounds as end effects and their bounds, (n,); NaN where the neighbours have to say."""
-    terms = np.empty((len(points), 3))
-    references(variable, points, states, terms)
+    if terms is None:
+        terms = np.empty((len(points), 3))
+        references(variable, points, states, terms)
     # arrays that may not be written to, as those of a file, are a type of their own
     states, stored, errors = (np.require(array, requirements="W") for array in (states, stored, errors))
     _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise)

@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from ..description.along import written
 from ..description.given import numbers
+from ..description.local import UNITS
 from ..status import NOT_INTERPOLABLE, VALUED
 from . import reference
 from .answer import Inquiry
@@ -24,14 +26,14 @@ def refine_answers(reader, question, names, found) -> None:
         todo = np.flatnonzero(found[family.answer_status] == NOT_INTERPOLABLE)
         if not len(todo):
             continue
-        if not reader.frame.uniform_along_x:
-            raise QueryError(["refine: the tubes of this atlas vary along x; solve them with freesweep.inflate"])
+        if not reader.frame.in_numbers:
+            raise QueryError(["refine: the tubes of this atlas have profiles; solve them with freesweep.inflate"])
         points = as_points(reader, key, {name: array[todo] for name, array in values.items()})
         put(found, todo, exact_answers(reader, key, points, own))
 
 
 def as_points(reader, key, values):
-    """Points (n, 15) of one family, as they were asked: ``values`` axis -> (n,)."""
+    """Points (n, 17) of one family, as they were asked: ``values`` axis -> (n,)."""
     table = reader.table(key, values)
     inquiry = Inquiry(table, {name: values[name] for name in table.known})
     points = inquiry.points
@@ -44,12 +46,13 @@ def as_points(reader, key, values):
 
 
 def exact_answers(reader, key, points, names, accuracy=None) -> dict:
-    """Exact answers of one family at points (n, 15): name -> (n,), as :meth:`Reader.answer` gives them."""
+    """Exact answers of one family at points (n, 17): name -> (n,), as :meth:`Reader.answer` gives them."""
     family, frame = FAMILIES[key], reader.frame
     accuracy = frame.accuracy if accuracy is None else accuracy
     limit = key == "limit"
     most = frame.ranges["pressure"][1] if limit else None
-    solved = solve(reference.LOADED if limit else family.kind, points, frame.energy, accuracy, most, frame.model)
+    kind = reference.LOADED if limit else family.kind
+    solved = solve(kind, points, frame.energy, accuracy, most, frame.model, bodies=frame.bodies)
     found = {}
     for name in names:
         of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
@@ -85,7 +88,7 @@ def profiles(reader, question, x):
     from ..description.actuator import Actuator
     from ..description.elastomer import rubber_of
 
-    if "state" not in {FAMILY_OF.get(name) for name in reader.names} or not reader.frame.uniform_along_x:
+    if "state" not in {FAMILY_OF.get(name) for name in reader.names} or not reader.frame.in_numbers:
         raise QueryError(["x: this atlas holds no states under pressure whose profiles could be solved"])
     if question.size > MOST_PROFILES:
         raise QueryError([f"x: {question.size:,} points, at most {MOST_PROFILES:,} with profiles; ask in parts"])
@@ -115,6 +118,9 @@ def _inflated(design, stations, frame, actuator, material):
     loads = {name: design.pop(name) for name in ("pressure", "force", "torque")}
     design.pop("held")
     rubber = material(*(design.pop(name) for name in ("c10", "c01", "c20", "c30")))
+    if frame.bodies is not None:
+        design["fiber_radius"] = frame.model.fiber_radius
+        design |= {name: written(name, design[name], UNITS[name]) for name in frame.bodies.rules}
     try:
         parts = {name: getattr(frame.model, name) for name in ("wall_model", "fibers")}
         tube = actuator(**design, material=rubber, energy=frame.energy, model="source", **parts)

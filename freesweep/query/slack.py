@@ -35,7 +35,7 @@ def tensions(q, h, d, gamma, rubber, shear, area, p, f, m, s):
 def slack_families(points, states, mid_radius, shear, out):
     """Bit 1: the alpha family would have to push somewhere, bit 2: the beta family; UNKNOWN where it is too close to say.
 
-    Points (n, 15), their uniform states (n, 8) and radii in the middle (n,) [m]; into ``out`` (n,).
+    Points (n, 17), their uniform states (n, 8) and radii in the middle (n,) [m]; into ``out`` (n,).
     """
     for k in range(len(points)):
         u, point = states[k], points[k]

@@ -9,13 +9,13 @@ from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
 from .cells import describe
-from .family import FAMILIES, TOLD_FROM
+from .family import TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
 from .missing_nodes import cell_codes, fill, slopes
 from .phases import slopes_within
 from .predictor import Predictor
-from .reference import COLUMNS, end_effects
+from .reference import COLUMNS
 from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
@@ -40,7 +40,8 @@ class Table:
 
     def __init__(self, data, frame, key, box=None):
         self.data, self.frame = data, frame
-        self.family, self.predictor = FAMILIES[key], Predictor(frame.model, frame.energy)
+        self.family = family_of(key, frame.bodies is not None)
+        self.predictor = Predictor(frame.model, frame.energy, frame.bodies)
         self.names = frame.axes_of(self.family.variables)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
         whole = [frame.axis(name) for name in self.names]
@@ -196,7 +197,8 @@ class Table:
     def states(self) -> GridStates:
         """Uniform states of the grid."""
         if self._states is None:
-            without = ("length",) if self.family.kind in (reference.LOADED, reference.LOCKED) else ()
+            of_tubes = self.family.kind in (reference.LOADED, reference.LOCKED) and self.predictor.bodies is None
+            without = ("length",) if of_tubes else ()
             self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
         return self._states
 
@@ -228,7 +230,7 @@ class Table:
         for k, points in enumerate(self._points().slabs()):
             here = slice(k * size, (k + 1) * size)
             args = (stored[here], errors[here], effects[here], noise[here])
-            end_effects(*kinds, points, self.states().slab(k), *args)
+            self.predictor.end_effects(*kinds, points, self.states().slab(k), *args)
         effects[~number], noise[~number] = np.nan, 0.0
         return effects, noise
 

@@ -1,18 +1,15 @@
 """The designs of a sweep: all combinations of its axes but pressure. Any of them at a time, never all at once."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..description.actuator import APART, VARYING
-from ..description.along import written
-from ..description.profiles import ProfileError, as_profile, follow, together
+from ..description.courses import distinct, followed
+from ..description.local import COURSE, Bodies
+from ..description.profiles import as_profile
 from ..description.revolution import resolved, wall_volume_inside
-from ..description.tube_model import SHARES, fiber_place
-
-NAMES = ("alpha", "beta", "wall", "length", "radius", "fiber_radius", "taper", "bulge")  # what a course is made of
+from ..description.tube_model import fiber_place
 
 
 class Grid:
@@ -47,27 +44,17 @@ class Grid:
         """Of designs ``at`` (n,), bodies of revolution: radius of the fibers at half length [m], and volume between cavity
         and fibers [m3]; (2, n).
         """
-        designs, which = self.distinct(at)
+        designs, which = distinct(self.columns(at), COURSE)
         bodies = [self.tube(design) for design in designs]
         found = np.array([(resolved(body).fibers.at(0.5)[0], wall_volume_inside(body)) for body in bodies])
         return found.reshape(-1, 2)[which].T
 
-    def distinct(self, at):
-        """What of designs ``at`` (n,) makes their course, each once, (k, NAMES), and which is whose."""
-        columns = self.columns(at)
-        none = np.zeros(len(at))
-        return np.unique(np.column_stack([columns.get(name, none) for name in NAMES]), axis=0, return_inverse=True)
-
     def tube(self, design):
-        """What :mod:`freesweep.description.revolution` takes for a tube, of a ``design`` of :meth:`distinct`."""
-        sweep, numbers = self.sweep, dict(zip(NAMES, design.tolist()))
-        numbers |= {name: written(name, numbers[name], VARYING[name]) for name in sweep.rules}
-        if sweep.is_of_bodies:  # the straight ones among them, too
-            numbers["radius"] = [(0.0, numbers["radius"]), (1.0, numbers["radius"])]
-        numbers |= sweep.profiles
-        numbers["fiber_surface"] = numbers.pop("fiber_radius")
-        model = sweep.model
-        return SimpleNamespace(**numbers, fiber_share=SHARES[model.fiber_radius], is_thick=model.is_thick)
+        """What :mod:`freesweep.description.revolution` takes for a tube, of a ``design``: numbers for COURSE."""
+        found = Bodies(self.sweep.model, self.sweep.rules).tube(design.tolist(), self.sweep.profiles)
+        if not self.sweep.is_of_bodies:
+            found.radius = design.tolist()[COURSE.index("radius")]
+        return found
 
     def within(self, other, at):
         """Where the designs ``at`` of this grid lie in ``other``, which has all its dimensions: first along the others."""
@@ -91,18 +78,6 @@ def tubes(grid, at):
     """Courses, with errors, of the designs ``at`` where some profile varies, each once, and which is whose: see ``Job``."""
     if not grid.sweep.varies:
         return [], np.zeros(len(at), np.int64)
-    designs, which = grid.distinct(at)
-    return [_followed(grid.tube(design), grid.sweep) for design in designs], which
-
-
-def _followed(tube, sweep):
-    """The course of a tube and its error; None of one that there is not."""
-    try:
-        if sweep.rules:  # whose angles are known at x = 0 only
-            parts = resolved(tube)
-            alpha, beta = together(parts.first, parts.second)
-            if np.abs(alpha - beta).min() < APART or len(set(np.sign(alpha - beta))) > 1:
-                return None
-        return follow(tube, sweep.accuracy)
-    except ProfileError:
-        return None
+    sweep = grid.sweep
+    designs, which = distinct(grid.columns(at), COURSE)
+    return [followed(grid.tube(design), sweep.accuracy, bool(sweep.rules)) for design in designs], which

@@ -106,7 +106,7 @@ def _strained(part, measure):
     profile = profile_of(part.attrs, "radius")
     if profile is not None or set(SHAPE) & set(own):
         near = None if profile is None else profile.at(0.0)[0]
-        own = Bodies(model.fiber_radius, rules_of(part.attrs)).at(own, 0.5, near)
+        own = Bodies(model, rules_of(part.attrs)).at(own, 0.5, near)
     own["fiber_radius"] = fiber_surface(own, model)
     if model.is_physical:
         return _of_physical(part, own, model, measure)

@@ -40,7 +40,7 @@ def faults(points) -> list:
 
 
 def columns(points, kind):
-    """Points (n, 15) as :mod:`freesweep.query.exact` takes them."""
+    """Points (n, 17) as :mod:`freesweep.query.exact` takes them."""
     known = dict(points.column) | {"fiber_radius": points.radius, "held": np.zeros(points.count)}
     if kind == reference.LENGTH_HELD:
         known |= {"force": 0.0 * points.radius, "held": points.target(0) * points.radius / known["length"]}
