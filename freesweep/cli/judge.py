@@ -72,14 +72,14 @@ def _compared(atlas, options):
     from ..verification.restate import finer
 
     points = draw(atlas.data, options.resolve, options.seed)
-    return points, *(finer if points.model.is_physical else resolve)(points)
+    return points, *(resolve if points.has_first_integral else finer)(points)
 
 
 def _resolve(atlas, options):
     from ..verification.cross_check import table
 
     points, comparisons, notes = _compared(atlas, options)
-    if not points.model.is_physical:
+    if points.has_first_integral:
         print(
             "solved anew by quadrature of the first integral, which shares nothing with the finite-difference solver:\n"
         )

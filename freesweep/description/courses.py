@@ -3,8 +3,10 @@
 import numpy as np
 
 from .actuator import APART
-from .profiles import ProfileError, follow, together
+from .profiles import SENSITIVITY, ProfileError, follow, together
 from .revolution import resolved
+
+SHARE = 0.03  # of the accuracy that the splines of one of many courses may use: they are short, and soon made
 
 
 def distinct(columns, names):
@@ -25,6 +27,6 @@ def followed(tube, accuracy, ruled=False):
             alpha, beta = together(parts.first, parts.second)
             if np.abs(alpha - beta).min() < APART or len(set(np.sign(alpha - beta))) > 1:
                 return None
-        return follow(tube, accuracy)
+        return follow(tube, accuracy, SHARE * accuracy / SENSITIVITY)
     except ProfileError:
         return None

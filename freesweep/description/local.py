@@ -43,7 +43,7 @@ class Bodies(NamedTuple):
             wall = section / (np.sqrt(inner**2 + section) + inner)
         found = design | {"radius": inner, "wall": wall, "fiber_radius": inner + part * wall}
         with np.errstate(invalid="ignore"):
-            for name in {"alpha", "beta"} & set(self.rules):
+            for name in {"alpha", "beta"} & set(self.rules) & set(design):
                 sine = np.sin(np.radians(design[name])) * first / found["fiber_radius"]
                 found[name] = np.degrees(np.arcsin(sine))
         return found

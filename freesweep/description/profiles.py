@@ -230,9 +230,9 @@ def together(first, second):
     )
 
 
-def course(tube):
+def course(tube, fine=FINE):
     """``((course, edges, places), error)`` of a tube that varies: the first as the kernels take them, lengths in radii; the
-    largest relative error of its splines. A body's course has an axis more
+    largest relative error of its splines, below ``fine`` if that can be. A body's course has an axis more
     (:mod:`freesweep.solver.numerics.properties_along`).
 
     Raises :class:`ProfileError` where a profile changes too fast to be followed.
@@ -250,7 +250,7 @@ def course(tube):
         breaks = _cut(breaks, lambda low, high: splines(low, high, LEAST_CELLS)[1])
     for pieces in PIECES:
         segments, errors = zip(*(splines(low, high, pieces) for low, high in pairwise(breaks)))
-        if max(errors) < FINE:
+        if max(errors) < fine:
             break
     if not max(errors) < FIT:
         raise ProfileError(_TOO_FAST.format(places=_span(breaks, int(np.argmax(errors)))))
@@ -321,11 +321,9 @@ def _splines(numbers, low, high, pieces, between):
     return np.ascontiguousarray(powers.transpose(1, 2, 0)), error
 
 
-def follow(tube, accuracy):
-    """The course along a tube that varies, and its error; raises :class:`ProfileError` also where that error is too large
-    for the ``accuracy``.
-    """
-    found, error = course(tube)
+def follow(tube, accuracy, fine=FINE):
+    """What :func:`course` gives; raises :class:`ProfileError` also where the error is too large for the ``accuracy``."""
+    found, error = course(tube, fine)
     if SENSITIVITY * error > 0.5 * accuracy:
         least = 2.0 * SENSITIVITY * error
         raise ProfileError(f"accuracy: found {accuracy:g}; the profiles of this tube can be followed to {least:.1g}")

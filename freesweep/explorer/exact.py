@@ -4,9 +4,12 @@ import warnings
 
 import numpy as np
 
+from ..atlas.schema import SHAPE
 from ..description.actuator import Actuator
+from ..description.along import written
 from ..description.elastomer import rubber_of
 from ..description.faults import ActuatorError
+from ..description.local import UNITS
 from ..description.tube_model import MODELS
 from ..plot.shape import shape_of
 from ..status import STATUSES, VALUED
@@ -20,13 +23,16 @@ def tube_of(desk, pin: dict) -> Actuator:
     from .desk import AskError
 
     frame = desk.reader.frame
-    if not frame.uniform_along_x:
-        raise AskError("the tubes of this atlas vary along x; solve them with freesweep.inflate")
+    if not frame.in_numbers:
+        raise AskError("the tubes of this atlas have profiles; solve them with freesweep.inflate")
     values = {name: array[0] for name, array in _columns(desk, pin).items()}
     rubber = rubber_of(*(float(values.get(name, 0.0)) for name in ("c10", "c01", "c20", "c30")))
     own = {name: float(values[name]) for name in ("alpha", "beta", "length", "radius", "wall", "fiber_extension")}
     usual = MODELS["source"]._asdict()
     parts = {name: part for name, part in frame.model._asdict().items() if part != usual[name]}
+    if frame.bodies is not None:
+        own |= {name: float(values.get(name, 0.0)) for name in SHAPE}
+        own |= {name: written(name, own[name], UNITS[name]) for name in frame.bodies.rules}
     if "fiber_radius" in frame.values:
         parts["fiber_radius"] = float(values["fiber_radius"])
     return Actuator(**own, **parts, material=rubber, energy=frame.energy, model="source")
@@ -112,6 +118,6 @@ def solved(desk, ask) -> dict:
                 "error": of["error"] / tube.length,
             }
             of = found[prefix + "mid_radius"]
-            scale = tube.fiber_surface
+            scale = np.ravel(tube.fiber_surface_at(0.5))[0]
             found[prefix + "relative_radius"] = of | {"value": of["value"] / scale, "error": of["error"] / scale}
     return {"measures": found, "slack": slack}

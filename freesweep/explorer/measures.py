@@ -156,7 +156,9 @@ def _columns(reader, values, size):
     for name in reader.frame.by_design:
         columns[name] = reader.frame.values[name][columns["design"].astype(int)]
     columns.setdefault("fiber_extension", np.ones(size))
-    if "radius" in columns:
+    if reader.frame.bodies is not None:  # whose shape is told at half length
+        columns["fiber_radius"] = reader.frame.bodies.at(columns, 0.5)["fiber_radius"]
+    elif "radius" in columns:
         columns["fiber_radius"] = fiber_surface(columns, reader.frame.model)
     return {name: array for name, array in columns.items() if name in PARAMETERS}
 

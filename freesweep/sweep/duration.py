@@ -9,8 +9,10 @@ import numpy as np
 
 from .plan import FREE
 
-TYPICAL, HELD, VARYING = 5e-6, 3e-4, 2e-3  # [s] of a free state on one core; of a held one; of any where tubes vary
+TYPICAL, HELD, VARYING = 5e-6, 3e-4, 1e-3  # [s] of a free state on one core; of a held one; of any where tubes vary
 PHYSICAL = 2e-3  # [s] of any of physical tubes
+BOTH = {FREE: 7e-3} | dict.fromkeys(("blocked_force", "blocked_torque"), 5e-2)  # [s] of physical tubes that vary
+FOLLOWED = 6e-3  # [s] of each tube that varies: its course is made of splines
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more than a second
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
@@ -22,10 +24,16 @@ KERNELS = {FREE: ("solve_lanes", "follow_many")} | dict.fromkeys(
 VARIED = KERNELS | {FREE: ("follow_many",)}
 
 
-def time_of(sweep, tables, equilibria, threads) -> str:
-    """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared."""
+def time_of(sweep, tables, equilibria, sizes, threads) -> str:
+    """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared;
+    ``sizes``: designs of each.
+    """
     alone = PHYSICAL if sweep.model.is_physical else VARYING if sweep.varies else None
     each = {kind: alone or (TYPICAL if kind == FREE else HELD) for kind in equilibria}
+    if sweep.varies:
+        bodies = {kind: tables[kind].count if tables else size for kind, size in sizes.items()}
+        own = BOTH if sweep.model.is_physical else each
+        each = {kind: own[kind] + FOLLOWED * bodies[kind] / max(equilibria[kind], 1) for kind in each}
     sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and _is_compiled(equilibria, sweep)
     if sampled:
         together = 1 if sweep.one_by_one else TOGETHER

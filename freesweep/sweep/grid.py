@@ -36,7 +36,7 @@ class Grid:
             if "wall" in self.sweep.profiles:
                 wall = as_profile(self.sweep.profiles["wall"]).samples().min()
             profile = self.sweep.profiles.get("radius")
-            inner = design["radius"] if profile is None else as_profile(profile).at(0.0)[0]
+            inner = design["radius"] if profile is None else np.full(len(at), as_profile(profile).at(0.0)[0])
             design["fiber_radius"] = fiber_place(self.sweep.model.fiber_radius, inner, wall)
         return design
 

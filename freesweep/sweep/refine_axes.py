@@ -11,22 +11,18 @@ from dataclasses import replace
 import numpy as np
 
 from ..atlas.schema import HELD
+from ..description.local import Bodies
 from ..description.tube_model import fiber_place
 from ..query import reference
 from ..query.axis import LABEL, make_axis
 from ..query.exact import solve
-from ..query.family import LOOSE
+from ..query.family import LOOSE, family_of
 from ..query.predictor import Predictor
 from ..status import VALUED
 
 SEED = 20260202
 DESIGNS = 400  # for each axis and round
-MEASURED = {
-    "deformed_length": reference.DEFORMED_LENGTH,
-    "rotation": reference.ROTATION,
-    "volume": reference.VOLUME,
-    "mid_radius": reference.MID_RADIUS,
-}
+MEASURED = ("deformed_length", "rotation", "volume", "mid_radius")
 SHARE = 0.25  # of the tolerance that true errors along one axis may use: several add up
 FACTOR = 5.0  # of estimates, beyond which an answer would be refused: about what measurements of atlases give
 FAILING = 0.02  # share of designs that may fail along one axis
@@ -37,9 +33,9 @@ ROUNDS = 40
 def graded(sweep, say=lambda text: None):
     """The sweep with nodes added to its axes until its ``interpolation_tolerance`` is met, or ``budget`` points are reached.
 
-    ``say`` is told of each round. A sweep of named designs, of tubes that vary along x, or without tolerance stays as it is.
+    ``say`` is told of each round. A sweep of named designs, of tubes with profiles, or without tolerance stays as it is.
     """
-    if sweep.interpolation_tolerance is None or sweep.designs or sweep.varies:
+    if sweep.interpolation_tolerance is None or sweep.designs or sweep.profiles:
         return sweep
     axes = {name: values for name, values in sweep.axes.items() if len(values) > 1 and name not in HELD}
     failing = {name: _failing(sweep, axes, name) for name in axes}
@@ -88,23 +84,28 @@ def _failing(sweep, axes, name):
     around[:, column] = axis.values[(axis.first[piece][:, None] + np.arange(axis.window)).ravel()]
     _place_fibers(sweep, points)
     _place_fibers(sweep, around)
-    exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy, model=sweep.model)
-    nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy, model=sweep.model)
-    predictor = Predictor(sweep.model, sweep.energy)
+    bodies = Bodies(sweep.model, sweep.rules) if sweep.is_of_bodies else None
+    exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy, model=sweep.model, bodies=bodies)
+    nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy, model=sweep.model, bodies=bodies)
+    predictor, variables = (
+        Predictor(sweep.model, sweep.energy, bodies),
+        family_of("state", sweep.is_of_bodies).variables,
+    )
     at, beside = (predictor.states(reference.LOADED, some) for some in (points, around))
     known = np.isin(exact["status"], VALUED) & np.isin(nodes["status"], VALUED).reshape(DESIGNS, -1).all(axis=1)
     fails = np.zeros(DESIGNS, bool)
-    for variable, kind in MEASURED.items():
+    for variable in MEASURED:
+        kind = variables[variable]
         effects, noise = np.empty(len(around)), np.empty(len(around))
         stored, errors = nodes[variable], nodes[f"{variable}_error"]
         args = (stored, errors, effects, noise)
-        reference.end_effects(kind, reference.LOADED, around, beside, *args)
+        predictor.end_effects(kind, reference.LOADED, around, beside, *args)
         effects = effects.reshape(DESIGNS, -1)
         effect = (weights * effects).sum(axis=1)
         rest = np.abs((axis.remainder[piece, : axis.window] * effects).sum(axis=1)) * 4.0 * share * (1.0 - share)
         value, estimate, bound = np.empty((3, DESIGNS))
         args = (effect, rest, np.zeros(DESIGNS), value, estimate, bound)
-        reference.restore_all(kind, points, at, *args)
+        predictor.restore(kind, points, at, *args)
         size = np.maximum(np.abs(exact[variable]), FLOOR if variable == "rotation" else 0.0)
         allowed = sweep.interpolation_tolerance * (10.0 if kind in LOOSE else 1.0) * size
         with np.errstate(invalid="ignore"):
@@ -114,7 +115,7 @@ def _failing(sweep, axes, name):
 
 
 def _fixed(sweep):
-    """What a sweep fixes of a point (13,)."""
+    """What a sweep fixes of a point (17,)."""
     point = np.zeros(len(reference.COLUMNS))
     for column, name in enumerate(reference.COLUMNS):
         if name in sweep.fixed:

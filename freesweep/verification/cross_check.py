@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..atlas.schema import VARIABLES, YEOH
+from ..atlas.schema import SHAPE, VARIABLES, YEOH
+from ..description.local import Bodies, rules_of
 from ..description.tube_model import fiber_surface, model_of
 from ..first_integral import folded, held
 from ..first_integral.tube import NO_GUIDE, OUTPUTS, SOLVED, cylinders, solve
@@ -32,13 +33,13 @@ class Compared(NamedTuple):
 
 
 def draw(data, count, seed=0):
-    """``count`` points with results from an atlas' Dataset; raises ValueError where its tubes vary along their length: they
-    have no first integral.
+    """``count`` points with results from an atlas' Dataset; raises ValueError where its tubes have profiles: no numbers
+    describe them.
     """
     if missing := [name for name in DESIGN if name not in data.coords]:
         raise ValueError(
-            f"--resolve: {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} no number in this atlas; the first"
-            " integral exists only for tubes that are the same all along"
+            f"--resolve: {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} no number in this atlas; only tubes"
+            " that numbers describe are solved anew"
         )
     return Points(data, count, seed)
 
@@ -75,8 +76,14 @@ class Points:
         self.column = {name: self.stored(name) for name in (*DESIGN, "pressure")}
         self.column |= {name: self.stored(name) if name in data else np.zeros(self.count) for name in YEOH}
         self.model = model_of(data.attrs)
+        self.bodies = Bodies(self.model, rules_of(data.attrs)) if set(SHAPE) & set(data.coords) else None
         given = {"fiber_radius": self.stored("fiber_radius")} if "fiber_radius" in data else {}
         self.radius = fiber_surface(self.column | given, self.model)
+
+    @property
+    def has_first_integral(self) -> bool:
+        """Whether the second method knows them: membranes with bonded fibers that are the same all along."""
+        return not self.model.is_physical and self.bodies is None
 
     def stored(self, name):
         """Numbers of a variable at the points (n,)."""

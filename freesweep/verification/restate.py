@@ -6,6 +6,7 @@ the atlas may be any; the others are those of the states solved alone, but for t
 
 import numpy as np
 
+from ..atlas.schema import SHAPE
 from ..description.tube_model import model_of
 from ..query import reference
 from ..query.exact import CELLS, solve
@@ -30,7 +31,7 @@ def faults(points) -> list:
         if key == "limit" or not names:
             continue
         most = highest if key == "state" else None
-        anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model)
+        anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model, bodies=points.bodies)
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
             found += _of_bounds(name, points, anew[of], anew[f"{of}_error"])
@@ -42,6 +43,7 @@ def faults(points) -> list:
 def columns(points, kind):
     """Points (n, 17) as :mod:`freesweep.query.exact` takes them."""
     known = dict(points.column) | {"fiber_radius": points.radius, "held": np.zeros(points.count)}
+    known |= {name: points.stored(name) if name in points.data else 0.0 for name in SHAPE}
     if kind == reference.LENGTH_HELD:
         known |= {"force": 0.0 * points.radius, "held": points.target(0) * points.radius / known["length"]}
     elif kind == reference.ROTATION_HELD:
@@ -50,8 +52,8 @@ def columns(points, kind):
 
 
 def finer(points):
-    """Comparisons of ``points`` of physical tubes, which the second method does not know, with states on a finer mesh; and
-    notes, as :func:`.cross_check.resolve` gives them.
+    """Comparisons of ``points`` of physical tubes or bodies, which the second method does not know, with states on a finer
+    mesh; and notes, as :func:`.cross_check.resolve` gives them.
     """
     if not points.count:
         return [], ["no point of this atlas has a result"]
@@ -63,14 +65,14 @@ def finer(points):
             continue
         anew = solve(
             family.kind, columns(points, family.kind), data.attrs["energy"], accuracy, None, points.model,
-            FINER * CELLS,
+            FINER * CELLS, bodies=points.bodies,
         )  # fmt: skip
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
             found.append(compare(points, name, anew[of], anew[f"{of}_error"]))
     found += ideal(points)
     return [compared for compared in found if compared is not None], [
-        "not by a second method, which knows membranes with bonded fibers only, but on a mesh"
+        "not by a second method, which knows cylinders, membranes with bonded fibers, only, but on a mesh"
         f" {FINER} times finer, to an accuracy {1.0 / SHARPER:g} times better"
     ]
 
