@@ -39,8 +39,8 @@ def problem_columns(design, energy, thick=False, threads=0.0) -> tuple:
         design.get("c20", 0.0) / c10,
         design.get("c30", 0.0) / c10,
     )
-    if thick or threads:
-        columns += ((inner / r) ** 2 * float(thick), 0.0 * area + float(threads))
+    if thick or np.any(threads):
+        columns += ((inner / r) ** 2 * float(thick), 0.0 * area + threads)
     return columns
 
 

@@ -15,6 +15,7 @@ and a pressure deforms the tube in inverse proportion to the sum of w over the w
 import numpy as np
 
 from .atlas.schema import SHAPE
+from .description.families import families_of
 from .description.local import Bodies, profile_of, rules_of
 from .description.tube_model import fiber_surface, model_of
 
@@ -92,6 +93,10 @@ def grid_attributes(data) -> dict:
     if model_of(data.attrs).is_thick:
         return {}
     arrays = {name: data[name] for name in (*DESIGN, *SHAPE) if name in data.coords}
+    families = families_of(data.attrs)
+    if len(families) < 2:  # the single one first
+        own = arrays.pop(families[0], None) if families else None
+        arrays |= {"alpha": xr.DataArray(np.nan) if own is None else own, "beta": xr.DataArray(np.nan)}
     profiles = {name: found for name in DESIGN if (found := profile_of(data.attrs, name)) is not None}
     arrays |= {name: xr.DataArray(profile.at(SHARE), dims="x") for name, profile in profiles.items()}
     few = {

@@ -54,7 +54,7 @@ def _of_axes(data):
             yield f"its axis {name} has no values"
     names = {*data.coords}
     for name in ALWAYS:
-        if name not in names and f"profile_{name}" not in data.attrs:
+        if name not in names and f"profile_{name}" not in data.attrs and data.attrs.get(f"family_{name}") != "none":
             yield f"{name} is missing among its coordinates"
     for name in data.coords:
         if name in ORDER:

@@ -7,6 +7,8 @@ and twist follow from the deformed angles of both lines. Two loose families of o
 A family that is not there has no angle (NaN) and no tension (0), and is not slack.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .tube_model import THREADS
@@ -40,6 +42,36 @@ def is_one(tube) -> bool:
 def threads(tube) -> float:
     """What the solver takes for the families that there are, and whether they may push."""
     return THREADS[len(followed(tube)), "loose" if tube.is_loose else "bonded"]
+
+
+class Lines(NamedTuple):
+    """What the solver follows of many designs, arrays (n,): angles [degree] of both lines, what families there are as the
+    solver takes it, and whether they are fewer than two.
+    """
+
+    alpha: np.ndarray
+    beta: np.ndarray
+    threads: np.ndarray
+    single: np.ndarray
+
+
+def lines_of(alpha, beta, names, loose, single=None) -> Lines:
+    """The lines of designs that have the families ``names``, of fiber angles (n,) [degree]; those that are ``single`` if it
+    is known, else where loose families share an angle.
+    """
+    fibers = "loose" if loose else "bonded"
+    if single is None:
+        single = (alpha == beta) & loose if len(names) == 2 else np.ones(alpha.shape, bool)
+    first = beta if names == ("beta",) else alpha if names else np.zeros_like(alpha)
+    with np.errstate(invalid="ignore"):
+        beside = np.degrees(np.arctan(other_line(np.tan(np.radians(first)))))
+    threads = np.where(single, THREADS[min(len(names), 1), fibers], THREADS[2, fibers])
+    return Lines(first, np.where(single, beside, beta), threads, single)
+
+
+def families_of(attributes) -> tuple:
+    """The families that an atlas tells in its attributes."""
+    return tuple(name for name in FAMILIES if attributes.get(f"family_{name}") != "none")
 
 
 def other_line(tangent):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .along import RULES, Profile, written
+from .families import FAMILIES
 from .profiles import as_profile
 from .revolution import shape, shape_slope
 from .tube_model import SHARES, TubeModel
@@ -23,6 +24,7 @@ class Bodies(NamedTuple):
 
     model: TubeModel
     rules: dict
+    families: tuple = FAMILIES
 
     @property
     def part(self) -> float:
@@ -71,6 +73,7 @@ class Bodies(NamedTuple):
         own = dict(zip(COURSE, numbers))
         own |= {name: written(name, own[name], UNITS[name]) for name in self.rules}
         own["radius"] = [(0.0, own["radius"]), (1.0, own["radius"])]  # of the straight ones, too
+        own |= {name: None for name in FAMILIES if name not in self.families}
         own |= profiles
         own["fiber_surface"] = own.pop("fiber_radius")
         return SimpleNamespace(**own, fiber_share=self.part, is_thick=self.model.is_thick)

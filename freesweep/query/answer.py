@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..atlas.schema import EXCHANGED
-from ..status import INACCURATE, NOT_INTERPOLABLE, OK
+from ..status import DEGENERATE, INACCURATE, NOT_INTERPOLABLE, OK
 from . import errors, reference, spline
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED, TOLD_FROM
@@ -36,6 +36,8 @@ class Inquiry:
         self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
         self.node = self.marks[:, 4]
         self.exact = self.node >= 0
+        if table.predictor.model.is_loose and table.family.kind != reference.LOCKED:  # one family holds the wall
+            self.status[(self.status == DEGENERATE) & ~self.exact] = NOT_INTERPOLABLE
         if table.is_untold:
             self.status[self.valued & ~self.exact] = NOT_INTERPOLABLE
         self.ranks = table.knots[np.arange(d), self.pieces, spline.RANK].astype(np.int64)

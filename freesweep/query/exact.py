@@ -8,6 +8,7 @@ from numba import config
 
 from ..description.actuator import APART, LARGEST_ANGLE
 from ..description.courses import distinct, followed
+from ..description.families import BITS, FAMILIES, lines_of
 from ..description.local import COURSE
 from ..description.profiles import SENSITIVITY, widened
 from ..description.tube_model import MODELS
@@ -22,39 +23,35 @@ SHARE = 512  # points that one thread solves at a time
 
 
 def solve(
-    kind,
-    points,
-    energy,
-    accuracy,
-    largest_pressure=None,
-    model=MODELS["source"],
-    cells=CELLS,
-    thorough=True,
-    bodies=None,
-):
+    kind, points, energy, accuracy, largest_pressure=None, model=MODELS["source"], cells=CELLS, thorough=True, bodies=None,
+    families=FAMILIES,
+):  # fmt: skip
     """States of a kind at points (n, 17) of tubes of a ``model``: name -> (n,) of numbers and ``_error`` bounds, ``status``
     and flags, on base meshes of so many ``cells``.
 
     With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``. Not ``thorough``: what
     vectors leave to the scalar kernels, a thousand times dearer, is left out. ``bodies``: the points are bodies'.
+    Without one of the ``families`` its angle says nothing.
     """
     count = len(points)
     design = {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(COLUMNS)}
     status = np.full(count, NOT_CONVERGED, np.int8)
-    apart = np.abs(design["alpha"] - design["beta"])
-    wide = np.maximum(np.abs(design["alpha"]), np.abs(design["beta"])) >= LARGEST_ANGLE
+    lines = lines_of(design["alpha"], design["beta"], families, model.is_loose)
+    apart = np.abs(lines.alpha - lines.beta)
+    wide = np.maximum(np.abs(lines.alpha), np.abs(lines.beta)) >= LARGEST_ANGLE
     outer = design["radius"] + design["wall"]
     fibers = (design["fiber_radius"] < design["radius"]) | (design["fiber_radius"] > outer * (1.0 + 1e-12))
-    status[(apart < APART) | wide | fibers] = INVALID
-    status[apart == 0.0] = DEGENERATE
+    status[((apart < APART) & ~lines.single) | wide | fibers] = INVALID
+    status[(apart == 0.0) | (lines.single & (kind == reference.LOCKED))] = DEGENERATE
     good = np.flatnonzero(status == NOT_CONVERGED)
     courses, status[good] = _courses(design, good, accuracy, cells, bodies)
     good = np.flatnonzero(status == NOT_CONVERGED)
     own = {name: column[good] for name, column in design.items()}
-    rows = problem_rows(own, energy, model.is_thick, model.is_loose)
+    of_lines = {"alpha": lines.alpha[good], "beta": lines.beta[good]}
+    rows = problem_rows(own | of_lines, energy, model.is_thick, lines.threads[good])
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
     names = ("force",) if kind == reference.LENGTH_HELD else ("torque",) if held else OUTPUTS
-    names += ALONG if model.is_physical and not held else ()
+    names += ALONG if (model.is_physical or len(families) < 2) and not held else ()
     found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
     slack, stable, limits = np.zeros(count, np.int8), np.zeros(count, np.int8), np.full((count, 2), np.nan)
     pressure = np.full(len(good), np.inf) if kind == reference.LOCKED else own["pressure"] / own["c10"]
@@ -85,6 +82,7 @@ def solve(
             found[name][good] = np.where(valued, number, np.nan)
             found[f"{name}_error"][good] = np.where(valued, bounds[:, k] * scales[name], np.nan)
         slack[good] = np.where(valued, flags, 0)
+        _tell_families(found, slack, lines.single, families)
         if held:
             stable[good] = second
         else:
@@ -93,6 +91,16 @@ def solve(
     found |= {"status": status, "slack_fiber": slack, "stable": stable}
     found |= {"limit_pressure": limits[:, 0], "limit_pressure_error": limits[:, 1]}
     return found
+
+
+def _tell_families(found, slack, single, families):
+    """What was found of the lines as that of the ``families``, where those are fewer than two."""
+    slack[single] = (slack[single] & 1) * sum(BITS[name] for name in families)
+    for end in ("", "_error"):
+        if f"slack_alpha{end}" in found:
+            own = found[f"slack_alpha{end}"][single]
+            for name in FAMILIES:
+                found[f"slack_{name}{end}"][single] = own if name in families else 0.0 * own
 
 
 def _courses(design, good, accuracy, cells, bodies):

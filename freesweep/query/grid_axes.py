@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..atlas.schema import PARAMETERS, SHAPE
+from ..description.families import families_of
 from ..description.local import Bodies, rules_of
 from ..description.tube_model import SHARES, model_of
 from .axis import make_axis
@@ -35,7 +36,9 @@ class Frame:
         self.sizes = dict(data.sizes)
         self.energy = data.attrs.get("energy", "full")
         self.model = model_of(data.attrs)
-        self.bodies = Bodies(self.model, rules_of(data.attrs)) if set(SHAPE) & set(self.values) else None
+        self.families = families_of(data.attrs)
+        of_bodies = set(SHAPE) & set(self.values)
+        self.bodies = Bodies(self.model, rules_of(data.attrs), self.families) if of_bodies else None
         self.accuracy = float(data.attrs.get("accuracy", 1e-6))
         self.title = data.attrs.get("title", "")
         self._axes = {}
@@ -68,9 +71,9 @@ class Frame:
     @property
     def in_numbers(self) -> bool:
         """Whether numbers describe the designs in full: tubes that are the same all along, or bodies of a taper, a bulge."""
-        return {"alpha", "beta", "length", "radius", "wall", "c10"} <= set(self.values)
+        return {*self.families, "length", "radius", "wall", "c10"} <= set(self.values)
 
     @property
     def uniform_along_x(self) -> bool:
-        """Whether the designs are the same all along the tube, and described in full."""
-        return self.in_numbers and self.bodies is None
+        """Whether the designs are the same all along the tube, have two families, and are described in full."""
+        return self.in_numbers and self.bodies is None and len(self.families) == 2

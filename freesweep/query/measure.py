@@ -120,6 +120,8 @@ def _compare(inquiry, name, places, exact, solved, reader):
 
 
 def _regions(inquiry):
+    if len(inquiry.table.predictor.families) < 2:
+        return np.full(inquiry.size, "")
     regions = closed_form.region(inquiry.points[:, ALPHA], inquiry.points[:, BETA])
     return np.where(regions == "AF", "IIa", np.where(regions == "LM", "IIb", regions))
 

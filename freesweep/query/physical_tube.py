@@ -12,7 +12,7 @@ from ..jit import entry_point, kernel
 from ..solver.load import Load
 from ..solver.physics.physical import density, kind_of, place, uniform_tube
 from ..solver.physics.relaxed import both_reach, multipliers, reach, taut_twist
-from ..solver.physics.wall import slopes, stored
+from ..solver.physics.wall import has_two_families, slopes, stored
 from .reference import (
     ALPHA,
     BETA,
@@ -43,6 +43,7 @@ MARCH, REMAINS = 60, 0.8  # steps in search of a bracket, and what each leaves o
 STEPS = 80  # of Newton's method inside it; between two active sets, where L_y all but jumps, of halving
 LAST_STEP = 1e-13  # of the stretch
 PULLS, ENOUGH = 30, 1e-10  # Newton's steps for the resultant, three are usual; share of the load that ends them
+FAR = 8.0  # of the stretch: balloons are past their limit long before
 LEAST = 1e-6  # of G, where fibers leave nothing
 MISSING = 1e-5  # of G, what a slack family lacks: below it, the stored state's own end decides otherwise
 MOONEY_RIVLIN, YEOH = (C01,), (C01, C20, C30)
@@ -70,14 +71,18 @@ def problem(point, thick, loose, columns):
 
 
 @kernel
-def longest(cell, gamma, loose, outward):
-    """The stretch at which taut fibers end: the larger one, or the smaller, which loose ones do not know."""
+def longest(cell, gamma, wall, outward):
+    """The stretch at which taut fibers end: the larger one, or the smaller, which loose ones do not know; of fewer than two
+    families that at which a search does.
+    """
+    if not has_two_families(wall):
+        return FAR if outward else 0.0
     h, d, g2 = cell[0], cell[1], gamma * gamma
     total = g2 * (1.0 + h * h + d * d)
     root = math.sqrt(max(total * total - 4.0 * g2 * g2 * d * d * h * h, 0.0))
     if outward:
         return math.sqrt(0.5 * (total + root)) / abs(d)
-    return 0.0 if loose else g2 * abs(h) * math.sqrt(2.0 / (total + root))
+    return 0.0 if wall[2] > 0.0 else g2 * abs(h) * math.sqrt(2.0 / (total + root))
 
 
 @kernel
@@ -88,7 +93,7 @@ def stretch(cell, load):
         return 1.0
     if not (room > 0.0 and abs(start) > 0.0):
         return math.nan
-    end = longest(cell, load.gamma, load.wall[2] > 0.0, start > 0.0)
+    end = longest(cell, load.gamma, load.wall, start > 0.0)
     inner, outer, share, before, value = 1.0, 1.0, 1.0, start, start
     for _ in range(MARCH):
         share *= REMAINS

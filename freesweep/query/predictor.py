@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..description.families import FAMILIES, lines_of
 from ..description.local import Bodies
-from ..description.tube_model import TubeModel
+from ..description.tube_model import THREADS, TubeModel
 from . import bodies, reference, slack
 
 
@@ -15,6 +16,12 @@ class Predictor(NamedTuple):
     model: TubeModel
     energy: str
     bodies: Bodies | None = None
+    families: tuple = FAMILIES
+
+    @property
+    def is_physical(self) -> bool:
+        """Whether the tubes are more than the source's, or have fewer families."""
+        return self.model.is_physical or len(self.families) < 2
 
     @property
     def shear(self) -> float:
@@ -40,7 +47,7 @@ class Predictor(NamedTuple):
         reference.end_effects(variable, kind, points, states, *arrays, self.terms(variable, points, states))
 
     def _tubes(self, kind, points):
-        if self.model.is_physical:
+        if self.is_physical:
             return self.physical(kind, points)
         found = np.empty((len(points), reference.UNIFORM))
         reference.uniform_states(kind, points, self.shear, found)
@@ -51,22 +58,37 @@ class Predictor(NamedTuple):
         from .physical_tube import physical_states
 
         found = np.empty((len(points), reference.UNIFORM))
-        physical_states(kind, points, *self._physical(points), found)
+        for some, own, what, _ in self._kinds(points):
+            part = np.empty((len(own), reference.UNIFORM))
+            physical_states(kind, own, *what, part)
+            found[some] = part
         return found
 
-    def _physical(self, points):
-        """What kernels of :mod:`physical_tube` take a model for, and the columns of the rubbers' constants."""
+    def _kinds(self, points):
+        """``(which points, their lines, what kernels of :mod:`physical_tube` take a model for, whether there are fewer than
+        two families)`` of each kind of tubes among the points: of loose families that share an angle there is one.
+        """
         from .physical_tube import MOONEY_RIVLIN, YEOH
 
         columns = YEOH if np.any(points[:, [reference.C20, reference.C30]] != 0.0) else MOONEY_RIVLIN
-        return float(self.model.is_thick), float(self.model.is_loose), columns
+        lines = lines_of(points[:, reference.ALPHA], points[:, reference.BETA], self.families, self.model.is_loose)
+        if lines.single.any():
+            points = points.copy()
+            points[:, reference.ALPHA], points[:, reference.BETA] = lines.alpha, lines.beta
+        codes = np.unique(lines.threads)
+        for code in codes.tolist():
+            some = slice(None) if len(codes) == 1 else lines.threads == code
+            yield some, points[some], (float(self.model.is_thick), code, columns), code > THREADS[2, "loose"]
 
     def middles(self, points, mid_radius) -> np.ndarray:
         """``(meridional stretch, stretch, twist rate)`` (n, 3) of physical tubes under pressure where they are that wide."""
         from .physical_tube import middles
 
         found = np.empty((len(points), 3))
-        middles(points, mid_radius, *self._physical(points), found)
+        for some, own, what, _ in self._kinds(points):
+            part = np.empty((len(own), 3))
+            middles(own, mid_radius[some], *what, part)
+            found[some] = part
         return found
 
     def outer_radius(self, points, mid_radius, estimate, bound) -> tuple:
@@ -76,19 +98,26 @@ class Predictor(NamedTuple):
         from .physical_tube import outer_radius
 
         found, missed = np.empty((3, len(points))), np.empty((3, len(points)))
-        for k, middle in enumerate((mid_radius, mid_radius + estimate, mid_radius + bound)):
-            outer_radius(points, middle, *self._physical(points), found[k], missed[k])
+        for some, own, what, _ in self._kinds(points):
+            for k, middle in enumerate((mid_radius, mid_radius + estimate, mid_radius + bound)):
+                part, lacks = np.empty((2, len(own)))
+                outer_radius(own, middle[some], *what, part, lacks)
+                found[k, some], missed[k, some] = part, lacks
         return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0])
 
     def slack_families(self, points, states, mid_radius) -> np.ndarray:
         """Flags (n,) of :func:`slack.slack_families` at points (n, 17), from the radius in the middle (n,) [m]."""
-        told = np.empty(len(points), np.uint8)
+        told = np.full(len(points), slack.UNKNOWN, np.uint8)
         if self.bodies is not None:  # no first integral
-            told[:] = slack.UNKNOWN
-        elif not self.model.is_physical:
+            return told
+        if not self.is_physical:
             slack.slack_families(points, states, mid_radius, self.shear, told)
-        else:
-            from .physical_tube import slack_somewhere
+            return told
+        from .physical_tube import slack_somewhere
 
-            slack_somewhere(points, mid_radius, *self._physical(points), told)
+        for some, own, what, few in self._kinds(points):
+            part = np.full(len(own), slack.UNKNOWN, np.uint8)
+            if not few:
+                slack_somewhere(own, mid_radius[some], *what, part)
+            told[some] = part
         return told

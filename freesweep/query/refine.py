@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..description.along import written
+from ..description.families import FAMILIES as FAMILIES_OF_FIBERS
 from ..description.given import numbers
 from ..description.local import UNITS
 from ..status import NOT_INTERPOLABLE, VALUED
@@ -52,7 +53,9 @@ def exact_answers(reader, key, points, names, accuracy=None) -> dict:
     limit = key == "limit"
     most = frame.ranges["pressure"][1] if limit else None
     kind = reference.LOADED if limit else family.kind
-    solved = solve(kind, points, frame.energy, accuracy, most, frame.model, bodies=frame.bodies)
+    solved = solve(
+        kind, points, frame.energy, accuracy, most, frame.model, bodies=frame.bodies, families=frame.families
+    )
     found = {}
     for name in names:
         of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
@@ -121,6 +124,7 @@ def _inflated(design, stations, frame, actuator, material):
     if frame.bodies is not None:
         design["fiber_radius"] = frame.model.fiber_radius
         design |= {name: written(name, design[name], UNITS[name]) for name in frame.bodies.rules}
+    design |= {name: None for name in FAMILIES_OF_FIBERS if name not in frame.families}
     try:
         parts = {name: getattr(frame.model, name) for name in ("wall_model", "fibers")}
         tube = actuator(**design, material=rubber, energy=frame.energy, model="source", **parts)

@@ -41,7 +41,7 @@ class Table:
     def __init__(self, data, frame, key, box=None):
         self.data, self.frame = data, frame
         self.family = family_of(key, frame.bodies is not None)
-        self.predictor = Predictor(frame.model, frame.energy, frame.bodies)
+        self.predictor = Predictor(frame.model, frame.energy, frame.bodies, frame.families)
         self.names = frame.axes_of(self.family.variables)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
         whole = [frame.axis(name) for name in self.names]
@@ -61,7 +61,7 @@ class Table:
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
         slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
-        self.is_kinked = self.has_slack and frame.model.is_physical  # numbers have kinks where slack begins or ends
+        self.is_kinked = self.has_slack and self.predictor.is_physical  # numbers have kinks where slack begins or ends
         # of held loose tubes there is no closed form
         self.is_untold = frame.model.is_loose and self.family.kind in HELD_NAMES.values()
         self.codes = np.stack([self._codes(), self._beyond_rest(slack) if self.is_kinked else slack])

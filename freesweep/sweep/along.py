@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..description.along import RULES, Profile, rule_of
+from ..description.families import FAMILIES
 from ..description.profiles import ProfileError, as_profile
 from ..description.units import quantity, shown
 from . import axis
@@ -69,6 +70,7 @@ def attributes_of(sweep) -> dict:
     """Attributes of an atlas that say what varies along its tubes, and by which rules."""
     found = {f"profile_{name}": np.ravel(pairs_of(own)) for name, own in sweep.profiles.items()}
     found |= {f"smooth_{name}": 1 for name, own in sweep.profiles.items() if isinstance(own, Profile)}
+    found |= {f"family_{name}": "none" for name in FAMILIES if name not in sweep.families}
     return found | {f"rule_{name}": word for name, word in sweep.rules.items()}
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import ideal, status
 from ..atlas.schema import absent
+from ..description.families import BITS
 from ..scaling import ALONG, OUTPUTS, output_scales, wall_volume_inside
 from .grid import Grid
 from .plan import FREE
@@ -44,7 +45,7 @@ def groups(sweep) -> list:
     ]
     wanted += [(FREE, _locked, [f"locked_{name}" for name in ALONG[:2]], [])] if along else []
     wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
-    uniform = not {"alpha", "beta"} & set(sweep.profiles) and not sweep.is_of_bodies
+    uniform = not {"alpha", "beta"} & set(sweep.profiles) and not sweep.is_of_bodies and len(sweep.families) == 2
     if uniform and not sweep.model.is_loose:  # bars may push, threads do not
         wanted += [(FREE, _ideal, [name], [f"{name}_status"]) for name in ideal.NAMES]
     return [_group(sweep, *each) for each in wanted]
@@ -52,7 +53,7 @@ def groups(sweep) -> list:
 
 def _along(sweep):
     """What an atlas tells of physical tubes along their length: of a thick wall its outer radius, too, but of bodies."""
-    if not sweep.model.is_physical:
+    if not sweep.is_physical:
         return ()
     return ALONG if sweep.model.is_thick and not sweep.is_of_bodies else ALONG[:2]
 
@@ -98,12 +99,14 @@ def _outputs(table, records, at, rows):
             value = value - inside
         bound = _spread(states["bounds"][..., k].astype(float), solved, valued, np.nan) * scales[name]
         arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
+    turn, single, families = found.swapped[:, None], found.single[:, None], table.grid.sweep.families
     for end in ("", "_error") if "slack_alpha" in arrays else ():
         one, other = arrays[f"slack_alpha{end}"], arrays[f"slack_beta{end}"]
-        arrays[f"slack_alpha{end}"] = np.where(found.swapped[:, None], other, one)
-        arrays[f"slack_beta{end}"] = np.where(found.swapped[:, None], one, other)
+        for name, own in (("alpha", np.where(turn, other, one)), ("beta", np.where(turn, one, other))):
+            arrays[f"slack_{name}{end}"] = np.where(single, one if name in families else 0.0 * one, own)
     slack = _spread(states["slack"], solved, valued, 0)
-    arrays["slack_fiber"] = np.where(found.swapped[:, None], (slack & 1) << 1 | slack >> 1, slack)
+    both = np.where(turn, (slack & 1) << 1 | slack >> 1, slack)
+    arrays["slack_fiber"] = np.where(single, (slack & 1) * sum(BITS[name] for name in families), both)
     arrays["stable"] = valued  # the walk keeps to stable states
     return arrays
 

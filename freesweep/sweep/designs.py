@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..atlas.schema import HELD, LOADS, PARAMETERS, SHAPE, YEOH
+from ..description.families import FAMILIES, is_none
 from ..description.units import shown
 from . import axis
 from .faults import Faults
@@ -17,6 +18,10 @@ ELSEWHERE = SYNONYMS | {
     "energy": "it belongs in [actuator] and cannot differ between designs",
     "material": "it belongs in [actuator]; designs of different rubbers give c10 and c01, or c10, c20 and c30",
 }
+ALL_ALIKE = (
+    "is none; designs of one sweep have the same families: give none in [actuator], for all of them, and designs with such a"
+    " family a sweep of their own"
+)
 HOME = {name: "load" if name in (*LOADS, *HELD) else "actuator" for name in PARAMETERS}
 
 
@@ -39,7 +44,11 @@ def read_designs(faults: Faults, tables, given: dict, fixed: dict) -> dict | Non
             faults.add(f"{path}.name", f"{shown(name)} is also the name of designs[{names[name]}]; names must differ")
         else:
             names[name] = i
-        rows.append({key: axis.value(faults, f"{path}.{key}", key, table[key]) for key in OWN if key in table})
+        for key in FAMILIES:
+            if key in table and is_none(table[key]):
+                faults.add(f"{path}.{key}", ALL_ALIKE)
+        own = {key: table[key] for key in OWN if key in table and not (key in FAMILIES and is_none(table[key]))}
+        rows.append({key: axis.value(faults, f"{path}.{key}", key, given) for key, given in own.items()})
     return {"names": tuple(names), "columns": _columns(faults, rows, given, fixed)}
 
 

@@ -28,11 +28,11 @@ def time_of(sweep, tables, equilibria, sizes, threads) -> str:
     """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared;
     ``sizes``: designs of each.
     """
-    alone = PHYSICAL if sweep.model.is_physical else VARYING if sweep.varies else None
+    alone = PHYSICAL if sweep.is_physical else VARYING if sweep.varies else None
     each = {kind: alone or (TYPICAL if kind == FREE else HELD) for kind in equilibria}
     if sweep.varies:
         bodies = {kind: tables[kind].count if tables else size for kind, size in sizes.items()}
-        own = BOTH if sweep.model.is_physical else each
+        own = BOTH if sweep.is_physical else each
         each = {kind: own[kind] + FOLLOWED * bodies[kind] / max(equilibria[kind], 1) for kind in each}
     sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and _is_compiled(equilibria, sweep)
     if sampled:

@@ -63,7 +63,7 @@ def check_memory(sweep):
 def disk(sweep, equilibria) -> tuple:
     """Bytes of the shards while a sweep runs, and of its atlas, at most; ``equilibria`` of each kind."""
     shards = (
-        sum(count * state(kind, sweep.model.is_physical).itemsize for kind, count in equilibria.items())
+        sum(count * state(kind, sweep.is_physical).itemsize for kind, count in equilibria.items())
         + grids(sweep)[FREE] * LIMIT.itemsize
     )
     steps = len(sweep.axes.get("pressure", [0.0]))

@@ -51,7 +51,9 @@ class Grid:
 
     def tube(self, design):
         """What :mod:`freesweep.description.revolution` takes for a tube, of a ``design``: numbers for COURSE."""
-        found = Bodies(self.sweep.model, self.sweep.rules).tube(design.tolist(), self.sweep.profiles)
+        found = Bodies(self.sweep.model, self.sweep.rules, self.sweep.families).tube(
+            design.tolist(), self.sweep.profiles
+        )
         if not self.sweep.is_of_bodies:
             found.radius = design.tolist()[COURSE.index("radius")]
         return found

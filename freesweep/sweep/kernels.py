@@ -14,6 +14,7 @@ from threading import Timer
 import numpy as np
 
 from ..atlas.schema import YEOH
+from ..description.tube_model import THREADS
 from ..scaling import problem_rows
 from .estimate import is_measured
 from .jobs import in_order
@@ -145,7 +146,8 @@ def _typical(kind, constants, sweep):
     only in name.
     """
     design = {name: np.array([value]) for name, value in (TYPICAL | constants).items()}
-    row = problem_rows(design, "full", sweep.model.is_thick, sweep.model.is_loose)
+    fibers = "loose" if sweep.model.is_loose else "bonded"
+    row = problem_rows(design, "full", sweep.model.is_thick, THREADS[len(sweep.families), fibers])
     target = np.array([TYPICAL["length"] if kind == "blocked_force" else 0.0])
     courses = []
     if sweep.varies:

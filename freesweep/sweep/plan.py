@@ -80,7 +80,7 @@ class Table:
     def job(self, a, b) -> Job:
         """What a solver has to know of problems a to b."""
         rows = significant(self.reduced(self.source[a:b]).rows)
-        size = TARGET if self.grid.sweep.model.is_physical else PHYSICAL
+        size = TARGET if self.grid.sweep.is_physical else PHYSICAL
         lists = [self.lists[k] for k in self.pattern[a:b]]
         return Job(
             self.kind, rows[:, :size].copy(), rows[:, TARGET].copy(), self.first[a : b + 1] - self.first[a],
@@ -129,9 +129,9 @@ def _table(sweep, kind, without):
     digest = hashlib.sha256(kind.encode())
     keys, solvable = np.empty(grid.size, np.uint64), np.empty(grid.size, bool)
     for at in _chunks(grid.size):
-        status, rows, _, _ = _reduced(grid, at, kind, c10, len(pressure))
-        rows = significant(rows)
-        keys[at], solvable[at] = _hashed(rows), status == OK
+        found = _reduced(grid, at, kind, c10, len(pressure))
+        rows = significant(found.rows)
+        keys[at], solvable[at] = _hashed(rows), found.status == OK
         digest.update(rows.tobytes())
     problem, source = _distinct(keys, solvable)
     del keys

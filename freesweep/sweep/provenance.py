@@ -13,7 +13,7 @@ from .rubber import rubber_attributes
 # only of some specifications
 FOLLOWING = (
     *("interpolation_tolerance", "material", "material_source", "largest_stretch", *ATTRIBUTES.values()),
-    *(f"{kind}_{name}" for kind in ("profile", "smooth", "rule") for name in along.VARYING),
+    *(f"{kind}_{name}" for kind in ("profile", "smooth", "rule", "family") for name in along.VARYING),
 )
 
 

@@ -84,13 +84,12 @@ def _failing(sweep, axes, name):
     around[:, column] = axis.values[(axis.first[piece][:, None] + np.arange(axis.window)).ravel()]
     _place_fibers(sweep, points)
     _place_fibers(sweep, around)
-    bodies = Bodies(sweep.model, sweep.rules) if sweep.is_of_bodies else None
-    exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy, model=sweep.model, bodies=bodies)
-    nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy, model=sweep.model, bodies=bodies)
-    predictor, variables = (
-        Predictor(sweep.model, sweep.energy, bodies),
-        family_of("state", sweep.is_of_bodies).variables,
-    )
+    bodies = Bodies(sweep.model, sweep.rules, sweep.families) if sweep.is_of_bodies else None
+    of = {"model": sweep.model, "bodies": bodies, "families": sweep.families}
+    exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy, **of)
+    nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy, **of)
+    predictor = Predictor(sweep.model, sweep.energy, bodies, sweep.families)
+    variables = family_of("state", sweep.is_of_bodies).variables
     at, beside = (predictor.states(reference.LOADED, some) for some in (points, around))
     known = np.isin(exact["status"], VALUED) & np.isin(nodes["status"], VALUED).reshape(DESIGNS, -1).all(axis=1)
     fails = np.zeros(DESIGNS, bool)

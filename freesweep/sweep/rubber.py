@@ -6,6 +6,7 @@ import numpy as np
 
 from ..atlas.schema import SHAPE, YEOH
 from ..description.elastomer import convex_to
+from ..description.families import families_of
 from ..description.faults import ActuatorError
 from ..description.local import Bodies, profile_of, rules_of
 from ..description.material_library import material
@@ -108,7 +109,7 @@ def _strained(part, measure):
         near = None if profile is None else profile.at(0.0)[0]
         own = Bodies(model, rules_of(part.attrs)).at(own, 0.5, near)
     own["fiber_radius"] = fiber_surface(own, model)
-    if model.is_physical:
+    if model.is_physical or len(families_of(part.attrs)) < 2:
         return _of_physical(part, own, model, measure)
     arrays = _broadcast(part["mid_radius"] / own["fiber_radius"], own["alpha"], own["beta"], own["fiber_extension"])
     stretch, *rest = (array.values for array in arrays)
@@ -125,7 +126,11 @@ def _of_physical(part, own, model, measure):
     radius, *others = _broadcast(part["mid_radius"], *(0.0 * part["mid_radius"] + one for one in columns.values()))
     points = np.stack([other.values.ravel() for other in others], axis=-1)
     at = dict(zip(COLUMNS, points.T))
-    meridional, stretch, twist = Predictor(model, part.attrs["energy"]).middles(points, radius.values.ravel()).T
+    meridional, stretch, twist = (
+        Predictor(model, part.attrs["energy"], families=families_of(part.attrs))
+        .middles(points, radius.values.ravel())
+        .T
+    )
     inner, fibers = at["radius"], at["fiber_radius"]
     layers = []
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -141,7 +146,7 @@ def _middle(part, name):
 
     profile = profile_of(part.attrs, name)
     if profile is None:
-        return part[name]
+        return part[name] if name in part.coords else xr.DataArray(np.nan)  # no such family
     return xr.DataArray(profile.samples().min() if name == "wall" else profile.at(0.5)[0])
 
 

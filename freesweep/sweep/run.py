@@ -155,7 +155,7 @@ def _complete(out, identity, text, overwrite, progress):
 
 def split(table, sweep):
     """Shards of whole problems: a list of (first, last + 1)."""
-    cost = PHYSICAL_COST if sweep.model.is_physical else VARYING_COST if sweep.varies else 1
+    cost = PHYSICAL_COST if sweep.is_physical else VARYING_COST if sweep.varies else 1
     cost *= 1 if table.kind == "free" else HELD_COST
     size = max(1, SHARD_EQUILIBRIA // cost)
     found, a = [], 0
@@ -183,7 +183,7 @@ def _solve_all(sweep, tables, split_up, done, shards, threads, executor, progres
     contents = Contents(shards.plan)
     return {
         kind: Records(
-            state(kind, sweep.model.is_physical),
+            state(kind, sweep.is_physical),
             own,
             tables[kind].first,
             [done[kind, k] for k in range(len(own))],

@@ -3,11 +3,13 @@
 import numpy as np
 
 from ..description.profiles import SENSITIVITY, widened
-from ..status import INVALID
-from .canonical_problem import PHYSICAL
+from ..description.tube_model import THREADS as CODES
+from ..status import DEGENERATE, INVALID
+from .canonical_problem import PHYSICAL, THREADS
 from .records import HELD_STATE, LIMIT, state, unsolved, upward
 
 BASE_CELLS = 24
+THREADS_OF_TWO = CODES[2, "loose"]  # the largest of those of two families
 UNIFORM = np.empty((0, 1, 3, 4)), np.array([0, BASE_CELLS]), np.zeros(2)
 
 
@@ -22,6 +24,8 @@ def solve_shard(job, accuracy, lanes=True):
     ``lanes=False``: by the scalar kernels alone, which else go on where vectors of designs end.
     """
     solve = _solve_free if job.kind == "free" else _solve_held
+    if job.kind == "free" and (locks := _locks(job)) is not None:
+        return _unlocked(job, locks, accuracy, lanes)
     if not job.courses:
         return solve(job.kind, job.problems, job.targets, job.first, job.pressures, (UNIFORM, 0.0), accuracy, lanes)
     states = np.zeros(len(job.pressures), state(job.kind, is_physical(job.problems)))
@@ -37,6 +41,24 @@ def solve_shard(job, accuracy, lanes=True):
         states[rows] = found[0]
         if len(limits):
             limits[own] = found[1]
+    return states, limits
+
+
+def _locks(job):
+    """Which states of a job are no locked shapes that there are not, (n,); None if all are."""
+    if not is_physical(job.problems):
+        return None
+    few = np.repeat(job.problems[:, THREADS] > THREADS_OF_TWO, np.diff(job.first))
+    none = few & np.isinf(job.pressures)
+    return ~none if none.any() else None
+
+
+def _unlocked(job, locks, accuracy, lanes):
+    """Records of a job some of whose locked shapes there are not: fewer than two families leave them free."""
+    first = np.concatenate([[0], np.cumsum(locks)])[job.first]
+    found, limits = solve_shard(job._replace(first=first, pressures=job.pressures[locks]), accuracy, lanes)
+    states = np.full(len(locks), unsolved(found.dtype, DEGENERATE))
+    states[locks] = found
     return states, limits
 
 

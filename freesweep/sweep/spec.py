@@ -41,7 +41,7 @@ from ..atlas.schema import HELD, PARAMETERS, SHAPE, YEOH
 from ..description.actuator import APART, ENERGIES, SMALLEST_DIFFERENCE
 from ..description.families import FAMILIES, is_none
 from ..description.profiles import as_profile, together
-from ..description.tube_model import DEFAULT, FIBER_PLACES, MODELS, TubeModel, word_faults
+from ..description.tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, TubeModel, word_faults
 from ..description.units import shown
 from . import along, axis, toml_guard
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
@@ -51,10 +51,11 @@ from .solver_table import BUDGET, MAX_POINTS, read_accuracy, read_blocked, read_
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
+NONE = "none"  # of a family that there is not
 WORDS = ("energy", "model", "wall_model", "fibers")  # of [actuator]
-ONLY_TWO = (
-    "is none, but a sweep's tubes have two families of fibers: their angles are what an atlas is asked by; freesweep inflate"
-    " and fs.inflate solve tubes with one family, or none"
+NONE_FOR_ALL = (
+    "some of its values are none; an axis is of numbers: give none in [actuator], for all tubes of a sweep, and those with"
+    " such a family a sweep of their own"
 )
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
 
@@ -84,6 +85,7 @@ class Sweep:
     material: str = ""  # name of its rubber, if it came from the library
     model: TubeModel = MODELS["source"]
     rules: dict[str, str] = field(default_factory=dict)
+    families: tuple[str, ...] = FAMILIES  # of fibers that its tubes have
 
     @property
     def sha256(self) -> str:
@@ -116,9 +118,14 @@ class Sweep:
         return bool(self.profiles) or self.is_of_bodies
 
     @property
+    def is_physical(self) -> bool:
+        """Whether its tubes are more than the source's, or less: thick, loose, or without a family."""
+        return self.model.is_physical or len(self.families) < 2
+
+    @property
     def one_by_one(self) -> bool:
         """Whether its tubes are solved by the scalar kernels: those that vary, and physical ones."""
-        return self.varies or self.model.is_physical
+        return self.varies or self.is_physical
 
     @property
     def points(self) -> int:
@@ -147,9 +154,13 @@ def parse(text: str, name: str = "specification") -> Sweep:
     given = {}  # parameter: where it is given, faulty or not
     rules = {}  # parameter: word
     fixed, profiles = _fixed(faults, tables, given, rules)
+    families = tuple(name for name in FAMILIES if fixed.get(name) != NONE)
+    if len(families) < 2 and energy == "principal":
+        faults.add(*f"actuator.{FEW_PRINCIPAL}".split(": ", 1))
+    fixed = {name: number for name, number in fixed.items() if number != NONE}
     axes = _axes(faults, tables["axes"], given, rules)
     designs = read_designs(faults, document["designs"], given, fixed) if "designs" in document else None
-    _check_profiles(faults, profiles, fixed, given)
+    _check_profiles(faults, profiles, fixed, given, families)
     for parameter in REQUIRED:
         if parameter not in given:
             others = ", or in every design" if designs and parameter in OWN else ""
@@ -174,8 +185,9 @@ def parse(text: str, name: str = "specification") -> Sweep:
     if "fiber_radius" in values:
         model = model._replace(fiber_radius="inner")  # it is not asked for
     found = Sweep(
-        title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget, rubber, model, rules
-    )
+        title, energy, fixed, axes, designs, accuracy, text, blocked, profiles, tolerance, budget, rubber, model, rules,
+        families,
+    )  # fmt: skip
     return found if found.is_of_bodies else replace(found, rules={})  # of a tube a rule is the number it gives
 
 
@@ -227,7 +239,7 @@ def _fixed(faults, tables, given, rules):
             if name in table and not (name == "fiber_radius" and _is_place(table[name])):
                 given[name] = f"{section}.{name}"
                 if name in FAMILIES and is_none(table[name]):
-                    faults.add(given[name], ONLY_TWO)
+                    fixed[name] = NONE
                 elif along.is_profile(name, table[name]):
                     profiles[name] = along.profile(faults, given[name], name, table[name])
                 else:
@@ -258,17 +270,23 @@ def _axes(faults, table, given, rules):
             if name in given:
                 faults.add(f"axes.{name}", f"given twice, also as {given[name]}; remove one")
             given[name] = f"axes.{name}"
+            if name in FAMILIES and isinstance(table[name], list) and any(map(is_none, table[name])):
+                faults.add(given[name], NONE_FOR_ALL)
+                continue
             array = axis.values(faults, given[name], name, _unworded(faults, given[name], name, table[name], rules))
             if array is not None:
                 axes[name] = array
     return axes
 
 
-def _check_profiles(faults, profiles, fixed, given):
-    """Refuses profiles that some designs would not use, and fiber families that meet somewhere along every tube."""
-    for name in profiles:
+def _check_profiles(faults, profiles, fixed, given, families):
+    """Refuses profiles, and families that are none, which some designs would not use, and families that meet somewhere along
+    every tube.
+    """
+    for name in (*profiles, *(name for name in FAMILIES if name not in families)):
         if given[name] != f"actuator.{name}":
-            faults.add(given[name], f"actuator.{name} is a profile already; give one of the two")
+            what = "a profile" if name in profiles else "none"
+            faults.add(given[name], f"actuator.{name} is {what} already; give one of the two")
     if "radius" in profiles or set(SHAPE) & set(given):
         if "fiber_radius" in given:
             faults.add(given["fiber_radius"], f"the radius varies; choose one of {', '.join(FIBER_PLACES)}")

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..description.families import FAMILIES
 from ..description.unit_warnings import doubts
 from .along import pairs_of
 
@@ -23,5 +24,7 @@ def _values(sweep, name):
     """Every value of a parameter, shape (n,)."""
     if name in sweep.profiles:
         return np.array([value for _, value in pairs_of(sweep.profiles[name])])
+    if name in FAMILIES and name not in sweep.families:
+        return np.zeros(1)
     given = sweep.fixed | sweep.axes | (sweep.designs or {}).get("columns", {})
     return np.atleast_1d(given[name])

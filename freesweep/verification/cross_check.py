@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import SHAPE, VARIABLES, YEOH
+from ..description.families import FAMILIES, families_of
 from ..description.local import Bodies, rules_of
 from ..description.tube_model import fiber_surface, model_of
 from ..first_integral import folded, held
@@ -36,7 +37,8 @@ def draw(data, count, seed=0):
     """``count`` points with results from an atlas' Dataset; raises ValueError where its tubes have profiles: no numbers
     describe them.
     """
-    if missing := [name for name in DESIGN if name not in data.coords]:
+    none = set(FAMILIES) - set(families_of(data.attrs))
+    if missing := [name for name in DESIGN if name not in data.coords and name not in none]:
         raise ValueError(
             f"--resolve: {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} no number in this atlas; only tubes"
             " that numbers describe are solved anew"
@@ -73,17 +75,20 @@ class Points:
         held = {name: size for name, size in data.sizes.items() if name not in self.dims}  # axes of held states only
         self.index |= {name: rng.integers(size, size=len(drawn)) for name, size in held.items()}
         self.count = len(drawn)
-        self.column = {name: self.stored(name) for name in (*DESIGN, "pressure")}
+        there = [name for name in (*DESIGN, "pressure") if name in data.coords]
+        self.column = dict.fromkeys(FAMILIES, np.zeros(self.count)) | {name: self.stored(name) for name in there}
         self.column |= {name: self.stored(name) if name in data else np.zeros(self.count) for name in YEOH}
         self.model = model_of(data.attrs)
-        self.bodies = Bodies(self.model, rules_of(data.attrs)) if set(SHAPE) & set(data.coords) else None
+        families, of_bodies = families_of(data.attrs), set(SHAPE) & set(data.coords)
+        bodies = Bodies(self.model, rules_of(data.attrs), families) if of_bodies else None
+        self.of = {"bodies": bodies, "families": families}  # as the solver is told
         given = {"fiber_radius": self.stored("fiber_radius")} if "fiber_radius" in data else {}
         self.radius = fiber_surface(self.column | given, self.model)
 
     @property
     def has_first_integral(self) -> bool:
         """Whether the second method knows them: membranes with bonded fibers that are the same all along."""
-        return not self.model.is_physical and self.bodies is None
+        return not self.model.is_physical and self.of["bodies"] is None and len(self.of["families"]) == 2
 
     def stored(self, name):
         """Numbers of a variable at the points (n,)."""

@@ -31,7 +31,7 @@ def faults(points) -> list:
         if key == "limit" or not names:
             continue
         most = highest if key == "state" else None
-        anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model, bodies=points.bodies)
+        anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model, **points.of)
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
             found += _of_bounds(name, points, anew[of], anew[f"{of}_error"])
@@ -65,7 +65,7 @@ def finer(points):
             continue
         anew = solve(
             family.kind, columns(points, family.kind), data.attrs["energy"], accuracy, None, points.model,
-            FINER * CELLS, bodies=points.bodies,
+            FINER * CELLS, **points.of,
         )  # fmt: skip
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
