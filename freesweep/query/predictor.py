@@ -58,9 +58,11 @@ class Predictor(NamedTuple):
         from .physical_tube import physical_states
 
         found = np.empty((len(points), reference.UNIFORM))
-        for some, own, what, _ in self._kinds(points):
+        for some, own, what, few in self._kinds(points):
             part = np.empty((len(own), reference.UNIFORM))
             physical_states(kind, own, *what, part)
+            if few:  # what the ends add to the rotation does not vanish where a line beside the fibers mirrors them
+                part[:, 0] = 1.0
             found[some] = part
         return found
 
