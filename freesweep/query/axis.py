@@ -84,7 +84,7 @@ def make_axis(name: str, values) -> Axis:
         middle[i - first[i] : i - first[i] + 2] += 0.5
         best = np.zeros(WINDOW)
         best[:window] = _lagrange(nodes[places], nodes[i] + 0.5 * width)
-        if window < SLOPE:  # the cubic is the best there is: what would be without the farthest node?
+        if window <= SLOPE:  # slopes know all nodes, there is no better: what would be without the farthest one?
             far = np.argmax(np.abs(nodes[places] - nodes[i] - 0.5 * width))
             others = np.delete(np.arange(window), far)
             best[:] = 0.0
