@@ -16,6 +16,7 @@ OTHERS = {"start": ("from", "min"), "stop": ("to", "end", "max"), "num": ("n", "
 MEANT = {other: f"write {key}" for key, others in OTHERS.items() for other in others}
 SPACINGS = ("linear", "sqrt", "log")
 STEP_TOLERANCE = 1e-9  # relative: how well a step must divide its range
+ROUNDING = 1e-14  # of the larger end: what is nearer to 0 is 0
 
 SMALLEST, LARGEST = 1e-12, 1e12  # beyond any actuator in any unit; keeps every scaled quantity finite
 _SIZE = (SMALLEST, LARGEST, "must be positive")
@@ -191,6 +192,7 @@ def _spaced(start, stop, count, spacing):
         array = np.linspace(start, stop, count)
     # 15 digits: 0.3, not 0.30000000000000004, so that a value can be looked up as it is written
     array = np.array([float(f"{number:.15g}") for number in array.tolist()])
+    array[np.abs(array) < ROUNDING * max(abs(start), abs(stop))] = 0.0
     array[0], array[-1] = start, stop
     return array
 

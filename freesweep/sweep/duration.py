@@ -12,6 +12,7 @@ from .plan import FREE
 TYPICAL, HELD, VARYING = 5e-6, 3e-4, 1e-3  # [s] of a free state on one core; of a held one; of any where tubes vary
 PHYSICAL = 2e-3  # [s] of any of physical tubes
 BOTH = {FREE: 7e-3} | dict.fromkeys(("blocked_force", "blocked_torque"), 5e-2)  # [s] of physical tubes that vary
+COMPARED = 25.0  # [s] in which an atlas of bodies measures itself, each solved for it
 FOLLOWED = 6e-3  # [s] of each tube that varies: its course is made of splines
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more than a second
@@ -24,9 +25,9 @@ KERNELS = {FREE: ("solve_lanes", "follow_many")} | dict.fromkeys(
 VARIED = KERNELS | {FREE: ("follow_many",)}
 
 
-def time_of(sweep, tables, equilibria, sizes, threads) -> str:
+def time_of(sweep, tables, equilibria, sizes, threads, measured) -> str:
     """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared;
-    ``sizes``: designs of each.
+    ``sizes``: designs of each; ``measured``: whether the atlas measures itself.
     """
     alone = PHYSICAL if sweep.is_physical else VARYING if sweep.varies else None
     each = {kind: alone or (TYPICAL if kind == FREE else HELD) for kind in equilibria}
@@ -41,6 +42,8 @@ def time_of(sweep, tables, equilibria, sizes, threads) -> str:
         for kind in (kind for kind in share if share[kind] > MUCH * sum(share.values())):
             each[kind] = _sample(tables[kind], sweep.accuracy, together)
     took = _seconds(sweep, equilibria, each, threads)
+    if measured and sweep.is_of_bodies and not sweep.profiles:
+        took += COMPARED / threads
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)):
         if took > 2.0 * size:
             words = f"about {took / size:.0f} {unit}"

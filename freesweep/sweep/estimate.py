@@ -112,6 +112,6 @@ def dry_run(sweep, out, threads=None) -> str:
     lines += [
         f"memory: {memory(sweep) / 1e6:,.0f} MB at most",
         f"disk: {atlas / 1e6:,.1f} MB at most, {shards / 1e6:,.1f} MB more while it runs; {free}",
-        f"time: {time_of(sweep, tables, equilibria, grids(sweep), threads or cores())}",
+        f"time: {time_of(sweep, tables, equilibria, grids(sweep), threads or cores(), is_measured(sweep))}",
     ]
     return "\n".join(lines)
