@@ -455,6 +455,7 @@ def test_the_shipped_sweeps_have_the_size_they_say():
         "physical-map",
         "prototypes",
         "quick",
+        "tapered",
         "validity-full",
         "validity-principal",
     ]
@@ -475,6 +476,9 @@ def test_the_shipped_sweeps_have_the_size_they_say():
         assert validity.energy == energy
         assert validity.points == 15_750
         assert "15 750" in validity.text
+    tapered = read_file(SWEEPS / "tapered.toml")
+    assert (tapered.points, tapered.rules) == (5_096, {"alpha": "geodesic", "beta": "geodesic"})
+    assert "5 096" in tapered.text
 
 
 def test_a_file_with_a_byte_order_mark_and_windows_line_ends_is_read(tmp_path):
