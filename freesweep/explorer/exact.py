@@ -8,6 +8,7 @@ from ..atlas.schema import SHAPE
 from ..description.actuator import Actuator
 from ..description.along import written
 from ..description.elastomer import rubber_of
+from ..description.families import FAMILIES
 from ..description.faults import ActuatorError
 from ..description.local import UNITS
 from ..description.tube_model import MODELS
@@ -27,7 +28,8 @@ def tube_of(desk, pin: dict) -> Actuator:
         raise AskError("the tubes of this atlas have profiles; solve them with freesweep.inflate")
     values = {name: array[0] for name, array in _columns(desk, pin).items()}
     rubber = rubber_of(*(float(values.get(name, 0.0)) for name in ("c10", "c01", "c20", "c30")))
-    own = {name: float(values[name]) for name in ("alpha", "beta", "length", "radius", "wall", "fiber_extension")}
+    own = {name: float(values[name]) for name in ("length", "radius", "wall", "fiber_extension")}
+    own |= {name: float(values[name]) if name in frame.families else None for name in FAMILIES}
     usual = MODELS["source"]._asdict()
     parts = {name: part for name, part in frame.model._asdict().items() if part != usual[name]}
     if frame.bodies is not None:

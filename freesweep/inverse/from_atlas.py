@@ -11,8 +11,10 @@ NEEDS = {"stroke": "deformed_length", "length_change": "deformed_length", "outer
 
 
 def told(atlas, wishes) -> list:
-    """Which wishes an atlas can answer: outputs of free tubes under a pressure alone, and parameters."""
-    here = {name for name in TOLD if name in atlas.data}
+    """Which wishes an atlas can answer: parameters, and outputs of free tubes under a pressure alone, but of tubes that vary
+    or lack a family.
+    """
+    here = {name for name in TOLD if name in atlas.data and atlas._reader.frame.uniform_along_x}
     return [
         wish.kind == "design"
         or (wish.kind == "free" and {"pressure"} >= {name for name, _ in wish.conditions}

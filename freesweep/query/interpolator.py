@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..atlas.schema import EXCHANGED, PARAMETERS
+from ..atlas.schema import EXCHANGED, PARAMETERS, SHAPE
 from ..description.given import numbers
 from ..description.options import read_switch
 from ..description.quantities import Quantities
@@ -113,7 +113,7 @@ class Interpolator:
             if axis.kind == LABEL:
                 continue
             column = reference.COLUMNS.index(own if own in reference.COLUMNS else "held")
-            steps = STEP * (np.abs(inquiry.points[:, column]) + STEP)
+            steps = STEP * (np.abs(inquiry.points[:, column]) + (1.0 if own in SHAPE else STEP))
             # the closed form moves with the point, the end effect along its own cubic
             a = table.names.index(own)
             rate = inquiry.effects(name, inquiry.orders(a)) * axis.rate(inquiry.points[:, column])

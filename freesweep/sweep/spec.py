@@ -8,6 +8,7 @@
     taper = 0.2                 # the far end is slimmer than the near one by that share, and the middle wider by that of
     bulge = "10 %"              # bulge: what is given as the radius counts (1 - taper x/l) (1 + bulge sin^2(pi x/l)) times
     alpha = "geodesic 30 deg"   # of such a body, there and in [axes]; and wall = "constant volume 1.5 mm"
+    beta = "none"               # no such family; alpha = "none", too: balloons
     c10 = "0.17 MPa"            # and c01, or c20 and c30 of a Yeoh rubber; or material = "dragon-skin-30"
     energy = "full"             # or "principal"
     model = "source"            # or "physical": thick wall, loose fibers outside; or part by part: wall_model, fibers and
