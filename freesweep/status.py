@@ -13,7 +13,11 @@ class Status(NamedTuple):
 
 STATUSES = (
     Status(0, "ok", "solved to the accuracy asked for"),
-    Status(1, "degenerate", "alpha = beta: one fiber family leaves the shape free; choose angles that differ"),
+    Status(
+        1,
+        "degenerate",
+        "alpha = beta, or a family missing: such fibers leave the shape free; choose angles that differ",
+    ),
     Status(
         2,
         "beyond_limit_pressure",

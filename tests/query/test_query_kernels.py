@@ -218,3 +218,17 @@ def test_slack_fibers_follow_from_the_stretch_in_the_middle():
     assert known.mean() > 0.9
     np.testing.assert_array_equal(found[known], expected[known])
     assert len(set(expected.tolist())) > 2
+
+
+@pytest.mark.parametrize("count", [3, 4, 5])
+def test_where_slopes_know_all_nodes_the_estimate_is_no_less_than_the_error(count):
+    """In the middle of each piece; a cubic through all but the farthest node is what it is told from."""
+    axis = make_axis("torque", np.linspace(0.0, 1.0, count))
+    for function in (lambda x: np.exp(1.5 * x), lambda x: 1.0 / (1.0 + x)):
+        values, middles = function(axis.nodes), 0.5 * (axis.nodes[1:] + axis.nodes[:-1])
+        for i, middle in enumerate(middles):
+            near = values[axis.first[i] : axis.first[i] + axis.window]
+            slopes = (axis.left[i] - axis.right[i])[: axis.window] @ near
+            told = 0.5 * (values[i] + values[i + 1]) + 0.125 * slopes
+            estimate = abs(axis.remainder[i, : axis.window] @ near)
+            assert 0.0 < abs(told - function(middle)) < estimate
