@@ -9,11 +9,10 @@ from scipy.interpolate import PchipInterpolator
 from . import grid
 from .equilibrium import Meshes, NotFound, equilibrium, outputs, sums
 
-LEVELS, COARSEST, FINEST = (
-    4,
-    2,
-    7,
-)  # meshes, each with twice the cells of the one before, solved at once; of all, by level
+LEVELS = 4  # meshes, each with twice the cells of the one before, that are solved at once
+FINEST = 8  # doublings of the coarsest mesh's cells
+COARSEST = FINEST - LEVELS + 1  # as many, at most, of those that have no state
+FINER = 2  # times that the cells of the first mesh are split into four
 SAFETY = 3.3  # as in the solver's bounds
 FAINT = 0.02  # likewise
 ROUNDING = 1e-11  # of a derivative's own unit: what nearly cancels in it
@@ -47,10 +46,10 @@ class Shape:
         """A guess on ``meshes``, eased on those where some cell has no room, as the solver's are."""
         y = self.stretch(meshes.x)
         for mesh in without_room(physics, meshes, y):
-            if meshes.free:
-                nodes, cells = meshes.nodes(mesh), meshes.cells(mesh)
-                least = grid.least_between(self.x, self.cosine, meshes.x[nodes])
-                y[nodes] = physics.eased(meshes.x[nodes], y[nodes], meshes.share[cells], least)
+            nodes, share = meshes.nodes(mesh), meshes.share[meshes.cells(mesh)]
+            least = grid.least_between(self.x, self.cosine, meshes.x[nodes])
+            middle = len(share) if meshes.free else meshes.middle[mesh] - meshes.starts[mesh]
+            y[nodes] = physics.eased(meshes.x[nodes], y[nodes], share, least, middle)
         return shrunk(physics, meshes, y)
 
 
@@ -80,8 +79,7 @@ def solve(known, wanted, x, y, free, segments, hold, finish, accuracy) -> Found:
     Where the kind of cell changes (:mod:`physical`) a node is put: on either side everything is smooth then. What is left of
     its distance from there enters the bounds, as the results moved when it was moved before.
     """
-    first = Meshes([x], free)
-    y, hold = equilibrium(known, first, shrunk(known, first, y), hold)
+    known, x, y, hold = on_first(known, x, y, free, segments, hold)
     kinks, before, shift = known.kinks(segments), None, None
     for made in range(ROUNDS):
         ends = np.union1d(segments, kinks)
@@ -99,6 +97,19 @@ def solve(known, wanted, x, y, free, segments, hold, finish, accuracy) -> Found:
             before, shift = None, None
         kinks = seen
     raise NotFound
+
+
+def on_first(known, x, y, free, segments, hold):
+    """``(physics, x, y, hold)`` of the state on the mesh of its guess, or where that has none on a finer one."""
+    shape = PchipInterpolator(x, y)
+    for finer in range(FINER + 1):
+        places, physics = grid.finer(x, np.searchsorted(x, segments), 4**finer), copy(known)
+        mesh = Meshes([places], free)
+        try:
+            return physics, places, *equilibrium(physics, mesh, shrunk(physics, mesh, shape(places)), hold)
+        except NotFound:
+            if finer == FINER:
+                raise
 
 
 def on_nested(known, wanted, x, y, free, ends, segments, hold, finish, accuracy):

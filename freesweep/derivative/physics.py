@@ -14,6 +14,7 @@ from .request import constants, place_of_fibers
 from .twins import twin
 
 BY_Y, BY_V, OWN = 0, 1, 2  # first parts of every dual number: by y, by its slope; then by the parameters
+RISE = 4  # place of dR/dx among the numbers of a body's cell
 NEXT_TO_NOTHING = 1e-300  # of C1: a constant of Yeoh's that is 0 counts, too, where its derivative is asked for
 
 
@@ -137,18 +138,26 @@ class Physics:
         found = kernels()[2](Dual(y), Dual(v), cell), kernels()[1](Dual(y), Dual(v), cell, load)[0]
         return tuple(np.broadcast_to(number.value, y.shape) for number in found)
 
-    def eased(self, x, y, share, cosine):
+    def eased(self, x, y, share, cosine, middle):
         """A guess ``y`` at nodes ``x`` (x/l) that leaves every cell room, whose middles are at ``share``, and whose meridian
-        has about that ``cosine``.
+        has about that ``cosine``: followed from both ends on to the node in the ``middle``.
         """
         cell, load = self.properties(share)
         rows = np.stack([np.broadcast_to(value_of(number), share.shape) for number in cell], axis=-1)
-        rows = rows if len(cell) == 3 else rows.reshape(-1, 2, 3)
+        back = rows[::-1] * np.where(np.arange(len(cell)) == RISE, -1.0, 1.0)
         numbers = [tuple(map(_float, part)) if isinstance(part, tuple) else _float(part) for part in load]
-        y, integrands, ease = y.copy(), *kernels()[1::2]
-        ease(integrands, x * self.length.value, y, len(share), cosine, rows, type(load)(*numbers))
-        return y
+        load, integrands, ease = type(load)(*numbers), *kernels()[1::2]
+
+        def followed(x, y, rows, cosine, n):
+            y, rows = y[: n + 1].copy(), rows[:n] if len(cell) == 3 else rows[:n].reshape(-1, 2, 3)
+            ease(integrands, x * self.length.value, y, n, cosine, rows, load)
+            return y
+
+        left = followed(x, y, rows, cosine, middle)
+        right = followed(x[-1] - x[::-1], y[::-1], back, cosine[::-1], len(share) - middle)
+        return np.concatenate([left, right[-2::-1]])
 
 
 def _float(number):
-    return np.asarray(value_of(number)).item()
+    """A number that does not vary along a tube."""
+    return float(np.ravel(value_of(number))[0])
