@@ -36,6 +36,7 @@ _HEADS = [
     )
 ]
 _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _POINT = re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
 _NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?")
 
@@ -49,13 +50,19 @@ class Known(NamedTuple):
 
 class Columns(NamedTuple):
     """What a file holds: name -> numbers (rows,) or texts; ``lines`` (rows,) of the file; what was passed over, in words;
-    name -> unit as it was written.
+    name -> unit as it was written, and -> column of the file, from 1; names of columns that were passed over.
     """
 
     values: dict
     lines: np.ndarray
     notes: tuple
     units: dict
+    places: dict
+    others: tuple
+
+    def where(self, name, row) -> str:
+        """Where in the file a number stands."""
+        return f"(line {self.lines[row]}, column {self.places[name]})"
 
 
 class _Head(NamedTuple):
@@ -88,13 +95,23 @@ def read_columns(path, known: Known, plain=False) -> Columns:
     for number, row in rows:
         if len(row) != len(heads) and len(faults) < MOST_FAULTS:
             faults.append(f"line {number}: {len(row)} cells under {len(heads)} names; {_uneven(row, len(heads))}")
-    wanted = _wanted(heads, line, known, plain, faults, notes)
-    comma = _decimal_comma(wanted, rows, faults, notes) if not faults else False
+    if len(heads) == 1 and all(_is_spaced(row[0]) for _, row in rows):
+        raise ActuatorError(
+            [f"line {line}: blanks alone part its columns; write commas, semicolons or tabs (column 1)"]
+        )
+    wanted, others = _wanted(heads, line, known, plain, faults)
+    if others:
+        notes.append(
+            f"{_count(len(others), 'column')} not needed and passed over: "
+            + ", ".join(f"{shown(head.text)} (column {head.place})" for head in others)
+        )
+    comma = _decimal_comma(wanted, rows, parting, faults, notes) if not faults else False
     values = {head.name: _cells(head, rows, known.units[head.name], comma, faults) for head in wanted}
     if faults:
         raise ActuatorError(faults)
-    units = {head.name: head.unit for head in wanted}
-    return Columns(*_complete(values, np.array([number for number, _ in rows]), known, notes), units)
+    units, places = ({head.name: getattr(head, part) for head in wanted} for part in ("unit", "place"))
+    complete = _complete(values, np.array([number for number, _ in rows]), known, notes)
+    return Columns(*complete, units, places, tuple(head.text for head in others))
 
 
 def _lines(path, notes):
@@ -107,8 +124,9 @@ def _lines(path, notes):
     try:
         text = content.decode(MARKS.get(content[:2], "utf-8-sig"))
     except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        raise ActuatorError([f"not a text in UTF-8 (line {line}); save it as CSV (UTF-8)"]) from None
+        before = content[: error.start].split(b"\n")
+        place = f"line {len(before)}, character {len(before[-1]) + 1}"
+        raise ActuatorError([f"not a text in UTF-8 ({place}); save it as CSV (UTF-8)"]) from None
     numbered = list(enumerate(text.splitlines(), 1))
     filled = [(number, line) for number, line in numbered if line.strip()]
     lines = [(number, line) for number, line in filled if not line.lstrip().startswith(COMMENTS)]
@@ -123,8 +141,13 @@ def _lines(path, notes):
 def _parted(text, parting, number):
     """Cells of a line; a quotation mark ends with its line."""
     try:
-        return [cell.strip() for cell in next(csv.reader([text], delimiter=parting))]
+        return [cell.strip() for cell in next(csv.reader([text], delimiter=parting, strict=True))]
     except csv.Error as error:
+        if "unexpected end" in str(error):
+            place = text.rindex('"') + 1
+            raise ActuatorError(
+                [f"line {number}: a quotation mark opens and does not end (character {place})"]
+            ) from None
         raise ActuatorError([f"line {number}: {error}; no table has such a cell"]) from None
 
 
@@ -167,6 +190,12 @@ def _units_below(heads, rows, known):
     return [head._replace(unit=cell) for head, cell in zip(heads, cells)], rows[1:]
 
 
+def _is_spaced(cell):
+    """Whether a cell holds several numbers, with blanks between."""
+    parts = cell.split()
+    return len(parts) > 1 and all(_NUMBER.fullmatch(part) for part in parts)
+
+
 def _is_unit(text):
     return any(not _unit_fault(text, kept) for kept in (*EXAMPLES, "1"))
 
@@ -177,11 +206,11 @@ def _uneven(row, count):
         return f"cells are missing at its end (from column {len(row) + 1})"
     if not any(row[count:]):
         return "it ends with a separator too many; remove that"
-    return "a separator too many, or a decimal comma where a point belongs"
+    return f"a separator too many, or a decimal comma where a point belongs (from column {count + 1})"
 
 
-def _wanted(heads, line, known, plain, faults, notes):
-    """Columns to be read, once each."""
+def _wanted(heads, line, known, plain, faults):
+    """Columns to be read, once each, and those that are passed over."""
     wanted, others = [], []
     for head in heads:
         kept, place = known.units.get(head.name), f" (line {line}, column {head.place})"
@@ -192,7 +221,7 @@ def _wanted(heads, line, known, plain, faults, notes):
             if near:
                 faults.append(f"column {shown(head.text)}: unknown; did you mean {near[0]}?{place}")
             else:
-                others.append(f"{shown(head.text)} (column {head.place})")
+                others.append(head)
         elif any(other.name == head.name for other in wanted):
             faults.append(f"column {shown(head.text)}: given twice{place}")
         elif kept == RATIO and head.unit not in ("%", "1"):
@@ -205,9 +234,7 @@ def _wanted(heads, line, known, plain, faults, notes):
             faults.append(f"column {head.name}: {fault}{place}")
         else:
             wanted.append(head)
-    if others:
-        notes.append(f"{_count(len(others), 'column')} not needed and passed over: {', '.join(others)}")
-    return wanted
+    return wanted, others
 
 
 def _unit_fault(unit, kept):
@@ -219,8 +246,10 @@ def _unit_fault(unit, kept):
     return ""
 
 
-def _decimal_comma(wanted, rows, faults, notes):
-    """Whether numbers have commas for points; a file has one of the two."""
+def _decimal_comma(wanted, rows, parting, faults, notes):
+    """Whether numbers have commas for points; a file has one of the two. Commas that part columns hardly stand for points:
+    where each could part thousands, too, nobody knows.
+    """
     commas, points = [], []
     for head in wanted:
         for number, row in rows:
@@ -235,6 +264,13 @@ def _decimal_comma(wanted, rows, faults, notes):
         faults.append(
             f"line {line}, {head.name}: {cell!r:.30} beside {other!r:.30} on line {other_line}: decimal commas and points in"
             f" one file; write points (column {head.place})"
+        )
+    elif commas and parting != ";" and all(_THOUSANDS.fullmatch(cell) for _, _, cell in commas):
+        line, head, cell = commas[0]
+        small, large = (cell.replace(",", by) for by in (".", ""))
+        faults.append(
+            f"line {line}, {head.name}: {cell!r} is {small} or {large}? write points, and nothing between thousands (column"
+            f" {head.place})"
         )
     elif commas:
         notes.append(f"decimal commas read as points, {_count(len(commas), 'cell')}")
@@ -256,8 +292,15 @@ def _cells(head, rows, kept, comma, faults):
             found.append(quantity(f"{text} {head.unit}", unit))
         except ValueError as error:
             if len(faults) < MOST_FAULTS:
-                faults.append(f"line {number}, {head.name}: {error} (column {head.place})")
+                words = "its unit stands above; write the number alone" if _has_unit(cell, head.unit) else error
+                words = f"found {cell!r:.30}: {words}" if words is not error else words
+                faults.append(f"line {number}, {head.name}: {words} (column {head.place})")
     return np.array(found)
+
+
+def _has_unit(cell, unit):
+    """Whether a number brings the unit of its column along."""
+    return bool(unit) and cell.endswith(unit) and bool(_NUMBER.fullmatch(cell.removesuffix(unit).strip()))
 
 
 def _complete(values, lines, known, notes):

@@ -12,10 +12,14 @@ BRANCHES = dict.fromkeys(("loading", "load", "up", "rising", "increasing", "infl
 BRANCHES |= dict.fromkeys(("unloading", "unload", "down", "falling", "decreasing", "deflation", "deflating", "-1"), -1)
 
 
-def branch_faults(words, lines) -> list:
-    """Sentences on words that name no branch."""
-    wrong = [(line, word) for line, word in zip(lines, words) if word.lower() not in BRANCHES]
-    return [f"line {line}, branch: found {word!r:.30}; write loading or unloading" for line, word in wrong[:5]]
+def branch_faults(found) -> list:
+    """Sentences on words of the columns ``found`` that name no branch."""
+    words = found.values["branch"]
+    wrong = [row for row, word in enumerate(words) if word.lower() not in BRANCHES]
+    return [
+        f"branch: found {words[row]!r:.30}; write loading or unloading {found.where('branch', row)}"
+        for row in wrong[:5]
+    ]
 
 
 def curves_of(measurement):

@@ -10,6 +10,7 @@ from ..description.actuator import Actuator, ActuatorError, MooneyRivlin
 from ..description.elastomer import Yeoh
 from ..description.options import read_path
 from ..description.quantities import Path
+from ..description.units import shown
 from ..table_file import RATIO, TEXT, Known, read_columns
 from .branches import BRANCHES, branch_faults
 from .measured import COLUMNS, SHORTENINGS, Measurement, as_length, default_measured, measured_faults, read_names
@@ -84,13 +85,14 @@ def _measurements(found, measured, tube, others, name):
     for part in ("pressure", "alpha", "beta", "length", "radius", "wall"):
         if part not in columns and part not in tube:
             beside = "" if part == "pressure" else ", or beside the file"
-            faults.append(f"{part}: is missing; give it as a column{beside}")
+            others = f" (passed over: {', '.join(map(shown, found.others))})" if found.others else ""
+            faults.append(f"{part}: is missing; give it as a column{beside}{others}")
     given = set(map(as_length, columns))
     measured = tuple(as_length(part) for part in measured if part in columns) or default_measured(given)
     faults += measured_faults(measured, given)
     faults += _outside(found)
     if "branch" in columns:
-        faults += branch_faults(columns["branch"], found.lines)
+        faults += branch_faults(found)
     own = [part for part in TUBE if part in columns]
     if faults:
         raise ActuatorError(faults)
@@ -114,19 +116,29 @@ def _measurements(found, measured, tube, others, name):
                 )
             )
         except ActuatorError as error:
-            faults += [fault for fault in error.faults if fault not in faults]
+            row = int(np.flatnonzero(here)[0])
+            for fault in error.faults:
+                named = [part for part in own if fault.startswith(part)]
+                faults.append(f"{fault} {found.where(named[0], row)}" if named else fault)
+            faults = list(dict.fromkeys(faults))
     if faults:
         raise ActuatorError(faults)
     return made
 
 
 def _outside(found):
-    """Faults of numbers that no bench measures, with their lines."""
+    """Faults of numbers that no bench measures, with their places."""
     faults = []
-    for name, least in (("pressure", 0.0), ("deformed_length", 1e-12)):
-        array = found.values.get(name, np.empty(0))
-        for row in np.flatnonzero(array < least)[:3]:
-            words = "0 or more" if least == 0.0 else "above 0"
-            unit = KNOWN.units[name]
-            faults.append(f"{name}: found {array[row]:g} {unit}; it has to be {words} (line {found.lines[row]})")
+    for name, array in found.values.items():
+        if name == "pressure":
+            wrong, words = array < 0.0, "0 or more"
+        elif name == "contraction":
+            wrong, words = array >= 1.0, "below 1, which is nothing left of the length"
+        elif name in ("deformed_length", "mid_radius") or name.endswith(SIGMA):
+            wrong, words = array <= 0.0, "above 0"
+        else:
+            continue
+        unit = {RATIO: ""}.get(KNOWN.units[name], f" {KNOWN.units[name]}")
+        for row in np.flatnonzero(wrong)[:3]:
+            faults.append(f"{name}: found {array[row]:g}{unit}; it has to be {words} {found.where(name, row)}")
     return faults

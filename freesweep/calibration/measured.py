@@ -142,11 +142,14 @@ class Measurement:
         """Put deformed lengths in place of a shortening."""
         most = {"most": 1.0} if name == "contraction" else {}
         array = read_column(name, getattr(self, name), SHORTENINGS[name], faults, **most)
+        if array is None:
+            arrays.setdefault("deformed_length", None)
+            return
         if "deformed_length" in arrays:
             faults.append(
                 f"{name}: deformed lengths are given too; give one of contraction, stroke and deformed_length"
             )
-        elif array is not None and isinstance(self.tube, Actuator):
+        elif isinstance(self.tube, Actuator):
             length = self.tube.length * (1.0 - array) if name == "contraction" else self.tube.length - array
             if not np.all(length > 0.0):
                 faults.append(f"{name}: found {array.max():g}; nothing would be left of the length")

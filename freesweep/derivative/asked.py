@@ -4,7 +4,7 @@ import numpy as np
 
 from . import grid
 from .along import Course
-from .body import Body
+from .equilibrium import Hold
 from .nested import solve
 from .physical import PhysicalTube
 from .physics import Physics
@@ -14,7 +14,7 @@ from .table import Held, rows_of
 from .vectors import differentiated
 
 SHARE = 0.01  # of the accuracy asked for: what a derivative's bound has to meet, scaled
-TURNS, SETTLED = 4, 1e-10  # of finding the load that holds, relative
+TURNS, SETTLED = 4, 1e-10  # of finding the load that holds in vectors, relative
 
 
 class Asked:
@@ -73,34 +73,26 @@ class Asked:
 
     def state(self, loads, target, y):
         """Values and bounds (outputs, 1 + parameters) of one state whose stretches at :meth:`stations` are ``y``."""
-        for _ in range(TURNS):
-            found = self._under(loads, y)
-            if self.unknown is None:
-                return found
-            value, slope = self.holding.at(found.values)
-            change, load = (target - value) / slope, loads[self.unknown]
-            if not abs(change) > SETTLED * abs(load):
-                break
-            loads = loads | {self.unknown: load + change}
-        table = self.holding.table(np.array([load]), *(array[..., None] for array in found))
-        return tuple(array[..., 0] for array in table)
+        hold = None
+        if self.unknown is not None:
+            unit = float(measures(self.tube, loads)[self.unknown])
+            hold = Hold(self.held, self.unknown, target, unit, np.array([loads[self.unknown]]))
+
+        def finish(made, hold):
+            rows = rows_of(made, SHAPE, len(self.seeds))
+            if hold is not None:
+                rows, _ = self.holding.table(hold.load, rows, 0.0 * rows)
+            units = sizes(self.tube, loads, self.outputs, self.parameters, rows[:, 0, -1])
+            rows = np.moveaxis(rows, -1, 0)
+            return rows, np.maximum(np.abs(rows[-1]), units)
+
+        known = self._physics(loads, () if hold is None else self.seeds[:1])
+        wanted = self._physics(loads, self.seeds)
+        return solve(known, wanted, self.x, y, self.half, self.segments, hold, finish, SHARE * self.accuracy)
 
     def _physics(self, loads, seeds):
         kind = PhysicalTube if self.is_physical else Physics
-        made = kind(self.tube, self.course, loads, seeds)
-        return Body(made) if self.tube.is_body else made
-
-    def _under(self, loads, y):
-        """As :meth:`state`, with nothing held."""
-        count = len(self.seeds)
-
-        def finish(made, physics):
-            rows = np.moveaxis(rows_of(made, SHAPE, count), -1, 0)
-            units = sizes(self.tube, loads, SHAPE, self.seeds, rows[-1, :, 0])
-            return rows, np.maximum(np.abs(rows[-1]), units)
-
-        known, wanted = self._physics(loads, ()), self._physics(loads, self.seeds)
-        return solve(known, wanted, self.x, y, self.half, self.segments, finish, SHARE * self.accuracy)
+        return kind(self.tube, self.course, loads, seeds)
 
     def at_rest(self, loads):
         """As :meth:`state`, of the undeformed tube, with bounds of 0."""

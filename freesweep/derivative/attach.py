@@ -10,7 +10,7 @@ from .equilibrium import NotFound
 from .request import attributes
 from .rest import is_at_rest
 
-GUESS = 1e-4  # accuracy of shapes to begin from
+GUESS = 1e-6  # accuracy of shapes to begin from: with 1e-4 some that stretch twentyfold are lost
 SAME = 1e-7  # scaled, beside the bounds: by how much a state may differ from the one that was found
 MANY = 64  # states for which it is worth to compile vectors
 LOST = "derivatives: {count} of {all} states were not met again on meshes of their own; theirs are NaN"

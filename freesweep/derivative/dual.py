@@ -54,16 +54,16 @@ class Dual:
         return _along(self, self.value**power, power * self.value ** (power - 1))
 
     def __gt__(self, other):
-        return _all_or_none(self.value > _value(other))
+        return _all_or_none(self.value > value_of(other))
 
     def __ge__(self, other):
-        return _all_or_none(self.value >= _value(other))
+        return _all_or_none(self.value >= value_of(other))
 
     def __lt__(self, other):
-        return _all_or_none(self.value < _value(other))
+        return _all_or_none(self.value < value_of(other))
 
     def __le__(self, other):
-        return _all_or_none(self.value <= _value(other))
+        return _all_or_none(self.value <= value_of(other))
 
     def __array_ufunc__(self, ufunc, method, *inputs, **named):
         if method != "__call__" or named or ufunc not in _UFUNCS:
@@ -78,7 +78,8 @@ class Dual:
         return Dual(self.value[some], self.parts if alike else self.parts[:, some])
 
 
-def _value(number):
+def value_of(number):
+    """The value of a number that may be dual."""
     return number.value if isinstance(number, Dual) else number
 
 
@@ -96,7 +97,7 @@ def _all_or_none(found):
 
 def _pick(first, other, which):
     """``first`` in cells ``which``, ``other`` elsewhere."""
-    value = np.where(which, _value(first), _value(other))
+    value = np.where(which, value_of(first), value_of(other))
     parts = [
         number.parts if isinstance(number, Dual) and number.parts is not None else 0.0 for number in (first, other)
     ]
@@ -115,14 +116,14 @@ def maximum(first, other):
     """The larger one in each cell."""
     if not isinstance(first, Dual) and not isinstance(other, Dual):
         return np.maximum(first, other)
-    return _pick(first, other, _value(first) >= _value(other))
+    return _pick(first, other, value_of(first) >= value_of(other))
 
 
 def minimum(first, other):
     """The smaller one in each cell."""
     if not isinstance(first, Dual) and not isinstance(other, Dual):
         return np.minimum(first, other)
-    return _pick(first, other, _value(first) <= _value(other))
+    return _pick(first, other, value_of(first) <= value_of(other))
 
 
 def absolute(x):

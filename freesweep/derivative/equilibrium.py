@@ -3,6 +3,9 @@
 ``J = sum h L(y_mid, slope)``, as in :mod:`freesweep.solver.numerics.newton`, is stationary in the nodes' stretches y.
 Where a parameter changes, ``J_yy dy = -J_ytheta``, one tridiagonal solution, and an output changes by ``Q_theta + Q_y
 dy``. Meshes that know nothing of each other are one banded system all the same: NumPy's time is that of its calls.
+
+Where an output is held, the load that holds it is one unknown more on each mesh: it changes by what of the output a step
+under given loads leaves missing (:mod:`freesweep.solver.numerics.held`).
 """
 
 from typing import NamedTuple
@@ -18,12 +21,16 @@ SMALL, SETTLED = 1e-7, 1e-12  # relative steps: after the first one the next is 
 MIN_ROOM = 0.02  # of the room of any cell that a step must leave, as in the solver's
 
 
+class NotFound(Exception):
+    """No state of a mesh near the one that is known."""
+
+
 class Meshes:
     """Nodes ``x`` (x/l) of meshes one behind the other, each from 0 on; the last node of each is ``free`` or not."""
 
     def __init__(self, meshes, free):
         self.x = np.concatenate(meshes)
-        sizes = [len(mesh) for mesh in meshes]
+        self.free, sizes = free, [len(mesh) for mesh in meshes]
         self.starts = np.cumsum([0, *sizes[:-1]])
         self.ends = self.starts + sizes - 1
         self.left = np.delete(np.arange(len(self.x)), self.ends)  # node at the left of each cell
@@ -37,6 +44,18 @@ class Meshes:
         """Which cells belong to one of the meshes."""
         first = self.first_cells[mesh]
         return slice(first, first + self.ends[mesh] - self.starts[mesh])
+
+    def nodes(self, mesh):
+        """Which nodes do."""
+        return slice(self.starts[mesh], self.ends[mesh] + 1)
+
+    def at_nodes(self, numbers):
+        """Numbers of the meshes at all nodes."""
+        return np.repeat(numbers, self.ends - self.starts + 1)
+
+    def in_cells(self, numbers):
+        """Numbers of the meshes in all cells."""
+        return np.repeat(numbers, self.ends - self.starts)
 
     def to_nodes(self, left, right):
         """What cells give to the nodes at their ends."""
@@ -107,44 +126,76 @@ def sums(physics, meshes, y) -> Sums:
 
 
 def responses(found, meshes):
-    """How the nodes move with each parameter, (parameters, nodes), after the step to J_y = 0, (nodes,)."""
+    """How the nodes move with each parameter, (parameters, nodes), after the step to J_y = 0, (nodes,). Raises
+    :class:`NotFound`.
+    """
     bands, right = found.hessian.copy(), -found.gradient
     fixed = meshes.fixed
     bands[1, fixed], right[:, fixed] = 1.0, 0.0
     bands[0, (fixed + 1) % len(meshes.x)] = bands[2, fixed - 1] = 0.0
-    moved = solve_banded((1, 1), bands, right.T, overwrite_ab=True, check_finite=False).T
+    try:
+        moved = solve_banded((1, 1), bands, right.T, overwrite_ab=True, check_finite=False).T
+    except LinAlgError:
+        raise NotFound from None
     return moved[1:], moved[0]
 
 
-class NotFound(Exception):
-    """No state of a mesh near the one that is known."""
+class Hold(NamedTuple):
+    """An output that is ``held`` at a ``target``, and the load that does it, ``unknown``, with the ``unit`` that it is
+    measured by: its values on the meshes.
+    """
+
+    held: str
+    unknown: str
+    target: float
+    unit: float
+    load: np.ndarray
+
+    def missing(self, made):
+        """How much more of the load it takes on each mesh, from ``made`` outputs that know their derivatives by it."""
+        return (self.target - made[self.held].value) / made[self.held].parts[OWN]
 
 
-def equilibrium(physics, meshes, y):
-    """The stretches of the nodes, from a guess ``y`` close to them. Raises :class:`NotFound`."""
-    before, fraction, room = np.inf, 1.0, np.zeros(len(meshes.step))
-    step, halvings = np.zeros_like(y), 0
+def equilibrium(physics, meshes, y, hold=None):
+    """The stretches of the nodes, from a guess ``y`` close to them, and what holds them: ``(y, hold)``; the load that is
+    unknown is the first parameter of ``physics``, which bears that of the last mesh then. Raises :class:`NotFound`.
+    """
+    first, unit = meshes.starts, 1.0
+    if hold is not None:
+        hold = hold._replace(load=np.repeat(hold.load[-1:], len(first)))
+        unit = max(hold.unit, abs(hold.load[0]))
+    step, room, before = np.zeros_like(y), np.zeros(len(meshes.step)), np.full(len(first), np.inf)
+    more = np.zeros(len(first))
     for _ in range(ITERATIONS):
-        while True:
-            trial = y + fraction * step
+        fraction = np.ones(len(first))
+        for _ in range(HALVINGS):
+            trial = y + meshes.at_nodes(fraction) * step
+            if hold is not None:
+                physics.bear(hold.unknown, meshes.in_cells(hold.load + fraction * more))
             with np.errstate(all="ignore"):
                 found = sums(physics, meshes, trial)
-            if np.all(found.room > MIN_ROOM * room) and np.all(trial > 0.0):
+            fits = np.logical_and.reduceat(found.room > MIN_ROOM * room, meshes.first_cells)
+            fits &= np.logical_and.reduceat(trial > 0.0, first)
+            if np.all(fits):
                 break
-            fraction, halvings = 0.5 * fraction, halvings + 1
-            if halvings > HALVINGS:
-                raise NotFound
-        y, room = trial, found.room
-        try:
-            _, step = responses(found, meshes)
-        except LinAlgError:
-            raise NotFound from None
-        size = np.max(np.abs(step) / y)
-        if not np.isfinite(size):
+            fraction[~fits] *= 0.5
+        else:
             raise NotFound
-        if size < SMALL and (size < SETTLED or size > 0.3 * before):
-            return y + step
-        before, fraction, halvings = size, 1.0, 0
+        y, room = trial, found.room
+        moved, step = responses(found, meshes)
+        if hold is not None:
+            hold = hold._replace(load=hold.load + fraction * more)
+            more = hold.missing(_outputs(physics, meshes, y, moved, step))
+            step = step + meshes.at_nodes(more) * moved[0]
+        size = np.maximum(np.maximum.reduceat(np.abs(step) / y, first), np.abs(more) / unit)
+        if not np.all(np.isfinite(size)):
+            raise NotFound
+        if np.all((size < SMALL) & ((size < SETTLED) | (size > 0.3 * before))):
+            if hold is not None:
+                hold = hold._replace(load=hold.load + more)
+                physics.bear(hold.unknown, hold.load[-1:])
+            return y + step, hold
+        before = np.where(fraction == 1.0, size, np.inf)
     raise NotFound
 
 
@@ -152,23 +203,27 @@ def outputs(physics, meshes, y):
     """The outputs in SI units and degrees, dual numbers over the meshes with their derivatives by the parameters of
     ``physics``; Raises :class:`NotFound`.
     """
+    return _outputs(physics, meshes, y, *responses(sums(physics, meshes, y), meshes))
+
+
+def _outputs(physics, meshes, y, moved, step):
+    """The outputs, as far as they change in proportion to it, after a ``step``, and how they change as the nodes ``moved``
+    with each parameter, in cells of which the sums were asked last.
+    """
     count, n = OWN + len(physics.parameters), len(meshes.step)
-    try:
-        moved, _ = responses(sums(physics, meshes, y), meshes)
-    except LinAlgError:
-        raise NotFound from None
-    step = meshes.step * physics.length.value
+    width = meshes.step * physics.length.value
     stretch, slope, scale = _cells(physics, meshes, y)
     integrands = physics.integrands(stretch, slope, meshes.share)
-    own = [0, *range(1 + OWN, 1 + count)]
-    rows = np.stack([_full(step * scale * q, count, n) for q in integrands])
-    totals = meshes.total(rows[:, own])  # (4, 1 + parameters, meshes)
-    by_nodes = _by_left(rows, step)[:, None] * moved[:, meshes.left]
-    by_nodes += _by_right(rows, step)[:, None] * moved[:, meshes.left + 1]
-    totals[:, 1:] += meshes.total(by_nodes)
+    own, all_moved = [0, *range(1 + OWN, 1 + count)], np.vstack([step, moved])
+    rows = np.stack([_full(width * scale * q, count, n) for q in integrands])
+    totals = rows[:, own]  # (4, 1 + parameters, cells)
+    totals += _by_left(rows, width)[:, None] * all_moved[:, meshes.left]
+    totals += _by_right(rows, width)[:, None] * all_moved[:, meshes.left + 1]
+    totals = meshes.total(totals)
 
-    def number(value, by):
-        return Dual(value, np.concatenate([np.zeros((OWN, len(value))), by]))
+    def number(values):
+        return Dual(values[0], np.concatenate([np.zeros((OWN, values.shape[1])), values[1:]]))
 
-    middle = number(y[meshes.middle], moved[:, meshes.middle])
-    return physics.outputs([number(row[0], row[1:]) for row in totals], middle, len(meshes.fixed) == len(meshes.starts))
+    middle = all_moved[:, meshes.middle]
+    middle[0] += y[meshes.middle]
+    return physics.outputs([number(row) for row in totals], number(middle), meshes.free)

@@ -53,6 +53,13 @@ def graded(x, sine, cosine, segments, free):
     return np.concatenate(nodes), np.array(edges)
 
 
+def least_between(x, values, nodes):
+    """Least of the ``values`` of all cells of ``x`` with which each cell of another mesh shares some length."""
+    first = np.searchsorted(x, nodes[:-1], side="right") - 1
+    behind = np.searchsorted(x, nodes[1:], side="left")
+    return np.minimum.reduceat(np.append(values, np.inf), np.stack([first, behind], axis=1).ravel())[::2]
+
+
 def finer(x, edges, factor):
     """Nodes of the nested mesh in which every cell is split into ``factor``."""
     out = np.zeros((len(x) - 1) * factor + 1)

@@ -1,5 +1,6 @@
 """Derivatives on nested meshes, extrapolated and bounded like the outputs (:mod:`freesweep.solver.numerics.nested`)."""
 
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,10 @@ from scipy.interpolate import PchipInterpolator
 from . import grid
 from .equilibrium import Meshes, NotFound, equilibrium, outputs, sums
 
-LEVELS, MOST_LEVELS = 4, 8  # meshes, each with twice the cells of the one before; the first ones are solved at once
+LEVELS = 4  # meshes, each with twice the cells of the one before, that are solved at once
+FINEST = 8  # doublings of the coarsest mesh's cells
+COARSEST = FINEST - LEVELS + 1  # as many, at most, of those that have no state
+FINER = 2  # times that the cells of the first mesh are split into four
 SAFETY = 3.3  # as in the solver's bounds
 FAINT = 0.02  # likewise
 ROUNDING = 1e-11  # of a derivative's own unit: what nearly cancels in it
@@ -23,42 +27,63 @@ class Found(NamedTuple):
     bounds: np.ndarray
 
 
-def admissible(physics, meshes, y):
-    """A guess shrunk toward 1, where every state is admissible, until each cell has room."""
+class Shape:
+    """A state as a guess for meshes: its stretches ``y`` at the places ``x`` and where ``segments`` meet."""
+
+    def __init__(self, physics, x, y, segments):
+        self.stretch, self.x = PchipInterpolator(x, y), np.union1d(x, segments)
+        y = self.stretch(self.x)
+        slope = np.diff(y) / (np.diff(self.x) * physics.length.value)
+        rise, axial = physics.meridian(0.5 * (y[1:] + y[:-1]), slope, 0.5 * (self.x[1:] + self.x[:-1]))
+        whole = np.hypot(axial, rise)
+        self.sine, self.cosine = rise / whole, axial / whole
+
+    def graded(self, segments, free):
+        """``(nodes, edges)`` of a coarse mesh that follows the shape."""
+        return grid.graded(self.x, self.sine, self.cosine, segments, free)
+
+    def on(self, physics, meshes):
+        """A guess on ``meshes``, eased on those where some cell has no room, as the solver's are."""
+        y = self.stretch(meshes.x)
+        for mesh in without_room(physics, meshes, y):
+            nodes, share = meshes.nodes(mesh), meshes.share[meshes.cells(mesh)]
+            least = grid.least_between(self.x, self.cosine, meshes.x[nodes])
+            middle = len(share) if meshes.free else meshes.middle[mesh] - meshes.starts[mesh]
+            y[nodes] = physics.eased(meshes.x[nodes], y[nodes], share, least, middle)
+        return shrunk(physics, meshes, y)
+
+
+def without_room(physics, meshes, y):
+    """Which meshes have a cell without room."""
+    with np.errstate(all="ignore"):
+        room = sums(physics, meshes, y).room
+    return np.flatnonzero(~(np.minimum.reduceat(room, meshes.first_cells) > 0.0))
+
+
+def shrunk(physics, meshes, y):
+    """A guess shrunk toward 1, where every state is admissible, on each mesh until all its cells have room."""
     for _ in range(SHRINKINGS):
-        with np.errstate(all="ignore"):
-            if np.all(sums(physics, meshes, y).room > 0.0):
-                return y
-        y = 1.0 + SHRUNK * (y - 1.0)
+        tight = without_room(physics, meshes, y)
+        if len(tight) == 0:
+            return y
+        for mesh in tight:
+            nodes = meshes.nodes(mesh)
+            y[nodes] = 1.0 + SHRUNK * (y[nodes] - 1.0)
     raise NotFound
 
 
-def follow(physics, x, y, free, segments):
-    """``(nodes, edges, shape)`` of a coarse mesh that follows a state, from its stretches ``y`` at ``x``, and these as a
-    function of the place.
-    """
-    shape, x = PchipInterpolator(x, y), np.union1d(x, segments)
-    y = shape(x)
-    slope = np.diff(y) / (np.diff(x) * physics.length.value)
-    w, s = physics.meridian(0.5 * (y[1:] + y[:-1]), slope, 0.5 * (x[1:] + x[:-1]))
-    whole = np.hypot(s, w)
-    nodes, edges = grid.graded(x, w / whole, s / whole, segments, free)
-    return nodes, edges, shape
-
-
-def solve(known, wanted, x, y, free, segments, finish, accuracy) -> Found:
+def solve(known, wanted, x, y, free, segments, hold, finish, accuracy) -> Found:
     """Outputs and derivatives of the state whose stretches at ``x`` are about ``y``: ``known`` solves, ``wanted`` has all
     parameters; ``finish`` makes tables of outputs (meshes, outputs, 1 + parameters), and the unit of each number.
 
     Where the kind of cell changes (:mod:`physical`) a node is put: on either side everything is smooth then. What is left of
     its distance from there enters the bounds, as the results moved when it was moved before.
     """
-    first = Meshes([x], free)
-    y = equilibrium(known, first, admissible(known, first, y))
+    known, x, y, hold = on_first(known, x, y, free, segments, hold)
     kinks, before, shift = known.kinks(segments), None, None
     for made in range(ROUNDS):
         ends = np.union1d(segments, kinks)
-        found, units, seen = on_nested(known, wanted, x, y, free, ends, segments, finish, accuracy)
+        found, units, seen = on_nested(known, wanted, x, y, free, ends, segments, hold, finish, accuracy)
         if len(kinks) == 0 and len(seen) == 0:
             return found
         if len(seen) == len(kinks):
@@ -74,23 +99,52 @@ def solve(known, wanted, x, y, free, segments, finish, accuracy) -> Found:
     raise NotFound
 
 
-def on_nested(known, wanted, x, y, free, ends, segments, finish, accuracy):
-    """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change."""
-    nodes, edges, shape = follow(known, x, y, free, ends)
-    table, seen, level = [], [], 0
-    while level < MOST_LEVELS:
-        own = [grid.finer(nodes, edges, 1 << k) for k in (range(LEVELS) if level == 0 else [level])]
-        meshes = Meshes(own, free)
-        y = equilibrium(known, meshes, admissible(known, meshes, shape(meshes.x)))
-        wanted.begin(known)
-        rows, units = finish(outputs(wanted, meshes, y), wanted)
-        table += list(rows)
-        seen += [known.kinks(segments, meshes.cells(k)) for k in range(len(own))]
-        level += len(own)
-        values, bounds = extrapolate(table, units)
-        if np.max(bounds / units) <= accuracy:
+def on_first(known, x, y, free, segments, hold):
+    """``(physics, x, y, hold)`` of the state on the mesh of its guess, or where that has none on a finer one."""
+    shape = PchipInterpolator(x, y)
+    for finer in range(FINER + 1):
+        places, physics = grid.finer(x, np.searchsorted(x, segments), 4**finer), copy(known)
+        mesh = Meshes([places], free)
+        try:
+            return physics, places, *equilibrium(physics, mesh, shrunk(physics, mesh, shape(places)), hold)
+        except NotFound:
+            if finer == FINER:
+                raise
+
+
+def on_nested(known, wanted, x, y, free, ends, segments, hold, finish, accuracy):
+    """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change; the coarsest mesh is a
+    finer one where that has no state.
+    """
+    shape = Shape(known, x, y, ends)
+    nodes, edges = shape.graded(ends, free)
+
+    def stand(physics, levels, shape, hold):
+        meshes = Meshes([grid.finer(nodes, edges, 1 << level) for level in levels], free)
+        return meshes, *equilibrium(physics, meshes, shape.on(physics, meshes), hold)
+
+    for coarsest in range(COARSEST + 1):
+        levels, physics = range(coarsest, coarsest + LEVELS), copy(known)
+        try:
+            meshes, y, own = stand(physics, levels, shape, hold)
             break
-        shape = PchipInterpolator(own[-1], y[meshes.starts[-1] :])
+        except NotFound:
+            if coarsest == COARSEST:
+                raise
+    table, seen = [], []
+    while True:
+        if own is not None:
+            wanted.bear(own.unknown, meshes.in_cells(own.load))
+        wanted.begin(physics)
+        rows, units = finish(outputs(wanted, meshes, y), own)
+        table += list(rows)
+        seen += [physics.kinks(segments, meshes.cells(k)) for k in range(len(levels))]
+        values, bounds = extrapolate(table, units)
+        if np.max(bounds / units) <= accuracy or levels[-1] == FINEST:
+            break
+        last = meshes.nodes(len(levels) - 1)
+        levels = [levels[-1] + 1]
+        meshes, y, own = stand(physics, levels, Shape(physics, meshes.x[last], y[last], ends), own)
     last, one = seen[-1], seen[-2]
     return Found(values, bounds), units, (4.0 * last - one) / 3.0 if len(last) == len(one) else last
 

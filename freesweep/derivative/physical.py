@@ -30,8 +30,8 @@ NO_ROOM = 1e-30
 
 @cache
 def walls():
-    """Strain energy of a wall, and where loose fibers settle."""
-    from ..solver.physics import physical, wall
+    """Strain energy of a wall, where it is narrowest, where loose fibers settle, and the tube of a body's radius."""
+    from ..solver.physics import body, physical, wall
 
     counted = twin(wall.points)
 
@@ -41,7 +41,8 @@ def walls():
         thickest = np.argmax(both[1] / both[0])
         return counted(*(float(one[thickest]) for one in both))
 
-    return twin(wall.energy, points=points), twin(wall.narrowest), twin(physical.place)
+    changes = twin(body.as_tube), twin(body.of_partials), twin(body.of_integrals)
+    return twin(wall.energy, points=points), twin(wall.narrowest), twin(physical.place), changes
 
 
 class Settled(NamedTuple):
@@ -108,14 +109,14 @@ class PhysicalTube(Physics):
 
     settled = None
 
-    def _local(self, y, v, share):
-        (H, D, area), (gamma, rubber, wall, p, f, m, e) = self.properties(share)
-        return Local(y, p, f, m, H + D, H - D, gamma * gamma, area, rubber, wall), (H, D, area), e
-
     def settle(self, y, v, share):
-        """Where each cell settles, ``y`` and ``v`` being values."""
-        local, (H, D, area), e = self._local(Dual(y), Dual(v), share)
-        energy, narrowest, place = walls()
+        """Where each cell settles: numbers of the tube there, its slope, and the weight of its energy; the four, which
+        families are taut, and the least G - 1, values all; and the cell whose tube it is.
+        """
+        given, load = self.properties(share)
+        energy, narrowest, place, (as_tube, *_) = walls()
+        (H, D, area), w, (gamma, rubber, wall, p, f, m, e) = as_tube(y, v, given, load)
+        local, y, v = Local(y, p, f, m, H + D, H - D, gamma * gamma, area, rubber, wall), y.value, w.value
 
         def value(number):
             return np.broadcast_to(number.value if isinstance(number, Dual) else number, y.shape)
@@ -149,7 +150,7 @@ class PhysicalTube(Physics):
         else:
             raise NotFound
         self.settled = Settled(share, four, alpha, beta)
-        return local, e, area, four, alpha, beta, low, T
+        return local, w, e, four, alpha, beta, low, given
 
     def _first(self, place, y, v, share, H, D, gg, T, m, area, rubber, wall):
         """From the kernel itself, in some cells."""
@@ -199,17 +200,18 @@ class PhysicalTube(Physics):
 
     def local(self, y, v, share):
         """As of :class:`Physics`."""
-        local, e, area, four, alpha, beta, low, T = self.settle(y.value, v.value, share)
-        energy, n = walls()[0], len(share)
-        G_1, psi = four[0], four[1]
-        own = Local(y, *local[1:])
-        W = energy(y, Dual(G_1), Dual(psi), area * e, local.rubber, local.wall) if e > 0.0 else [Dual(np.zeros(n))] * 10
+        own, v, e, four, alpha, beta, low, given = self.settle(y, v, share)
+        energy, _, _, (_, of_partials, of_integrals) = walls()
+        G_1, psi, n = four[0], four[1], len(share)
+        W = energy(y, Dual(G_1), Dual(psi), own.area * e, own.rubber, own.wall) if e > 0.0 else [Dual(np.zeros(n))] * 10
         s = _root(G_1 + 1.0 - v * v)
         left = equations(own, s, four, W[2], W[3])
+        tension = own.p * y * y + own.f
+        T = np.maximum(tension.value, NO_ROOM)
         w = [np.broadcast_to(one.value, n) for one in W]
         matrix = jacobian(
-            y.value, T, np.broadcast_to(s.value, n), four, np.broadcast_to(local.t_a.value, n),
-            np.broadcast_to(local.t_b.value, n), alpha, beta, w[7], w[8], w[9],
+            y.value, T, np.broadcast_to(s.value, n), four, np.broadcast_to(own.t_a.value, n),
+            np.broadcast_to(own.t_b.value, n), alpha, beta, w[7], w[8], w[9],
         )  # fmt: skip
         count = y.parts.shape[0]
         parts = np.stack([_parts(one, count, n) for one in left], axis=-1)  # (count, n, 4)
@@ -220,16 +222,15 @@ class PhysicalTube(Physics):
         s = _root(G + 1.0 - v * v)
         by_a, by_b = own.t_a + twist, own.t_b + twist
         W_y = _with(W[1], w[5], w[6], moved)
-        tension = own.p * y * y + own.f
         L_y = 2.0 * own.p * y * s - W_y - 2.0 * y * (a * by_a * by_a + b * by_b * by_b)
         L_v = -(tension * v / s)
         if e == 0.0:
-            W = energy(y, Dual(G_1), Dual(psi), area, local.rubber, local.wall)
+            W = energy(y, Dual(G_1), Dual(psi), own.area, own.rubber, own.wall)
             w = [np.broadcast_to(one.value, n) for one in W]
         stored = _with(W[0], w[2], w[3], moved)
         room = np.minimum(G_1 - low, np.broadcast_to(tension.value, n))
-        self.seen = s, y * y * s, twist, stored
-        return room, L_y, L_v
+        self.seen = of_integrals(given, (s, y * y * s, twist, stored, 0.0))[:4]
+        return of_partials(given, (room, L_y, L_v, 0.0, 0.0, 0.0))[:3]
 
     def integrands(self, y, v, share):
         """As of :class:`Physics`."""
@@ -256,8 +257,8 @@ class PhysicalTube(Physics):
 
     def meridian(self, y, v, share):
         """As of :class:`Physics`."""
-        four = self.settle(y, v, share)[3]
-        return v, np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
+        _, slope, _, four, *_ = self.settle(Dual(y), Dual(v), share)
+        return slope.value, np.sqrt(np.maximum(1.0 + four[0] - slope.value**2, NO_ROOM))
 
 
 def _vanishes(x, mu, near):

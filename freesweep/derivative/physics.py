@@ -9,20 +9,23 @@ import numpy as np
 from ..description.elastomer import Yeoh
 from ..description.tube_model import FIBER_PLACES, fiber_place
 from ..scaling import OUTPUTS, output_scales, problem_columns, wall_volume_inside
-from .dual import Dual
+from .dual import Dual, value_of
 from .request import constants, place_of_fibers
 from .twins import twin
 
 BY_Y, BY_V, OWN = 0, 1, 2  # first parts of every dual number: by y, by its slope; then by the parameters
+RISE = 4  # place of dR/dx among the numbers of a body's cell
 NEXT_TO_NOTHING = 1e-300  # of C1: a constant of Yeoh's that is 0 counts, too, where its derivative is asked for
 
 
 @cache
-def membranes():
-    """Density and integrands of the source's tube."""
-    from ..solver.physics import membrane
+def kernels():
+    """Density, integrands and the rise of a meridian, as the solver has them, and how it eases a guess."""
+    from ..solver import cells
+    from ..solver.numerics import mesh
+    from ..solver.physics import lagrangian
 
-    return twin(membrane.density), twin(membrane.integrands)
+    return twin(lagrangian.density), twin(lagrangian.integrands), twin(cells.rise), twin(mesh.ease)
 
 
 def outputs_of(design, numbers, scales=None, inside=None) -> dict:
@@ -66,6 +69,14 @@ class Physics:
         parts[OWN + self.parameters.index(name)] = 1.0
         return Dual(value, parts)
 
+    def bear(self, name, load):
+        """Bear another ``load``, in SI units, in each cell."""
+        self.design = self.design | {name: self.seed(name, load)}
+
+    def columns(self, design):
+        """Those of a dimensionless problem."""
+        return problem_columns(design, self.tube.energy, self.tube.is_thick, self.tube.is_loose)
+
     def properties(self, share):
         """``(cell, load)`` as kernels take them, for cells whose middles lie at places x/l."""
         from ..solver.load import Load
@@ -73,31 +84,39 @@ class Physics:
         tube, design = self.tube, self.design
         if self.course is not None:
             design = design | self.course.at(share, self.seed)
-        H, D, area, gamma, ratio, shear, f, m, _, second, third, *wall = problem_columns(
-            design, tube.energy, tube.is_thick, tube.is_loose
-        )
+        H, D, area, gamma, ratio, shear, f, m, _, second, third, *wall = self.columns(design)
+        cell = H, D, area
+        if tube.is_body:  # its loads are those of the tube of the radius at x = 0
+            R, rise = design["fiber_radius"] / self.design["fiber_radius"], self.course.rise(share, self.seed)
+            cell = *cell, R, rise / design["length"], wall[0] if wall else 0.0
+            f, m = self.columns(self.design)[6:8]
         p, e = design["pressure"] / design["c10"], 0.0 if self.is_locked else 1.0
         if self.is_locked:
             p, f, m = 1.0, 0.0, 0.0
         rubber = (ratio,)
         if isinstance(tube.material, Yeoh):
             rubber = (ratio, second, third + NEXT_TO_NOTHING)
-        return (H, D, area), Load(gamma, rubber, (shear, *wall), p, f, m, e)
+        return cell, Load(gamma, rubber, (shear, *wall), p, f, m, e)
 
     def outputs(self, integrals, middle, half):
         """The outputs in SI units and degrees from dimensionless dual numbers, of ``half`` the tube or all of it."""
         share = 1.0 if half else 0.5
-        return outputs_of(self.design, [*(share * integral for integral in integrals), middle])
+        numbers = [*(share * integral for integral in integrals), middle]
+        if not self.tube.is_body:
+            return outputs_of(self.design, numbers)
+        scales = {"mid_radius": self.course.at(0.5, self.seed)["fiber_radius"]}
+        return outputs_of(
+            self.design, numbers, scales, np.pi * self.design["length"] * self.course.squares(self.seed)[1]
+        )
 
     def local(self, y, v, share):
         """``(room, L_y, L_v)`` in all cells, at their middles."""
-        cell, load = self.properties(share)
-        room, L_y, L_v, _, _, _ = membranes()[0](y, v, cell, load)
+        room, L_y, L_v, _, _, _ = kernels()[0](y, v, *self.properties(share))
         return room.value, L_y, L_v
 
     def integrands(self, y, v, share):
         """What the outputs integrate, in the cells of which :meth:`local` was asked last."""
-        return membranes()[1](y, v, *self.properties(share))[:4]
+        return kernels()[1](y, v, *self.properties(share))[:4]
 
     def begin(self, other):
         """Take over from another one of the same state what helps to find it."""
@@ -108,10 +127,37 @@ class Physics:
 
     def rest_integrals(self):
         """What the outputs integrate, of the undeformed tube."""
-        none = 0.0 * self.length
-        return [self.length, self.length, none, none]
+        none, volume = 0.0 * self.length, self.length
+        if self.tube.is_body:
+            volume = volume * self.course.squares(self.seed)[0] / self.design["fiber_radius"] ** 2
+        return [self.length, volume, none, none]
 
     def meridian(self, y, v, share):
-        """Slope of the meridian, and axial stretch, in all cells."""
+        """Rise of the deformed meridian, and axial length, in all cells, both per length."""
         cell, load = self.properties(share)
-        return v, np.broadcast_to(membranes()[1](Dual(y), Dual(v), cell, load)[0].value, y.shape)
+        found = kernels()[2](Dual(y), Dual(v), cell), kernels()[1](Dual(y), Dual(v), cell, load)[0]
+        return tuple(np.broadcast_to(number.value, y.shape) for number in found)
+
+    def eased(self, x, y, share, cosine, middle):
+        """A guess ``y`` at nodes ``x`` (x/l) that leaves every cell room, whose middles are at ``share``, and whose meridian
+        has about that ``cosine``: followed from both ends on to the node in the ``middle``.
+        """
+        cell, load = self.properties(share)
+        rows = np.stack([np.broadcast_to(value_of(number), share.shape) for number in cell], axis=-1)
+        back = rows[::-1] * np.where(np.arange(len(cell)) == RISE, -1.0, 1.0)
+        numbers = [tuple(map(_float, part)) if isinstance(part, tuple) else _float(part) for part in load]
+        load, integrands, ease = type(load)(*numbers), *kernels()[1::2]
+
+        def followed(x, y, rows, cosine, n):
+            y, rows = y[: n + 1].copy(), rows[:n] if len(cell) == 3 else rows[:n].reshape(-1, 2, 3)
+            ease(integrands, x * self.length.value, y, n, cosine, rows, load)
+            return y
+
+        left = followed(x, y, rows, cosine, middle)
+        right = followed(x[-1] - x[::-1], y[::-1], back, cosine[::-1], len(share) - middle)
+        return np.concatenate([left, right[-2::-1]])
+
+
+def _float(number):
+    """A number that does not vary along a tube."""
+    return float(np.ravel(value_of(number))[0])

@@ -8,6 +8,7 @@ ROUNDS = 120
 DAMPING, LESS, MORE, MOST = 1e-3, 0.2, 5.0, 1e9  # of the diagonal; after a step that helps, and one that does not
 DONE = 1e-3  # tolerances: closer is close enough
 STILL = 1e-9  # of the cost: no more is won
+FEW = 3  # designs, the best ones, whose steps are looked at thoroughly where vectors tell nothing of them: states are dear
 LARGEST = 0.2  # of the unit box, in one step
 
 
@@ -24,8 +25,15 @@ def polish(misfit: Misfit, u, choice):
         if len(rows) == 0:
             break
         ahead = np.array([_ahead(u[i], residuals[i], slopes[i], damping[i]) for i in rows])
-        trial, missed = misfit.at(ahead, choice[rows], thorough=False)  # a state that is dear ends a step
+        trial, missed = misfit.at(ahead, choice[rows], thorough=False)
         new = _cost(missed)
+        if misfit.space.is_alike and np.all(cost > DONE**2):
+            dear = np.flatnonzero(~np.isfinite(new))
+            dear = dear[np.argsort(cost[rows[dear]], kind="stable")][:FEW]
+            again, missed[dear] = misfit.at(ahead[dear], choice[rows[dear]])
+            for own, other in zip(trial, again):
+                own[dear] = other
+            new[dear] = _cost(missed[dear])
         better = new < cost[rows]
         damping[rows] *= np.where(better, LESS, MORE)
         won = rows[better]

@@ -70,11 +70,19 @@ def test_what_is_passed_over_is_counted(tmp_path):
         ("pressure [kPa];force [N]\n1,5;2\n1.5;3\n", "line 2, pressure: '1,5' beside '1.5' on line 3: decimal commas"),
         ("pressure [kPa],force [N]\n1,5,2,5\n", "line 2: 4 cells under 2 names; a separator too many, or a decimal comma"),
         ("pressure [kPa],force [N]\n5\n", "line 2: 1 cells under 2 names; cells are missing at its end (from column 2)"),
-        ("pressure [kPa],force [N]\n-5,1\n", "pressure: found -5000 Pa; it has to be 0 or more (line 2)"),
+        ("pressure [kPa],force [N]\n-5,1\n", "pressure: found -5000 Pa; it has to be 0 or more (line 2, column 1)"),
         ("pressure [kPa],force [N]\n,1\nnan,2\n", "no row has a number in each of pressure, force"),
-        ("pressure [kPa],force [N],branch\n5,1,up\n6,1,back\n", "line 3, branch: found 'back'; write loading or unloading"),
+        ("pressure [kPa],force [N],branch\n5,1,up\n6,1,back\n", "'back'; write loading or unloading (line 3, column 3)"),
         ("force [N],time [s]\n5,1\n", "pressure: is missing; give it as a column"),
         ("pressure [kPa],force [N],force (N)\n5,1,1\n", "column 'force (N)': given twice (line 1, column 3)"),
+        ('pressure [Pa],force [N]\n"50,000",1\n"60,500",2\n', "'50,000' is 50.000 or 50000? write points, and nothing"),
+        ('pressure [kPa],force [N]\n"50,1\n60,2\n', "line 2: a quotation mark opens and does not end (character 1)"),
+        ("pressure [kPa] force [N]\n50 1\n60 2\n", "line 1: blanks alone part its columns; write commas"),
+        ("pressure [kPa],force [N]\n5,1\n6,2 N\n", "line 3, force: found '2 N': its unit stands above; write the number"),
+        ("absolute pressure [psi],force [N]\n15,1\n", "give it as a column (passed over: 'absolute pressure [psi]')"),
+        ("pressure [kPa],contraction [%]\n5,1\n6,120\n", "contraction: found 1.2; it has to be below 1"),
+        ("pressure [kPa],force [N],force_sigma [N]\n5,1,0\n", "found 0 N; it has to be above 0 (line 2, column 3)"),
+        ("pressure [kPa],force [N],fiber_extension [1]\n5,1,0.5\n", "fiber_extension: found 0.5"),
     ],
 )  # fmt: skip
 def test_a_wrong_file_gets_one_clear_line(tmp_path, text, says):
@@ -83,6 +91,18 @@ def test_a_wrong_file_gets_one_clear_line(tmp_path, text, says):
     (fault,) = caught.value.faults
     assert says in fault
     assert fault.startswith("bench.csv: ")
+
+
+def test_points_and_commas_are_told_apart(tmp_path):
+    """A comma that can only be a decimal one makes all of them such."""
+    found = read(tmp_path, 'pressure [Pa],force [N]\n"50,000",1\n"60,5",2\n')
+    assert found.pressure.tolist() == [50.0, 60.5]
+    assert read(tmp_path, "pressure [Pa];force [N]\n50,125;1\n").pressure.tolist() == [50.125]
+
+
+def test_a_fault_of_the_tube_names_its_place(tmp_path):
+    with pytest.raises(ActuatorError, match=r"fiber_extension: found 0\.5.*\(line 3, column 3\)"):
+        read(tmp_path, "pressure [kPa],force [N],fiber_extension [1]\n5,1,1\n6,1,0.5\n")
 
 
 def test_shortenings_are_lengths():

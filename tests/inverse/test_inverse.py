@@ -87,6 +87,20 @@ def test_a_candidate_does_what_it_says(hidden):
         assert np.all(np.abs(found["goal_value"].values[k] - [state["rotation"].item(), stroke]) <= errors)
 
 
+def test_a_way_through_states_that_vectors_cannot_tell_is_gone():
+    """Blocked forces that push, of a tube that leaves its straight cylinder for them."""
+    design = {"alpha": 54, "beta": 22, "length": 0.215, "radius": 0.0101, "material": RUBBER, "model": "source"}
+    pushed = [
+        float(fs.blocked_force(fs.Actuator(wall=wall, **design), 66e3, x=0.0)["force"]) for wall in (1e-3, 1.18e-3)
+    ]
+    assert pushed[0] > 0.0 > pushed[1]
+    goals = [fs.Goal("force", pushed[1], pressure=66e3), fs.Goal("deformed_length", 0.222)]
+    free = {"wall": (3e-4, 2e-3), "pressure": (2e4, 3e5)}
+    found = fs.design(fs.Actuator(wall=6e-4, **design), free, goals, count=3)
+    assert found["met"][0]
+    assert found["wall"][0] == pytest.approx(1.18e-3, rel=1e-4)
+
+
 def test_a_free_pressure_is_found(hidden):
     secret, free, _ = hidden
     found = fs.design(secret, bounds("pressure"), [fs.Goal("rotation", free["rotation"].item())], count=1)

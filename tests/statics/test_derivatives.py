@@ -151,6 +151,57 @@ def test_loads_work_on_each_other_s_displacements_alike():
     assert d["d_rotation_d_torque"].attrs["units"] == "degree/(N m)"
 
 
+UPRIGHT = {"alpha": 68.58, "beta": -45, "length": 0.0191, "radius": 3.05e-3, "wall": 2.1e-4, "c10": 2.1e5, "c01": 4.6e4}
+BULGED = {
+    "alpha": 38.95,
+    "beta": 23.79,
+    "length": 0.2413,
+    "radius": 7.22e-3,
+    "wall": 2.17e-3,
+    "c10": 7.5e4,
+    "c01": 3.3e4,
+}
+VARYING = {"alpha": [(0, 12.16), (1, -3.033)], "beta": 31.9, "length": 0.0408, "radius": 4.05e-3, "wall": 1.13e-4}
+HELD = {
+    "contracted to a sixth, its meridian upright at the ends": UPRIGHT
+    | {"pressure": 9550.0, "force": -4.8e-3, "rotation": -70.95},
+    "with a bulge that no given torque holds": BULGED | {"pressure": 1.23e5, "force": 4.34, "rotation": -372.5},
+    "that varies, its meridian upright at both ends": VARYING
+    | {"c10": 7.21e4, "c01": 7.71e4, "pressure": 2.83e5, "force": -0.444, "rotation": -14.9},
+}
+
+
+@pytest.mark.parametrize("kind", HELD)
+def test_a_held_tube(kind):
+    """Maxwell's symmetry of torque and length, and the stiffness from two states beside."""
+    state, step = HELD[kind], 2e-3
+    found = solved("blocked_torque", state, derivatives=["force", "rotation"])
+    assert int(found["status"]) == 0
+    by_rotation = np.degrees(float(found["d_deformed_length_d_rotation"]))
+    assert float(found["d_torque_d_force"]) == pytest.approx(-by_rotation, rel=1e-8)
+    beside = [
+        float(solved("blocked_torque", state | {"rotation": state["rotation"] + by}, accuracy=1e-9)["torque"])
+        for by in (-step, step)
+    ]
+    assert float(found["d_torque_d_rotation"]) == pytest.approx((beside[1] - beside[0]) / (2.0 * step), rel=1e-5)
+
+
+def test_a_locked_tube_of_nearly_one_family_grows_with_its_sizes():
+    """Euler's theorem, where the middle stretches twentyfold."""
+    design = {"alpha": 38.06, "beta": 40.97, "length": 0.318, "radius": 4.04e-3, "wall": 5.5e-4}
+    found = solved("lock", design, derivatives=["length", "radius", "wall"])
+    assert float(found["mid_radius"]) > 20.0 * design["radius"]
+    for output, power in (
+        ("deformed_length", 1),
+        ("rotation", 0),
+        ("mid_radius", 1),
+        ("volume", 3),
+        ("strain_energy", 3),
+    ):
+        growth = sum(design[name] * float(found[f"d_{output}_d_{name}"]) for name in ("length", "radius", "wall"))
+        assert growth == pytest.approx(power * float(found[output]), abs=1e-7 * abs(float(found[output])))
+
+
 def test_outputs_scale_with_sizes_and_stiffness():
     """Euler's theorem: twice as large, or twice as stiff with twice the loads."""
     d = fs.inflate(fs.Actuator(**TUBE), **LOADS, derivatives="all")

@@ -6,6 +6,7 @@ tells less than the derivative's bound (a fold, a family that goes slack within 
 
 import warnings
 import zlib
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -111,13 +112,13 @@ def difference(way, state, name, outputs, accuracy, sizes):
     for scale in SCALES:
         h = 4e-3 * size_of(name, state) * scale
         if name == "fiber_extension" and at == 1.0:  # the least
-            f = [values(part * h) for part in (0.0, 0.25, 0.5, 1.0)]
-            slopes = [(one - f[0]) / (part * h) for one, part in zip(f[1:], (0.25, 0.5, 1.0))]
-            slopes = [2.0 * slopes[0] - slopes[1], 2.0 * slopes[1] - slopes[2]]
+            f = [values(part * h) for part in (0.0, 0.125, 0.25, 0.5, 1.0)]
+            slopes = [(one - f[0]) / (part * h) for one, part in zip(f[1:], (0.125, 0.25, 0.5, 1.0))]
+            slopes = [2.0 * near - far for near, far in pairwise(slopes)]
         else:
-            slopes = [(values(part * h) - values(-part * h)) / (2.0 * part * h) for part in (0.5, 1.0)]
-        found = (4.0 * slopes[0] - slopes[1]) / 3.0
-        error = np.abs(found - slopes[0]) + SCATTER * accuracy * sizes / h
+            slopes = [(values(part * h) - values(-part * h)) / (2.0 * part * h) for part in (0.25, 0.5, 1.0)]
+        found, before = ((4.0 * near - far) / 3.0 for near, far in pairwise(slopes))
+        error = np.abs(found - before) + SCATTER * accuracy * sizes / h
         better = np.isfinite(found) & (error < doubt)
         best, doubt = np.where(better, found, best), np.where(better, error, doubt)
         if np.all(doubt <= 1e-6 * np.abs(best)):

@@ -79,7 +79,7 @@ def test_a_body_s_density_is_that_of_the_kernels(more):
     integrals = physics.integrands(Dual(y, seeds[0]), Dual(v, seeds[1]), share)
     found = [L_y.value, L_v.value, L_y.parts[BY_Y], L_y.parts[BY_V], L_v.parts[BY_V], *(q.value for q in integrals)]
     found = np.array([np.broadcast_to(row, 3) for row in found])
-    parts, r = physics.own.course.parts, tube.fiber_surface
+    parts, r = physics.course.parts, tube.fiber_surface
     c10 = tube.material.c10
     wall = (1.0, 1.0, 1.0) if tube.is_loose else (1.0,)
     rubber = (tube.material.c01 / c10, 0.0, 0.0) if tube.is_loose else (tube.material.c01 / c10,)
