@@ -125,6 +125,14 @@ def is_between(at, near, far, side):
 
 
 @kernel
+def lacking(y, G_1, psi, H, D, gg, wall):
+    """By how much ``G_1`` would have to grow for the threads of each family to be taut, (alpha, beta)."""
+    spare_alpha, spare_beta = spares(wall)
+    stretch = gg - 1.0
+    return reach(y, psi, H + D, stretch) + spare_alpha - G_1, reach(y, psi, H - D, stretch) + spare_beta - G_1
+
+
+@kernel
 def spread_of(y, v, H, D, gg, wall):
     """``(low, widest, psi, best)``: bounds of G - 1, the twist of both taut and that at which G may be widest; of fewer
     families than two one where there is much room.
