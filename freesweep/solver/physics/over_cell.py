@@ -133,8 +133,9 @@ def along_the_cell(part, y, v, cell, load, direction):
     ends_alpha, ends_beta = ends_alpha | apart_alpha, ends_beta | apart_beta
     changes = ends_alpha | ends_beta
     if some(changes):
-        at_alpha, at_beta = select(ends_alpha, at_alpha, at_beta), select(ends_beta, at_beta, at_alpha)
-        low, high = min(at_alpha, at_beta), max(at_alpha, at_beta)
+        low = select(ends_alpha, at_alpha, select(ends_beta, at_beta, zero))  # others in a vector just go along
+        high = select(ends_beta, at_beta, low)
+        low, high = min(low, high), max(low, high)
         total, least = of_part(part, -0.5 * h, low, nothing, room, y, v, point, h, load, direction, near)
         if some(changes & (high > low)):
             total, least = of_part(part, low, high, total, least, y, v, point, h, load, direction, near)
