@@ -29,7 +29,7 @@ from ..either import isnt, select, some
 from .wall import LOOSE, NONE, ONE_BONDED, has_two_families, narrowest, slopes
 
 ITERATIONS = 60  # five do nearly always
-CLOSE = 1e-8  # of the unit of what is sought: the next step of Newton's method is its square
+CLOSE = 1e-7  # of the unit of what is sought: the next step of Newton's method is its square
 SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves; none is longer in the other direction
 LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
