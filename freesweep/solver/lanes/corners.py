@@ -77,7 +77,7 @@ def number_at(target, low, high, places, count, lane):
             high = z
         change = (target - total) / density
         z = z + change
-        if not low < z < high:
+        if not low < z < high or abs(change) > 0.5 * (high - low):  # it may go to and fro about a place
             z = 0.5 * (low + high)
         if abs(change) < CLOSE:
             break
