@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from .models import models
 from .sample import Reference, reference, sample, typical
 
 WANTED = 1e-6  # the error at which methods are compared: 95 % of the equilibria
@@ -46,13 +47,16 @@ def measure(quick=False, say=lambda text: None) -> dict:
     peer = rows[3]["rate"]
     for row in rows:
         row["times_scipy"] = row["rate"] / peer
+    if not quick:  # other kernels, which take half a minute to compile
+        say("models")
+    asked = [] if quick else models(chosen, WANTED, BASE_CELLS, lambda run: _median(run, repeats))
     say("scaling")
     return {
         "designs": designs, "pressures": pressures, "repeats": repeats, "machine": _machine(), "rows": rows,
         "threads": _threads(chosen, repeats), "grid": _grid(designs, pressures, repeats),
         "accuracy": [timer.row("", f"{a:g}", lambda a=a: _solve(chosen, a)) for a in ACCURACIES[1::2]],
         "cells": [timer.row("", str(n), lambda n=n: _scalar(chosen, 1e-2, n)) for n in (12, 24, 48, 96)],
-        "newton_passes": _newton_passes(repeats),
+        "newton_passes": _newton_passes(repeats), "models": asked,
     }  # fmt: skip
 
 

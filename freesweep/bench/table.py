@@ -36,6 +36,7 @@ def table(found) -> str:
         "",
         *_passes(found["newton_passes"]),
         "",
+        *_models(found["models"]),
         NOTE,
     ]
     return "\n".join(lines)
@@ -57,6 +58,17 @@ def _passes(costs):
             f" {rate / 1e9:.1f} Gflop/s, {100 * cost['share_of_peak']:.1f} % of the peak"
         )
     return lines
+
+
+def _models(rows):
+    """What each model of a tube costs."""
+    if not rows:
+        return []
+    lines = ["models of a tube, by vectors"]
+    for row in rows:
+        times = f"{1e6 * row['seconds']:.3g} us a state, {row['times_source']:.3g} times the source's"
+        lines.append(f"  {row['model']:<20}{times}, {100 * row['solved']:.1f} % solved")
+    return [*lines, ""]
 
 
 def _line(name, pairs):

@@ -11,6 +11,7 @@ from .along.profile import FIELDS
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
+from .physics.wall import LOOSE, TAUT
 from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
 from .status import PENDING
 
@@ -119,24 +120,30 @@ def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, fo
     for carry, solve, kind, some in _kinds(problems):
         carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, cosines)
         carried = some[owners] & asked & np.isfinite(stretches)
-        for fineness in rounds(base, len(kind) > 1):
+        for tubes, *fineness in tries(problems, base, problems[some]):
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_steepness(cosines[rows]), kind="stable")
             solve(
-                problems, owners, pressures, stretches, rows[alike], *kind, *fineness, accuracy, *found[:4],
+                tubes, owners, pressures, stretches, rows[alike], *kind, *fineness, accuracy, *found[:4],
                 *(drawn if len(kind) == 1 else ()),
             )  # fmt: skip
 
 
-def rounds(base, physical):
-    """Cells of the base mesh, and for physical tubes the most doublings, of one try after the other: of tubes whose fibers
-    go slack some need many, and a vector is at work as long as any of its states.
+def tries(problems, base, alike):
+    """``(problems, cells of the base mesh)`` of one try after the other, and for physical tubes the most doublings: of those
+    whose fibers go slack some need many, and a vector is at work as long as any of its states. The loose fibers of tubes
+    that are ``alike`` are first taken for taut: that is far cheaper, and right of half of the states.
     """
     from .lanes.nested import FEW_DOUBLINGS, LANE_DOUBLINGS
 
-    if not physical:
-        return (base,), (FINER * base,)
-    return (base, FEW_DOUBLINGS), (base, LANE_DOUBLINGS), (FINER * base, LANE_DOUBLINGS)
+    if wall_columns(problems) != PHYSICAL:
+        return (problems, base), (problems, FINER * base)
+    finer = (problems, base, FEW_DOUBLINGS), (problems, base, LANE_DOUBLINGS), (problems, FINER * base, LANE_DOUBLINGS)
+    if alike[0, THREADS] != LOOSE:
+        return finer
+    taut = problems.copy()
+    taut[:, THREADS] = TAUT
+    return (taut, base, FEW_DOUBLINGS), *finer
 
 
 def _kinds(problems):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from commands import run
 
-from freesweep.bench import peak, scipy_bvp, solver
+from freesweep.bench import models, peak, scipy_bvp, solver, table
 from freesweep.bench.flops import density_flops
 from freesweep.bench.sample import Reference, reference, sample, typical
 from freesweep.solver.lanes.vector import WIDTH
@@ -42,6 +42,25 @@ def test_a_sample_is_the_same_again_and_within_its_ranges():
     assert len(pressures) == first[-1] == a.size == 1000
     assert np.all((problems[:, 8] >= 8.0) & (problems[:, 8] <= 60.0))
     assert np.all(np.abs(problems[:, 1]) > 0.0)
+
+
+def test_a_model_s_tubes_are_the_same_in_units_of_their_outer_radius():
+    """Inner radius, wall's area and length; loads are pressures."""
+    problems = sample(20, 1).problems
+    rows, outer = models.as_model(problems, True, 1.0), np.sqrt(1.0 + problems[:, 2])
+    assert rows[:, 11] * outer**2 == pytest.approx(1.0)
+    assert rows[:, 11] + rows[:, 2] == pytest.approx(1.0)
+    assert rows[:, 8] * outer == pytest.approx(problems[:, 8])
+    assert np.all(rows[:, 12] == 1.0)
+    assert np.all(models.as_model(problems, False, 0.0)[:, 11:] == 0.0)
+
+
+def test_each_model_s_cost_is_told_beside_the_source_s(monkeypatch):
+    seconds = iter([2.0, 5.0, 6.0, 12.0])
+    monkeypatch.setattr("freesweep.solver.batch.walk_by_vectors", lambda *_: SimpleNamespace(status=np.array([0, -1])))
+    found = models.models(sample(2, 2), 1e-6, 24, lambda run: (next(seconds), run()))
+    assert [row["times_source"] for row in found] == [1.0, 2.5, 3.0, 6.0]
+    assert "  thick, loose        3e+06 us a state, 6 times the source's, 50.0 % solved" in table._models(found)
 
 
 @numba.njit

@@ -56,6 +56,20 @@ def test_bounds_hold_against_far_finer_meshes(part, only_vectors):
     assert missed.any(axis=1).mean() < 0.004
 
 
+def test_a_state_found_with_fibers_taken_for_taut_is_that_of_loose_ones(only_vectors, monkeypatch):
+    problems, first, pressures = designs(40, 11)
+    problems, tries = tubes(problems, True, True), batch.tries
+    found = walked(problems, first, pressures)
+    monkeypatch.setattr(batch, "tries", lambda *given: tries(*given)[1:])
+    loose = walked(problems, first, pressures)
+    both = (found.status == OK) & (loose.status == OK)
+    taut = both & (found.slack == 0)
+    assert 0.2 < taut.mean() < 0.8
+    assert np.array_equal(found.slack[both], loose.slack[both])
+    assert np.array_equal(found.values[both & ~taut], loose.values[both & ~taut])
+    assert np.all(np.abs(found.values - loose.values)[taut] <= (found.bounds + loose.bounds)[taut])
+
+
 def test_a_wall_without_thickness_and_bonded_fibers_are_the_source_s_tube(only_vectors):
     problems, first, pressures = designs(60, 3)
     problems[:, 5] = 1.0

@@ -11,10 +11,12 @@ from ...jit import entry_point, kernel
 from ..load import Load
 from ..numerics.properties_along import Tube
 from ..physics import lagrangian
+from ..physics.wall import TAUT, may_go_slack
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
-from . import first_guess, layer, nested
+from . import corners, first_guess, layer, nested
 from .pack import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
+from .slack import see
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
 
@@ -88,6 +90,24 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
 
 
 @kernel
+def worth(x, y, n, cell, load, asked, work, more, wall):
+    """Of the lanes ``asked`` for, with the first shape ``y`` on a base mesh, those whose fibers are what they are taken for;
+    where they may go slack, nodes gather.
+    """
+    if len(wall) == 1:
+        return asked
+    if may_go_slack(wall):
+        corners.gather(x, y, n, cell, load, work, more[0], more[1], more[2])
+    return asked & taken_right(*see(x, y, n, cell, load, work), wall) if wall[2] == TAUT else asked
+
+
+@kernel
+def taken_right(alpha, beta, wall):
+    """Where fibers that were taken for taut have not to push."""
+    return mask_of(-1) if len(wall) == 1 or wall[2] != TAUT else ~(alpha | beta)
+
+
+@kernel
 def solve(
     problems, owners, pressures, stretches, order, constants, walls, layers, base, most, accuracy, values, bounds, status,
     slack, stations, profiles,
@@ -123,11 +143,12 @@ def solve(
         cell, _, load = loads(columns, constants, walls, layers)
         u, half = get(start, 0), get(columns, HALF)
         layer.begin(u, cell, load, half, base, work, meshes, x, y)
+        asked = worth(x, y, base, cell, load, mask_of((1 << count) - 1), work, meshes, load.wall)
         met, alpha, beta = nested.solve(
-            x, y, base, u, cell, load, half, mask_of((1 << count) - 1), most, accuracy, meshes, work, table, sizes, found,
+            x, y, base, u, cell, load, half, asked, most, accuracy, meshes, work, table, sizes, found,
             out, kept, doublings,
         )  # fmt: skip
-        met = met & first_guess.within(y, base, u, cell, load, half)
+        met = met & first_guess.within(y, base, u, cell, load, half) & taken_right(alpha, beta, load.wall)
         done = bits(met)
         if stations is not None:
             done = draw_profiles(done, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles)

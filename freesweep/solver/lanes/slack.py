@@ -8,7 +8,7 @@ from ..along.axial import axial_stretch
 from ..along.slack import NOTHING, TENSIONLESS, TENSIONLESS_END
 from ..cells import nothing_yet, of_length
 from ..physics import lagrangian
-from ..physics.wall import has_any_family, has_two_families, may_go_slack
+from ..physics.wall import cannot_push, has_any_family, has_two_families, may_go_slack
 from .vector import get, mask_of, put, select, spread
 
 
@@ -54,7 +54,7 @@ def pushing(x, y, n, cell, load):
 def see(x, y, n, cell, load, seen):
     """Write what :mod:`..along.places` looks at along half a physical tube to the rows of ``seen``; returns the masks."""
     least, at_end = -TENSIONLESS * (load.p + abs(load.f)), -TENSIONLESS_END * (load.p + abs(load.f))
-    if may_go_slack(load.wall):
+    if cannot_push(load.wall):
         least = at_end = NOTHING + 0.0 * least
     alpha, beta, near = mask_of(0), mask_of(0), nothing_yet(0.0 * least)
     for k in range(n + 2):

@@ -6,8 +6,12 @@ but jumps. Along a cell y is linear, so the mean of L over it is::
 
     L(y, v) = 1/h integral of L(y + r v, v) dr,   r from -h/2 to h/2
 
-by Simpson's rule, on four panels where its three points are not of one kind; r is the share of L_v that moves the place. It
-is one more functional, with all its derivatives, so Newton's method and the nested meshes take it as they take others.
+by Gauss's two points on each part of the cell in which the same families are taut: L is smooth there. r is the share of L_v
+that moves the place. It is one more functional, with all its derivatives, so Newton's method and the nested meshes take it
+as they take others.
+
+A family's pull, or how much it lacks of being taut, ends on the line through the two nearest places that are of one kind. An
+error there is of second order in the cell's length, and counts by its square.
 
 ``cell`` is that of :mod:`lagrangian` with the length h of the cell behind, and what the cell before handed on, where fibers
 are looked for first; these functions hand on, last, what the next one may have. A body's radius and its slope are those of
@@ -18,16 +22,12 @@ from ...jit import kernel
 from ..cells import point_of
 from ..either import select, some
 from . import body, in_a_cell, physical
+from .relaxed import is_taut, lacking
 from .wall import may_go_slack
 
-EIGHTHS = 8  # of a cell lie between the points of the finer rule
+GAUSS = 0.28867513459481287  # of a cell: the two points lie so far from its middle
 MIXED = 4.0  # beside the kinds of :mod:`relaxed`
-
-
-@kernel
-def along_cell(k, h):
-    """``(place from the middle, weight in 24ths)`` of point k of the finer rule, from 0 to EIGHTHS."""
-    return h * (k / EIGHTHS - 0.5), 4.0 if k % 2 == 1 else 2.0
+SMALLEST = 1e-300
 
 
 @kernel
@@ -43,17 +43,14 @@ def plus(total, weight, part):
 
 
 @kernel
-def mean(changes, ends, middle, between):
-    """Simpson's rule, on four panels where the kind ``changes``: the points ``between`` are weighted already."""
-    sixth, part = 1.0 / 6.0, 1.0 / 24.0
-    coarse = plus(ends, 4.0, middle)
-    fine = plus(plus(ends, 2.0, middle), 1.0, between)
+def chosen(where, yes, no):
+    """Five numbers of one kind or the other."""
     return (
-        select(changes, part * fine[0], sixth * coarse[0]),
-        select(changes, part * fine[1], sixth * coarse[1]),
-        select(changes, part * fine[2], sixth * coarse[2]),
-        select(changes, part * fine[3], sixth * coarse[3]),
-        select(changes, part * fine[4], sixth * coarse[4]),
+        select(where, yes[0], no[0]),
+        select(where, yes[1], no[1]),
+        select(where, yes[2], no[2]),
+        select(where, yes[3], no[3]),
+        select(where, yes[4], no[4]),
     )
 
 
@@ -74,33 +71,90 @@ def look(y, v, point, load, near):
 
 
 @kernel
+def pulls(at, y, point, load):
+    """Of both families: the multiplier, or, negative, how much G - 1 lacks of making the threads taut."""
+    alpha, beta = is_taut(at.kind)
+    short_alpha, short_beta = lacking(y, at.G_1, at.psi, point[0], point[1], load.gamma * load.gamma, load.wall)
+    return select(alpha, at.a, -short_alpha), select(beta, at.b, -short_beta)
+
+
+@kernel
+def line(r, at, s, by):
+    """Where the line through ``at`` in r and ``by`` in s, of one sign, meets zero."""
+    rise = by - at
+    return r - at * (s - r) / select(abs(rise) > SMALLEST, rise, SMALLEST)
+
+
+@kernel
+def between(first, middle, last, left, right):
+    """Where a pull ends or begins between ``left`` and ``right``, from what it is there and in the ``middle``, 0."""
+    zero = 0.0 * left
+    early = middle * last > 0.0
+    at = select(early, line(zero, middle, right, last), line(left, first, zero, middle))
+    return min(max(at, select(early, left, zero)), select(early, zero, right))
+
+
+@kernel
+def beyond(first, last, left, right, h):
+    """``(where, whether)`` a pull ends or begins outside of ``left`` and ``right``, which are of one kind."""
+    at = line(left, first, right, last)
+    return at, (first * last > 0.0) & (abs(at) < 0.5 * h)
+
+
+@kernel
 def along_the_cell(part, y, v, cell, load, direction):
     """``(least room, the mean of part's five numbers, its kind, which is MIXED where it changes, what is handed on)``.
 
     ``part(State, y, v, r, point, load, direction)`` is of the place r from the middle, as the cell has it.
     """
     point, h, before = parts_of(cell)
-    at, near = look(y, v, point, load, before)
-    middle, zero = part(at, y, v, 0.0, point, load, direction), 0.0 * y
+    zero = 0.0 * y
     if not may_go_slack(load.wall):
-        return at.room, middle, at.kind, near
-    room, ends, between, changes = at.room, (zero, zero, zero, zero, zero), (zero, zero, zero, zero, zero), y > y
-    for k in range(0, EIGHTHS + 1, EIGHTHS):
-        r, _ = along_cell(k, h)
-        here, _ = look(y + r * v, v, point, load, near)
-        ends = plus(ends, 1.0, part(here, y + r * v, v, r, point, load, direction))
-        room, changes = min(room, here.room), changes | (abs(here.kind - at.kind) > 0.5)
+        at, near = look(y, v, point, load, before)
+        return at.room, part(at, y, v, 0.0, point, load, direction), at.kind, near
+    right = GAUSS * h
+    left = -right
+    one, near = look(y + left * v, v, point, load, before)
+    two, last = look(y + right * v, v, point, load, near)
+    nothing = (zero, zero, zero, zero, zero)
+    whole = plus(nothing, 0.5, part(one, y + left * v, v, left, point, load, direction))
+    whole = plus(whole, 0.5, part(two, y + right * v, v, right, point, load, direction))
+    room = min(one.room, two.room)
+    alpha, beta = pulls(one, y + left * v, point, load)
+    alpha_last, beta_last = pulls(two, y + right * v, point, load)
+    at_alpha, ends_alpha = beyond(alpha, alpha_last, left, right, h)
+    at_beta, ends_beta = beyond(beta, beta_last, left, right, h)
+    apart_alpha, apart_beta = alpha * alpha_last <= 0.0, beta * beta_last <= 0.0
+    if some(apart_alpha | apart_beta):
+        here, _ = look(y, v, point, load, near)
+        alpha_here, beta_here = pulls(here, y, point, load)
+        at_alpha = select(apart_alpha, between(alpha, alpha_here, alpha_last, left, right), at_alpha)
+        at_beta = select(apart_beta, between(beta, beta_here, beta_last, left, right), at_beta)
+    ends_alpha, ends_beta = ends_alpha | apart_alpha, ends_beta | apart_beta
+    changes = ends_alpha | ends_beta
     if some(changes):
-        last, least = near, room
-        for k in range(1, EIGHTHS):
-            if 2 * k == EIGHTHS:
-                continue
-            r, weight = along_cell(k, h)
-            here, last = look(y + r * v, v, point, load, last)
-            between = plus(between, weight, part(here, y + r * v, v, r, point, load, direction))
-            least = min(least, here.room)
-        room = select(changes, least, room)
-    return room, mean(changes, ends, middle, between), select(changes, MIXED, at.kind), near
+        low = select(ends_alpha, at_alpha, select(ends_beta, at_beta, zero))  # others in a vector just go along
+        high = select(ends_beta, at_beta, low)
+        low, high = min(low, high), max(low, high)
+        total, least = of_part(part, -0.5 * h, low, nothing, room, y, v, point, h, load, direction, near)
+        if some(changes & (high > low)):
+            total, least = of_part(part, low, high, total, least, y, v, point, h, load, direction, near)
+        total, least = of_part(part, high, 0.5 * h, total, least, y, v, point, h, load, direction, last)
+        whole, room = chosen(changes, total, whole), select(changes, least, room)
+    return room, whole, select(changes, MIXED, one.kind), last
+
+
+@kernel
+def of_part(part, begin, end, total, room, y, v, point, h, load, direction, near):
+    """Five sums and the least room with the part of the cell from ``begin`` to ``end``."""
+    half, middle = GAUSS * (end - begin), 0.5 * (begin + end)
+    weight = 0.5 * (end - begin) / h
+    for k in range(2):
+        r = middle + (2.0 * k - 1.0) * half
+        here, near = look(y + r * v, v, point, load, near)
+        total = plus(total, weight, part(here, y + r * v, v, r, point, load, direction))
+        room = min(room, here.room)
+    return total, room
 
 
 @kernel

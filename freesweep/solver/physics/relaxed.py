@@ -29,7 +29,7 @@ from ..either import isnt, select, some
 from .wall import LOOSE, NONE, ONE_BONDED, has_two_families, narrowest, slopes
 
 ITERATIONS = 60  # five do nearly always
-CLOSE = 1e-8  # of the unit of what is sought: the next step of Newton's method is its square
+CLOSE = 1e-7  # of the unit of what is sought: the next step of Newton's method is its square
 SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves; none is longer in the other direction
 LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
@@ -122,6 +122,14 @@ def along_twist(y, psi, t, stretch, v, T, m, area, rubber, wall):
 def is_between(at, near, far, side):
     """Whether ``at`` lies on the way from ``near`` to ``far``."""
     return ((at - near) * side >= 0.0) & ((far - at) * side >= 0.0)
+
+
+@kernel
+def lacking(y, G_1, psi, H, D, gg, wall):
+    """By how much ``G_1`` would have to grow for the threads of each family to be taut, (alpha, beta)."""
+    spare_alpha, spare_beta = spares(wall)
+    stretch = gg - 1.0
+    return reach(y, psi, H + D, stretch) + spare_alpha - G_1, reach(y, psi, H - D, stretch) + spare_beta - G_1
 
 
 @kernel
