@@ -8,7 +8,9 @@ from ..atlas.schema import VARIABLES, without
 from .answer import SORTED, Inquiry
 from .family import FAMILIES, TOLD_FROM
 from .measure import measured
+from .physical_tube import MOONEY_RIVLIN, YEOH, outer_radius, physical_states, slack_somewhere
 from .query import Reader
+from .reference import COLUMNS, LOADED, UNIFORM
 
 AXES = {"alpha": [20.0, 30.0, 40.0], "beta": [-60.0, -50.0, -40.0], "pressure": [2e4, 4e4, 8e4]}
 FIXED = {"length": 0.1, "radius": 5e-3, "fiber_radius": 5e-3, "wall": 1.5e-3, "c10": 2e5, "c01": 0.0}
@@ -24,6 +26,15 @@ def compile_kernels():
         measured(data, DESIGNS)
         many = {name: np.full(SORTED + 1, values[0]) for name, values in AXES.items()}
         Inquiry((reader := Reader(data)).table("state"), reader.complete(many, SORTED + 1))
+
+
+def compile_physical(constants):
+    """Compile what tells uniform physical tubes of the solver's columns of a rubber's ``constants``."""
+    columns = YEOH if len(constants) > 1 else MOONEY_RIVLIN
+    points, numbers = np.empty((0, len(COLUMNS))), np.empty(0)
+    physical_states(LOADED, points, 1.0, 1.0, columns, np.empty((0, UNIFORM)))
+    slack_somewhere(points, numbers, 1.0, 1.0, columns, np.empty(0, np.uint8))
+    outer_radius(points, numbers, 1.0, 1.0, columns, numbers, numbers)
 
 
 def _read(array):

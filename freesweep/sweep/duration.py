@@ -19,10 +19,14 @@ LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more tha
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
 SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
 TOGETHER = 32  # problems that are solved at once, as vectors need them
-KERNELS = {FREE: ("solve_lanes", "follow_many")} | dict.fromkeys(
-    ("blocked_force", "blocked_torque"), ("seek_lanes", "solve_lanes", "hold_many")
-)
-VARIED = KERNELS | {FREE: ("follow_many",)}
+
+
+def entry_points(kind, sweep) -> tuple:
+    """Names of the solver's entry points for a kind of states: those of vectors, where there are any, and the scalar one."""
+    if kind == FREE:
+        of_vectors = ("carry_physical", "solve_physical") if sweep.is_physical else ("carry_lanes", "solve_lanes")
+        return ("follow_many",) if sweep.varies else (*of_vectors, "follow_many")
+    return ("hold_many",) if sweep.varies or sweep.is_physical else ("seek_lanes", "solve_lanes", "hold_many")
 
 
 def time_of(sweep, tables, equilibria, sizes, threads, measured) -> str:
@@ -37,7 +41,7 @@ def time_of(sweep, tables, equilibria, sizes, threads, measured) -> str:
         each = {kind: own[kind] + FOLLOWED * bodies[kind] / max(equilibria[kind], 1) for kind in each}
     sampled = bool(tables) and _seconds(sweep, equilibria, each, 1) > LITTLE and _is_compiled(equilibria, sweep)
     if sampled:
-        together = 1 if sweep.one_by_one else TOGETHER
+        together = 1 if sweep.varies else TOGETHER
         share = {kind: each[kind] * count for kind, count in equilibria.items()}
         for kind in (kind for kind in share if share[kind] > MUCH * sum(share.values())):
             each[kind] = _sample(tables[kind], sweep.accuracy, together)
@@ -64,7 +68,7 @@ def _is_compiled(kinds, sweep):
     from ..jit import cache_folder
     from ..kernel_cache import compiled
 
-    needed = {name for kind in kinds for name in (VARIED if sweep.one_by_one else KERNELS)[kind]}
+    needed = {name for kind in kinds for name in entry_points(kind, sweep)}
     return needed <= {stem.rpartition(".")[2] for stem in compiled(cache_folder("solver"))}
 
 

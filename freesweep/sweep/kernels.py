@@ -16,9 +16,10 @@ import numpy as np
 from ..atlas.schema import YEOH
 from ..description.tube_model import THREADS
 from ..scaling import problem_rows
+from .duration import entry_points
 from .estimate import is_measured
 from .jobs import in_order
-from .plan import FREE, Job
+from .plan import Job
 from .solve import BASE_CELLS, solve_shard
 
 TYPICAL = {
@@ -31,7 +32,14 @@ CHILD = (
     "import os, sys; sys.path[:] = sys.argv[1].split(os.pathsep);"
     "from freesweep.sweep import kernels; kernels.compile_idle(sys.argv[2:])"
 )
-SOLVING, THE_REST = ("solve_lanes",), ("carry_lanes", "seek_lanes", "query")  # what takes either process about as long
+SOLVING = ("solve_lanes", "solve_physical")
+THE_REST = (
+    "carry_lanes",
+    "carry_physical",
+    "seek_lanes",
+    "query",
+    "physical_states",
+)  # takes another process about as long
 ANSWERS = "interpolate"  # of the query's kernels one of the last that is compiled
 
 
@@ -60,11 +68,12 @@ def load(kinds, sweep, progress=False):
 
 def _missing(kinds, sweep):
     """Which entry points of those that two processes share do not lie on disk; none where nothing can be kept there."""
-    names = ["carry_lanes", "solve_lanes"] if FREE in kinds else []
-    names += ["seek_lanes", "solve_lanes"] if any(kind != FREE for kind in kinds) else []
-    solver = set() if sweep.one_by_one else {*names} - _stored("solver")
-    query = is_measured(sweep) and not sweep.varies and ANSWERS not in _stored("query")
-    return solver | ({"query"} if query else set())
+    needed = {name for kind in kinds for name in entry_points(kind, sweep)}
+    missing, stored = needed.intersection(SOLVING + THE_REST) - _stored("solver"), _stored("query")
+    if is_measured(sweep) and not sweep.varies:
+        missing |= {"query"} if ANSWERS not in stored else set()
+        missing |= {"physical_states"} - stored if sweep.is_physical else set()
+    return missing
 
 
 def _stored(room):
@@ -106,7 +115,8 @@ def _compile_aside(missing, rubbers):
 
 def compile_idle(words):
     """Compile the entry points named among the ``words``, for the families of rubbers among them; no state is solved."""
-    from ..solver.lanes.free import carry_lanes, solve_lanes
+    from ..query.idle import compile_kernels, compile_physical
+    from ..solver.lanes.free import carry_lanes, carry_physical, solve_lanes, solve_physical
     from ..solver.lanes.held import seek_lanes
     from ..solver.problem import MOONEY_RIVLIN, PROBLEM_SIZE
     from ..solver.problem import YEOH as YEOH_COLUMNS
@@ -116,6 +126,14 @@ def compile_idle(words):
     for name, constants in (("Mooney-Rivlin", MOONEY_RIVLIN), ("Yeoh", YEOH_COLUMNS)):
         if name not in words:
             continue
+        if "carry_physical" in words:
+            carry_physical(problems, first, numbers, whole, constants, 1, states, states, whole, numbers, numbers)
+        if "solve_physical" in words:
+            solve_physical(
+                problems, whole, numbers, numbers, whole, constants, 1, BASE_CELLS, 1, 1.0, states, states, whole, whole
+            )
+        if "physical_states" in words:
+            compile_physical(constants)
         if "carry_lanes" in words:
             carry_lanes(problems, first, numbers, whole, constants, states, states, whole, numbers, numbers)
         if "solve_lanes" in words:
@@ -126,8 +144,6 @@ def compile_idle(words):
         if "seek_lanes" in words:
             seek_lanes(problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four)
     if "query" in words:
-        from ..query.idle import compile_kernels
-
         compile_kernels()
 
 

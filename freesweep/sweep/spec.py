@@ -124,11 +124,6 @@ class Sweep:
         return self.model.is_physical or len(self.families) < 2
 
     @property
-    def one_by_one(self) -> bool:
-        """Whether its tubes are solved by the scalar kernels: those that vary, and physical ones."""
-        return self.varies or self.is_physical
-
-    @property
     def points(self) -> int:
         """Number of equilibria asked for, those of held states apart."""
         return math.prod(size for name, size in zip(self.dims, self.shape) if name not in HELD)
