@@ -34,15 +34,16 @@ sections = dict(length=0.1, radius=5e-3, wall=1.5e-3, material=fs.MooneyRivlin(1
 alike, varying = fs.Actuator(alpha=40, beta=-20, **sections), fs.Actuator(alpha=[(0, 40), (1, 41)], beta=-20, **sections)
 physical = fs.Actuator(alpha=30, beta=-30, model="physical", **sections)
 """
-SCALAR = """
+TAUT = """
 fs.blocked_force(alike, 1e4)
 fs.inflate(varying, 1e4)
-kernels.compile_idle(["Mooney-Rivlin", "seek_lanes", "query"])
-"""
-VECTORS = """
-fs.inflate(physical, 1e4)
 fs.inflate(alike, np.linspace(1e4, 2e4, 70), derivatives="alpha")
-kernels.compile_idle(["Mooney-Rivlin", "carry_lanes", "solve_lanes"])
+kernels.compile_idle(["Mooney-Rivlin", "seek_lanes"])
+"""
+PHYSICAL = """
+fs.inflate(physical, 1e4)
+names = "carry_lanes", "solve_lanes", "carry_physical", "solve_physical", "query", "physical_states"
+kernels.compile_idle(["Mooney-Rivlin", *names])
 """
 
 
@@ -82,6 +83,6 @@ def pytest_sessionstart(session):
     options = session.config.option
     whole = [*session.config.args] in ([], ["tests"], ["tests/"])
     if whole and not hasattr(session.config, "workerinput") and not options.collectonly and not options.keyword:
-        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (SCALAR, VECTORS)]
+        parts = [subprocess.Popen([sys.executable, "-c", STATES + part]) for part in (TAUT, PHYSICAL)]
         for part in parts:
             part.wait()
