@@ -295,7 +295,8 @@ def test_axes_of_bodies_grow_until_answers_between_them_are_exact(monkeypatch):
 
 @pytest.mark.long
 def test_held_physical_bodies_with_worded_angles_are_the_single_ones(tmp_path):
-    own = text('"geodesic 20 deg"', '"geodesic -45 deg"', '"constant volume 1 mm"', "[solver]\nblocked = true")
+    words = '"geodesic 20 deg"', '"geodesic -45 deg"', '"constant volume 1 mm"'
+    own = text(*words, more="[solver]\nblocked = true")
     data = make(tmp_path / "atlas.nc", parse(own.replace("c01", 'model = "physical"\nc01')))
     tube = fs.Actuator(
         alpha="geodesic 20 deg", beta="geodesic -45 deg", wall="constant volume 1 mm", length=0.06, radius="6 mm",
