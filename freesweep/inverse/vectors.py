@@ -25,7 +25,7 @@ def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
         states = [state for state in asked if state.kind == kind]
         parts = [_points(state, columns, count) for state in states]
         points = np.concatenate([np.column_stack([part.get(name, none) for name in COLUMNS]) for part in parts])
-        most = max(part["pressure"].max() for part in parts) if kind == "limit" else None
+        most = max(part["pressure"].max(initial=0.0) for part in parts) if kind == "limit" else None
         found = solve(KINDS[kind], points, energy, accuracy, most, thorough=thorough)
         for k, (state, part) in enumerate(zip(states, parts)):
             own = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
