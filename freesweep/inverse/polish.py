@@ -8,12 +8,13 @@ ROUNDS = 120
 DAMPING, LESS, MORE, MOST = 1e-3, 0.2, 5.0, 1e9  # of the diagonal; after a step that helps, and one that does not
 DONE = 1e-3  # tolerances: closer is close enough
 STILL = 1e-9  # of the cost: no more is won
-FEW = 3  # designs, the best ones, whose steps are looked at thoroughly where vectors tell nothing of them: states are dear
 LARGEST = 0.2  # of the unit box, in one step
 
 
 def polish(misfit: Misfit, u, choice):
-    """Points (s, p) at the bottom of the basins of ``u``; with ``(what is predicted, residuals, slopes)`` there."""
+    """Points (s, p) at the bottom of the basins of ``u``; with ``(what is predicted, residuals, slopes)`` there. States that
+    vectors cannot tell are dear: they end a step as soon as one design meets everything.
+    """
     u, count, free = u.copy(), len(u), u.shape[1]
     found, residuals = misfit.at(u, choice)
     slopes = misfit.slopes(u, choice, found)
@@ -27,9 +28,8 @@ def polish(misfit: Misfit, u, choice):
         ahead = np.array([_ahead(u[i], residuals[i], slopes[i], damping[i]) for i in rows])
         trial, missed = misfit.at(ahead, choice[rows], thorough=False)
         new = _cost(missed)
-        if misfit.space.is_alike and np.all(cost > DONE**2):
-            dear = np.flatnonzero(~np.isfinite(new))
-            dear = dear[np.argsort(cost[rows[dear]], kind="stable")][:FEW]
+        dear = np.flatnonzero(~np.isfinite(new))
+        if misfit.space.is_alike and len(dear) and np.all(cost > DONE**2):
             again, missed[dear] = misfit.at(ahead[dear], choice[rows[dear]])
             for own, other in zip(trial, again):
                 own[dear] = other
