@@ -6,7 +6,8 @@ import numpy as np
 
 from ..description.along import rule_of
 from ..description.given import numbers
-from ..description.revolution import gauss, resolved
+from ..description.profiles import as_profile
+from ..description.revolution import gauss, resolved, shape, shape_slope
 from .dual import Dual, sqrt
 
 ANGLES = ("alpha", "beta")
@@ -42,9 +43,11 @@ class Course:
 
     def rise(self, share, seed):
         """Slope dR/d(x/l) of a body's fiber surface [m]."""
-        along = self.parts.radius.slope_at(share)
+        given, taper, bulge = as_profile(self.tube.radius, "m"), *self._shape(seed)
+        along = shape(share, taper, bulge) * given.slope_at(share)
+        along = along + seed("radius", given.at(share)) * shape_slope(share, taper, bulge)
         if not rule_of("wall", self.tube.wall):
-            return Dual(along)
+            return along
         inner, wall, _ = self._walls(share, seed)
         outer = inner + wall
         return along * (1.0 + self.tube.fiber_share * (inner / outer - 1.0))
@@ -56,11 +59,19 @@ class Course:
         square = fibers * fibers
         return mean(square, weight), mean(square - inner * inner, weight)
 
+    def _shape(self, seed):
+        """Taper and bulge [-]."""
+        return seed("taper", self.tube.taper), seed("bulge", self.tube.bulge)
+
+    def _inner(self, share, seed):
+        """Inner radius of a body [m]: what is given moves, and is shaped then."""
+        return seed("radius", as_profile(self.tube.radius, "m").at(share)) * shape(share, *self._shape(seed))
+
     def _walls(self, share, seed):
         """Inner radius, wall and fiber radius of a body [m]."""
-        inner, part = seed("radius", self.parts.radius.at(share)), self.tube.fiber_share
+        inner, part = self._inner(share, seed), self.tube.fiber_share
         if text := rule_of("wall", self.tube.wall):
-            first = seed("radius", self.parts.radius.at(0.0))
+            first = self._inner(0.0, seed)
             outside = first + seed("wall", numbers(text, "m").item())
             wall = sqrt(inner * inner + outside * outside - first * first) - inner
             return inner, wall, inner + part * wall

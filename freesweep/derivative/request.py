@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..atlas.schema import PARAMETERS, VARIABLES
+from ..atlas.schema import SHAPE as OF_BODIES
 from ..description.actuator import Actuator
 from ..description.elastomer import Yeoh
 from ..description.given import described
@@ -27,6 +28,7 @@ def place_of_fibers(tube):
 def parameters(tube, loads=(), held=None) -> tuple:
     """Names of all parameters of a tube and its loads, and of what is ``held``."""
     own = ("fiber_radius",) if not isinstance(place_of_fibers(tube), str) else ()
+    own += OF_BODIES if tube.is_body else ()
     return (*DESIGN, *own, *constants(tube.material), *loads, *(() if held is None else (held,)))
 
 
@@ -88,7 +90,8 @@ def measures(tube, loads) -> dict:
         "deformed_length": tube.length, "rotation": ANGLE, "mid_radius": r, "volume": area * tube.length,
         "strain_energy": LITTLE * pressure * area * tube.length,
         "pressure": pressure, "force": pressure * area, "torque": pressure * area * r,
-        "alpha": ANGLE, "beta": ANGLE, "fiber_extension": 1.0, **{name: c10 for name in constants(tube.material)},
+        "alpha": ANGLE, "beta": ANGLE, "fiber_extension": 1.0, **dict.fromkeys(OF_BODIES, 1.0),
+        **{name: c10 for name in constants(tube.material)},
     }  # fmt: skip
     return natural | {name: design[name] for name in ("length", "radius", "wall", "fiber_radius")}
 

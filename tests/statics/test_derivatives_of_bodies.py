@@ -21,10 +21,11 @@ CONE = {"radius": [(0, 8e-3), (1, 5e-3)]}
 SMOOTH = {"radius": Profile([(0, 6e-3), (0.5, 9e-3), (1, 6e-3)], smooth=True)}
 RULES = {"alpha": "geodesic 25.0 deg", "wall": "constant volume 1.2e-3 m", "fiber_radius": "outer"}
 PHYSICAL = {"model": "physical"}
+SHAPED = {"taper": 0.1, "bulge": 0.2}
 LOADS = ("pressure", "force", "torque", "deformed_length", "rotation")
 STEPS = {
     "alpha": 0.1, "beta": 0.1, "length": 5e-5, "radius": 3e-5, "wall": 1e-5, "c10": 1e3, "c01": 1e3, "pressure": 500.0,
-    "force": 0.05, "torque": 1e-4, "fiber_extension": 1e-4, "deformed_length": 5e-5, "rotation": 0.5,
+    "force": 0.05, "torque": 1e-4, "fiber_extension": 1e-4, "taper": 2e-3, "bulge": 2e-3, "deformed_length": 5e-5, "rotation": 0.5,
 }  # fmt: skip
 lagrangian = interpret._Twins(kernels)
 
@@ -96,7 +97,7 @@ def test_a_body_s_density_is_that_of_the_kernels(more):
 
 WAYS = {"inflate": inflate, "lock": lock, "blocked_force": blocked_force, "blocked_torque": blocked_torque}
 STATES = {
-    "geodesic": ("inflate", CONE | RULES | {"pressure": 3e4, "force": 0.5, "torque": 1e-3}),
+    "geodesic": ("inflate", CONE | RULES | SHAPED | {"pressure": 3e4, "force": 0.5, "torque": 1e-3}),
 }
 LONG = {
     "held length": ("blocked_force", CONE | {"pressure": 4e4, "deformed_length": 0.0605}),
@@ -129,7 +130,7 @@ def judge(way, state, monkeypatch):
         own[asked.unknown] = found[asked.unknown].item()
 
     def values(name, by):
-        at = (TUBE | {"fiber_extension": 1.0, "force": 0.0, "torque": 0.0} | state)[name]
+        at = (TUBE | dict.fromkeys(("force", "torque", "taper", "bulge"), 0.0) | {"fiber_extension": 1.0} | state)[name]
         changed = state | {name: moved(at, by)}
         tube = body(changed)
         other = Asked(tube, (), 1e-8, *read_course(tube, 1e-8), asked.held, asked.unknown)
@@ -174,3 +175,12 @@ def test_an_undeformed_body_has_derivatives_by_its_sizes_and_none_by_loads():
     assert found["d_mid_radius_d_radius"] == 1.0
     assert found["d_volume_d_radius"].item() == pytest.approx(np.pi * 0.06 * 13e-3, rel=1e-12)  # 2 pi l times the mean
     assert np.isnan(found["d_volume_d_pressure"])
+
+
+def test_an_undeformed_tube_with_a_taper_is_as_wide_as_its_parameters_say():
+    """radius (1 - taper/2)(1 + bulge) in the middle."""
+    tube = body({"radius": 8e-3} | SHAPED)
+    found = inflate(tube, 0.0, x=[0.0], derivatives=["radius", "taper", "bulge"])
+    slopes = [found[f"d_mid_radius_d_{name}"].item() for name in ("radius", "taper", "bulge")]
+    assert slopes == pytest.approx([0.95 * 1.2, -0.5 * 1.2 * 8e-3, 0.95 * 8e-3], rel=1e-12)
+    assert found["d_mid_radius_d_taper"].attrs["units"] == "m"
