@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..atlas.schema import PARAMETERS
+from ..atlas.schema import PARAMETERS, SHAPE
 from ..description.actuator import Actuator
 from ..description.along import Profile
 from ..description.faults import ActuatorError
 from ..description.given import described, numbers
 from ..description.material_library import material
 from ..description.tube_model import MODELS, fiber_place
-from .wishes import DESIGN
+from .wishes import DESIGN, TUBE
 
 LOADS = ("pressure", "force", "torque")
 CONSTANTS = ("c10", "c01", "c20", "c30")
@@ -74,7 +74,7 @@ class Space(NamedTuple):
         columns = {name: column.item() for name, column in self.columns(u[None], np.array([k])).items()}
         options = self.choices[k]
         changed = {*self.names, *self.ties, *options}
-        changes = {name: columns[name] for name in DESIGN[:7] if name in changed}
+        changes = {name: columns[name] for name in TUBE if name in changed}
         rubber = options.get("material", self.template.material)
         constants = {name: columns[name] for name in CONSTANTS if name in changed}
         if constants:
@@ -102,8 +102,8 @@ class Space(NamedTuple):
     @property
     def is_alike(self):
         """Whether all designs are the source's tubes, the same all along: vectors solve many of them."""
-        tube = self.template
-        return not (self.knots or tube.varies or tube.is_thick or tube.is_loose)
+        tube, free = self.template, {*self.names, *self.ties, *self.choices[0]}
+        return not (self.knots or free & {*SHAPE} or tube.varies or tube.is_thick or tube.is_loose)
 
     def accuracy(self, asked):
         """The accuracy that is ``asked`` for, or what profiles along a tube allow."""
@@ -156,7 +156,8 @@ def read(template, free, faults):
     if len(faults) > before:
         return None
     choices = [{k: v for part in parts for k, v in part.items()} for parts in itertools.product(*lists)]
-    return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots, template.design())
+    held = template.design() | {name: getattr(template, name) for name in SHAPE}
+    return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots, held)
 
 
 def _read_range(key, given, faults):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas import schema
-from ..atlas.schema import PARAMETERS
+from ..atlas.schema import PARAMETERS, SHAPE
 from ..description.faults import ActuatorError
 from ..description.given import described, numbers, read_number
 from ..description.quantities import Quantities, Quantity
@@ -30,7 +30,8 @@ HELD = {
     "torque": ("rotation", "force"),
 }  # what is held, what may work on the rest
 STIFF = {"stiffness": "force", "torsional_stiffness": "torque"}  # of a free tube, or of one held by that load
-DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "c10", "c01", "c20", "c30")
+TUBE = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", *SHAPE)
+DESIGN = (*TUBE, "c10", "c01", "c20", "c30")
 RELATIVE = 1e-4  # of a goal's value, or of its natural size: what counts as met where no tolerance is given
 
 

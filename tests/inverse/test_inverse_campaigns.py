@@ -171,3 +171,6 @@ def test_a_hidden_taper_is_found_again():
     assert np.all(found["met"])
     for ends in found["radius"].values:
         assert np.sort(ends) == pytest.approx([5.5e-3, 8e-3], rel=1e-3)
+    found = designed(fs.Actuator(radius=6e-3, **cone), {"radius": (4e-3, 1e-2), "taper": (0.0, 0.5)}, goals, count=1)
+    assert found["met"].item()
+    assert (found["radius"].item(), found["taper"].item()) == pytest.approx((8e-3, 0.3125), rel=1e-3)
