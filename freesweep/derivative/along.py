@@ -5,12 +5,18 @@
 import numpy as np
 
 from ..description.along import rule_of
+from ..description.families import followed
 from ..description.given import numbers
 from ..description.profiles import as_profile
 from ..description.revolution import gauss, resolved, shape, shape_slope
 from .dual import Dual, sqrt
 
 ANGLES = ("alpha", "beta")
+
+
+def lines_of(tube) -> dict:
+    """Which family's angle each line moves with that the solver follows: line -> family, None of a line beside one."""
+    return dict(zip(ANGLES, (*followed(tube), None, None)))
 
 
 class Course:
@@ -24,17 +30,21 @@ class Course:
         """Angles [degree], wall, of a body radius and fiber radius [m], too: name -> dual numbers (n,) at places x/l inside
         of segments; ``seed(name, values)`` makes them dual.
         """
+        lines = [
+            (*names, line) for names, line in zip(lines_of(self.tube).items(), (self.parts.first, self.parts.second))
+        ]
         if not self.tube.is_body:
-            return {name: seed(name, self.parts.named(name).at(share)) for name in (*ANGLES, "wall")}
+            wall = {"wall": seed("wall", self.parts.wall.at(share))}
+            return wall | {name: seed(family, line.at(share)) for name, family, line in lines}
         inner, wall, fibers = self._walls(share, seed)
         first = self._walls(0.0, seed)[2]
         found = {"radius": inner, "wall": wall, "fiber_radius": fibers}
-        for name in ANGLES:
-            if text := rule_of(name, getattr(self.tube, name)):
-                start = np.sin(np.radians(seed(name, numbers(text, "degree").item())))
+        for name, family, line in lines:
+            if family and (text := rule_of(family, getattr(self.tube, family))):
+                start = np.sin(np.radians(seed(family, numbers(text, "degree").item())))
                 found[name] = np.degrees(np.arcsin(start * first / fibers))
             else:
-                found[name] = seed(name, self.parts.named(name).at(share))
+                found[name] = seed(family, line.at(share))
         return found
 
     def first_surface(self, seed):

@@ -40,8 +40,8 @@ class Asked:
 
     @property
     def is_physical(self):
-        """Whether the wall is thick or fibers are loose."""
-        return self.tube.is_thick or self.tube.is_loose
+        """Whether the wall is thick, fibers are loose, or there are fewer than two families."""
+        return self.tube.is_thick or self.tube.threads != 0.0
 
     @property
     def is_alike(self):

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..description.families import followed
 from .dual import Dual, maximum, sqrt
 from .equilibrium import NotFound
 from .physics import Physics
@@ -142,8 +143,9 @@ class PhysicalTube(Physics):
             W = energy(Dual(y), Dual(four[0]), Dual(four[1]), weighed, rubber, wall)
             s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
             _, _, over_a, over_b = equations(plain, s, four, value(W[2]), value(W[3]))
-            new_alpha = np.where(alpha, four[2] >= -BEYOND * size, over_a > BEYOND)
-            new_beta = np.where(beta, four[3] >= -BEYOND * size, over_b > BEYOND)
+            families = len(followed(self.tube))
+            new_alpha = np.where(alpha, four[2] >= -BEYOND * size, (over_a > BEYOND) & (families > 0))
+            new_beta = np.where(beta, four[3] >= -BEYOND * size, (over_b > BEYOND) & (families > 1))
             if np.array_equal(new_alpha, alpha) and np.array_equal(new_beta, beta):
                 break
             alpha, beta = new_alpha, new_beta

@@ -9,6 +9,7 @@ import numpy as np
 from ..description.elastomer import Yeoh
 from ..description.tube_model import FIBER_PLACES, fiber_place
 from ..scaling import OUTPUTS, output_scales, problem_columns, wall_volume_inside
+from .along import lines_of
 from .dual import Dual, value_of
 from .request import constants, place_of_fibers
 from .twins import twin
@@ -46,7 +47,8 @@ class Physics:
 
     def __init__(self, tube, course, loads, parameters):
         self.tube, self.course, self.parameters = tube, course, tuple(parameters)
-        self.design = {name: self.seed(name, value) for name, value in (tube.design() | loads).items()}
+        lines = lines_of(tube)
+        self.design = {name: self.seed(lines.get(name, name), value) for name, value in (tube.design() | loads).items()}
         for own, name in constants(tube.material).items():
             self.design[name] = self.seed(own, self.design[name].value)
         place = place_of_fibers(tube)
@@ -75,7 +77,7 @@ class Physics:
 
     def columns(self, design):
         """Those of a dimensionless problem."""
-        return problem_columns(design, self.tube.energy, self.tube.is_thick, self.tube.is_loose)
+        return problem_columns(design, self.tube.energy, self.tube.is_thick, self.tube.threads)
 
     def properties(self, share):
         """``(cell, load)`` as kernels take them, for cells whose middles lie at places x/l."""

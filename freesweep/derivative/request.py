@@ -6,6 +6,7 @@ from ..atlas.schema import PARAMETERS, VARIABLES
 from ..atlas.schema import SHAPE as OF_BODIES
 from ..description.actuator import Actuator
 from ..description.elastomer import Yeoh
+from ..description.families import FAMILIES, followed, given_by
 from ..description.given import described
 from ..description.tube_model import MODELS
 
@@ -29,7 +30,8 @@ def parameters(tube, loads=(), held=None) -> tuple:
     """Names of all parameters of a tube and its loads, and of what is ``held``."""
     own = ("fiber_radius",) if not isinstance(place_of_fibers(tube), str) else ()
     own += OF_BODIES if tube.is_body else ()
-    return (*DESIGN, *own, *constants(tube.material), *loads, *(() if held is None else (held,)))
+    there = [name for name in DESIGN if name not in FAMILIES or name in given_by(tube)]
+    return (*there, *own, *constants(tube.material), *loads, *(() if held is None else (held,)))
 
 
 def read_derivatives(value, allowed, faults):
@@ -54,10 +56,10 @@ def asked_of(tube, value, faults, loads=(), held=None):
     """:func:`read_derivatives` of what a tube, if it is one, has; nothing where ``value`` is None."""
     if value is None or not isinstance(tube, Actuator):
         return ()
-    if not tube.has_two_families:
+    if given_by(tube) != followed(tube):
         faults.append(
-            "derivatives: found fibers of fewer than two angles; they are known of tubes with two families only, leave them"
-            " out"
+            "derivatives: found two families of one angle, which part or go on as one where an angle changes; leave one of"
+            " them out (beta=None), or ask for angles that differ"
         )
         return ()
     return read_derivatives(value, parameters(tube, loads, held), faults)

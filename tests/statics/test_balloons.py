@@ -243,11 +243,40 @@ def test_what_is_not_there_for_such_tubes_is_refused_with_a_reason():
         tube(30, energy="principal")
     with pytest.raises(ActuatorError, match=r"one fiber family leaves.*or beta=None, or loose"):
         tube(30, 30)
-    with pytest.raises(ActuatorError, match="derivatives: found fibers of fewer than two angles"):
-        inflate(tube(30), 1e4, derivatives="all")
+    with pytest.raises(ActuatorError, match="derivatives: found two families of one angle"):
+        inflate(tube(30, 30, fibers="loose"), 1e4, derivatives="all")
+    with pytest.raises(ActuatorError, match="derivatives: found str 'beta'; choose from alpha, length"):
+        inflate(tube(30), 1e4, derivatives="beta")
     for one in (tube(), tube(0, fibers="loose")):
         with pytest.raises(ActuatorError, match="does not rotate"):
             blocked_torque(one, 1e4)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{}, {"wall_model": "thick"}, {"beta": -50}, {"alpha": 30, "model": "physical"}],
+    ids=["balloon", "thick balloon", "bonded beta", "physical alpha"],
+)
+def test_derivatives_are_symmetric_scale_and_are_those_of_a_difference(more):
+    """Maxwell's symmetries; a tube twice as large turns as much under four times the force, eight times the torque."""
+    loads, own = {"pressure": 8e3, "force": 0.3, "torque": 1e-3}, tube(**more)
+    found = inflate(own, **loads, x=[0.0], derivatives="all")
+
+    def slope(of, by):
+        return found[f"d_{of}_d_{by}"].item()
+
+    assert slope("rotation", "force") == pytest.approx(np.degrees(slope("deformed_length", "torque")), rel=1e-7)
+    assert slope("volume", "force") == pytest.approx(slope("deformed_length", "pressure"), rel=1e-7)
+    sizes = [(own.length, "length"), (RADIUS, "radius"), (WALL, "wall"), (0.6, "force"), (3e-3, "torque")]
+    for output, power in (("rotation", 0.0), ("deformed_length", 1.0), ("volume", 3.0)):
+        total, parts = power * found[output].item(), [size * slope(output, name) for size, name in sizes]
+        assert sum(parts) == pytest.approx(total, abs=1e-6 * max(map(abs, parts)))
+    name = next((name for name in ("alpha", "beta") if name in more), "wall")
+    step = 0.02 if name in more else 2e-7
+    ends = [inflate(tube(**more | {name: getattr(own, name) + by}), **loads, x=[0.0]) for by in (step, -step)]
+    for output in ("rotation", "deformed_length", "mid_radius"):
+        difference = (ends[0][output].item() - ends[1][output].item()) / (2.0 * step)
+        assert slope(output, name) == pytest.approx(difference, rel=1e-5)
 
 
 # --- held

@@ -25,7 +25,8 @@ SHAPED = {"taper": 0.1, "bulge": 0.2}
 LOADS = ("pressure", "force", "torque", "deformed_length", "rotation")
 STEPS = {
     "alpha": 0.1, "beta": 0.1, "length": 5e-5, "radius": 3e-5, "wall": 1e-5, "c10": 1e3, "c01": 1e3, "pressure": 500.0,
-    "force": 0.05, "torque": 1e-4, "fiber_extension": 1e-4, "taper": 2e-3, "bulge": 2e-3, "deformed_length": 5e-5, "rotation": 0.5,
+    "force": 0.05, "torque": 1e-4, "fiber_extension": 1e-4, "taper": 2e-3, "bulge": 2e-3,
+    "deformed_length": 5e-5, "rotation": 0.5,
 }  # fmt: skip
 lagrangian = interpret._Twins(kernels)
 
@@ -99,7 +100,7 @@ WAYS = {"inflate": inflate, "lock": lock, "blocked_force": blocked_force, "block
 STATES = {
     "geodesic": ("inflate", CONE | RULES | SHAPED | {"pressure": 3e4, "force": 0.5, "torque": 1e-3}),
 }
-LONG = {
+LONG = STATES | {
     "held length": ("blocked_force", CONE | {"pressure": 4e4, "deformed_length": 0.0605}),
     "bulb": ("inflate", {"radius": bulb, "pressure": 4e4, "force": 0.5, "torque": 1e-3}),
     "bend": ("inflate", {"radius": [(0, 6e-3), (0.4, 8e-3), (1, 8e-3)], "wall": [(0, 1e-3), (1, 1.5e-3)], "pressure": 4e4}),
@@ -112,7 +113,7 @@ LONG = {
 }  # fmt: skip
 
 
-def judge(way, state, monkeypatch):
+def judge(way, state, monkeypatch, names="all"):
     """Derivatives against differences of the same body's values, which are those of the solver within both bounds."""
     seen, shapes = {}, attach.shapes_of
 
@@ -122,7 +123,7 @@ def judge(way, state, monkeypatch):
 
     monkeypatch.setattr(attach, "shapes_of", spied)
     loads = {name: state[name] for name in LOADS if name in state}
-    found = WAYS[way](body(state), **loads, x=[0.0], derivatives="all")
+    found = WAYS[way](body(state), **loads, x=[0.0], derivatives=names)
     assert found["status"] == OK
     asked, y = seen["asked"], seen["y"].ravel()
     own = {name: state.get(name, np.inf if way == "lock" and name == "pressure" else 0.0) for name in LOADS[:3]}
@@ -156,7 +157,7 @@ def judge(way, state, monkeypatch):
 
 @pytest.mark.parametrize("kind", STATES)
 def test_derivatives_of_bodies_are_what_their_differences_tell(kind, monkeypatch):
-    found = judge(*STATES[kind], monkeypatch)
+    found = judge(*STATES[kind], monkeypatch, ["alpha", "radius", "taper", "bulge", "force", "torque", "pressure"])
     if kind == "geodesic":  # Maxwell's symmetries
         by_torque, by_pressure = (found[f"d_deformed_length_d_{name}"].item() for name in ("torque", "pressure"))
         assert found["d_rotation_d_force"].item() == pytest.approx(np.degrees(by_torque), rel=1e-8)
