@@ -14,6 +14,7 @@ import numpy as np
 from ..atlas.schema import PARAMETERS, SHAPE
 from ..description.actuator import Actuator
 from ..description.along import Profile
+from ..description.families import FAMILIES, followed, given_by
 from ..description.faults import ActuatorError
 from ..description.given import described, numbers
 from ..description.material_library import material
@@ -103,7 +104,7 @@ class Space(NamedTuple):
     def is_alike(self):
         """Whether all designs are the source's tubes, the same all along: vectors solve many of them."""
         tube, free = self.template, {*self.names, *self.ties, *self.choices[0]}
-        return not (self.knots or free & {*SHAPE} or tube.varies or tube.is_thick or tube.is_loose)
+        return not (self.knots or free & {*SHAPE} or tube.varies or tube.is_thick or tube.threads)
 
     def accuracy(self, asked):
         """The accuracy that is ``asked`` for, or what profiles along a tube allow."""
@@ -124,15 +125,17 @@ def read(template, free, faults):
     if not isinstance(template, Actuator):
         faults.append(f"template: found {described(template)}; give an Actuator")
         return None
-    if not template.has_two_families:
-        faults.append("template: it has fewer than two families of fibers; designs are looked for among tubes with two")
+    if given_by(template) != followed(template):
+        faults.append(
+            "template: its two families have one angle, as if they were one; give angles that differ, or beta=None"
+        )
         return None
     if not isinstance(free, dict) or not free:
         faults.append(
             f"free: found {described(free)}; give a dict such as {{'alpha': (0, 85), 'radius': (3e-3, 12e-3)}}"
         )
         return None
-    before = len(faults)
+    before, absent = len(faults), set(FAMILIES) - set(given_by(template))
     names, low, high, ties, lists, knots = [], [], [], {}, [], {}
     for key, given in free.items():
         parts = [part.strip() for part in key.split(",")] if isinstance(key, str) else [key]
@@ -141,6 +144,10 @@ def read(template, free, faults):
             can = ", ".join((*DESIGN, "material", *LOADS))
             found = repr(unknown[0])[:60] if isinstance(key, str) else described(key)
             faults.append(f"free: found {found}; what may be free is {can}")
+        elif missing := absent.intersection(parts):
+            faults.append(
+                f"free[{key!r}]: the template has no family {missing.pop()}; give it an angle there, or leave this out"
+            )
         elif isinstance(given, Profile):
             _read_profile(key, given, (names, low, high, knots), faults)
         elif isinstance(given, str):
@@ -156,7 +163,8 @@ def read(template, free, faults):
     if len(faults) > before:
         return None
     choices = [{k: v for part in parts for k, v in part.items()} for parts in itertools.product(*lists)]
-    held = template.design() | {name: getattr(template, name) for name in SHAPE}
+    held = {name: value for name, value in template.design().items() if name not in absent}
+    held |= {name: getattr(template, name) for name in SHAPE}
     return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots, held)
 
 

@@ -25,7 +25,7 @@ def told(atlas, wishes) -> list:
 
 def ask(atlas, wishes, columns, known):
     """Values (n, wishes) of the ``known`` wishes, NaN beyond the atlas, and where it does not answer."""
-    data, count = atlas.data, len(columns["alpha"])
+    data, count = atlas.data, len(columns["radius"])
     values = np.full((count, len(wishes)), np.nan)
     axes = [name for name in data.dims if name in PARAMETERS]
     inside = np.ones(count, bool)

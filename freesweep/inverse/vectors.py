@@ -19,7 +19,7 @@ def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
     """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound).
     Not ``thorough``: what vectors cannot do has no value.
     """
-    answers, count = {}, len(columns["alpha"])
+    answers, count = {}, len(columns["radius"])
     none = np.zeros(count)  # of what makes bodies
     for kind in dict.fromkeys(state.kind for state in asked):
         states = [state for state in asked if state.kind == kind]

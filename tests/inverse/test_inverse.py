@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -246,6 +247,15 @@ def test_every_fault_of_a_wish_is_listed(free, goals, words):
     with pytest.raises(fs.ActuatorError) as fault:
         fs.design(tube(), free, goals)
     assert all(word in str(fault.value) for word in words)
+
+
+def test_what_a_template_has_not_is_not_free():
+    one, same = replace(tube(), beta=None), replace(tube(), beta=30.0, fibers="loose")
+    wish = [fs.Goal("rotation", 9, pressure=1e4)]
+    with pytest.raises(fs.ActuatorError, match=r"free\['beta,wall'\]: the template has no family beta"):
+        fs.design(one, {"beta,wall": [(20, 1e-3)]}, wish)
+    with pytest.raises(fs.ActuatorError, match="template: its two families have one angle"):
+        fs.design(same, {"alpha": (20, 40)}, wish)
 
 
 @pytest.mark.parametrize(

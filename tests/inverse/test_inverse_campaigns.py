@@ -174,3 +174,21 @@ def test_a_hidden_taper_is_found_again():
     found = designed(fs.Actuator(radius=6e-3, **cone), {"radius": (4e-3, 1e-2), "taper": (0.0, 0.5)}, goals, count=1)
     assert found["met"].item()
     assert (found["radius"].item(), found["taper"].item()) == pytest.approx((8e-3, 0.3125), rel=1e-3)
+
+
+@pytest.mark.long
+def test_hidden_balloons_and_single_families_are_found_again():
+    more = {"length": 0.05, "radius": 5e-3, "material": RUBBER}
+    balloon, single = {"alpha": None, "beta": None}, {"alpha": None, "beta": -40, "model": "physical"}
+    for own, free, outputs in (
+        (balloon, {"radius": (4e-3, 8e-3), "wall": (5e-4, 1.2e-3)}, ("mid_radius", "deformed_length")),
+        (single, {"beta": (-70, -10), "wall": (5e-4, 1.2e-3)}, ("rotation", "deformed_length")),
+    ):
+        secret = fs.Actuator(wall=8e-4, **more, **own)
+        state = fs.inflate(secret, 1e4, x=0.0)
+        goals = [fs.Goal(name, state[name].item(), pressure=1e4) for name in outputs]
+        found = designed(fs.Actuator(wall=1e-3, **more, **own), free, goals, count=1)
+        if own is single:
+            assert found["beta"].item() == pytest.approx(-40, rel=1e-3)
+        assert found["met"].item()
+        assert found["wall"].item() == pytest.approx(8e-4, rel=1e-3)
