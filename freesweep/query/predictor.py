@@ -105,7 +105,8 @@ class Predictor(NamedTuple):
                 part, lacks = np.empty((2, len(own)))
                 outer_radius(own, middle[some], *what, part, lacks)
                 found[k, some], missed[k, some] = part, lacks
-        return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0])
+        rounding = np.finfo(float).eps * found[0]  # of what lies at a clamped end, and is known but for it
+        return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0]) + rounding
 
     def slack_families(self, points, states, mid_radius) -> np.ndarray:
         """Flags (n,) of :func:`slack.slack_families` at points (n, 17), from the radius in the middle (n,) [m]."""
