@@ -18,8 +18,8 @@ from .plane import NO_VALUE, Plane
 STEPS = 16  # of the colour bar, about
 TICKS = 9  # with a number, about
 ROBUST = (6.0, 94.0)  # percentiles between which the colours run: the neighbours of a pole do not flatten the rest
-OWN = 5  # of one panel, where equal ones do not serve all
-FEWEST = 2  # boundaries of colours within a panel that shows something
+OWN = 5  # of one panel among several, where equal ones do not serve all
+FEWEST = 4  # boundaries of colours within a panel that shows something
 CLEAR = 0.02  # of its width: so far a strip keeps off the nodes beside it
 NOTHING = 1e-6  # of the whole range: a panel in which nothing moves
 NICE = [1, 2, 2.5, 5, 10]  # steps of the colour bar, times a power of ten
@@ -59,21 +59,22 @@ def shown_values(sheet: Plane, variable):
 def shades(values, centre, panels=()) -> Shades:
     """Colours for some values (1-D, shown units) with a sign about ``centre``, or None.
 
-    ``panels`` are the values of each of several maps that share them: where equal steps would leave one of them a single
-    colour, each adds steps of its own.
+    ``panels`` are the values of each of several maps that share them: where equal steps would leave one of them, or all
+    that there is, few colours, each adds steps of its own.
     """
+    panels = panels or (values,)
     low, high = np.percentile(values, ROBUST) if values.size else (0.0, 1.0)
     even = _even(low, high, centre)
     spans = [np.percentile(panel, ROBUST) for panel in panels if panel.size]
     spans = [span for span in spans if span[1] - span[0] > NOTHING * max(high - low, 0.0)]
     poor = [span for span in spans if np.count_nonzero((even > span[0]) & (even < span[1])) < FEWEST]
-    levels = np.unique(np.round(np.concatenate([_own(span) for span in spans]), 12)) if poor else even
+    levels = np.unique(np.round(np.concatenate([_own(span, len(spans)) for span in spans]), 12)) if poor else even
     rank = np.arange(len(levels)) if poor else levels
     if centre is None:
         first, last = rank[0], rank[-1]
         place, colours = (lambda value: (value - first) / (last - first)), style.SEQUENTIAL
     else:
-        middle = np.interp(centre, levels, rank) if poor else centre
+        middle = np.interp(centre, levels, rank, -1.0, len(levels)) if poor else centre  # beyond: all are of one sign
         width = np.abs(rank - middle).max() if poor else _reach(low, high, centre)
         place, colours = (lambda value: 0.5 + 0.5 * (value - middle) / width), style.DIVERGING
 
@@ -111,9 +112,9 @@ def _reach(low, high, centre):
     return np.abs(_symmetric(low, high, centre) - centre).max()
 
 
-def _own(span):
-    """Steps of one panel."""
-    return MaxNLocator(OWN, steps=NICE).tick_values(*span)
+def _own(span, panels):
+    """Steps of one panel among so many."""
+    return MaxNLocator(STEPS if panels == 1 else OWN, steps=NICE).tick_values(*span)
 
 
 def draw_values(ax: Axes, sheet: Plane, values, shade: Shades, smooth: bool) -> None:

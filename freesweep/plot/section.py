@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SIZE = (style.PAGE * 0.75, 105.0)  # of a figure of one map [mm]
-SMOOTH = 12  # nodes along an axis from which contours are drawn between them
+SMOOTH = 6  # nodes along an axis from which contours are drawn between them
 MOST = 4  # panels along an axis
 PANEL = 46.0  # height of a panel [mm]
 LETTER = 1.3  # of the words above the maps [mm]

@@ -209,3 +209,16 @@ def test_own_styles_pass_through(data):
     assert chosen.get_fontsize() == 2.0 * style.SMALL
     plain = section_map(data, "rotation", "pressure", "alpha", beta=-20.0, length=0.2)
     assert plain.xaxis.label.get_fontfamily() == ["STIXGeneral"]
+
+
+def test_values_of_one_sign_far_from_zero_have_steps_of_their_own_in_the_hue_of_their_sign():
+    """60 to 72 degrees: steps from zero on would leave two colours, in the same one."""
+    values = np.linspace(60.0, 72.0, 50)
+    for sign in (1.0, -1.0):
+        shade = fill.shades(sign * values, 0.0)
+        assert np.count_nonzero((sign * shade.levels > 60.0) & (sign * shade.levels < 72.0)) >= 8
+        rgb = np.array(
+            [shade.colours(k) for k in range(shade.colours.N)] + [*map(shade.colours, (-1, shade.colours.N))]
+        )
+        warmer = rgb[:, 0] - rgb[:, 2]
+        assert np.all(warmer > 0.0) or np.all(warmer < 0.0)
