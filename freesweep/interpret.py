@@ -61,7 +61,7 @@ def at_once(states, awaited, entry, *arguments) -> bool:
     if not isinstance(awaited, Dispatcher):
         return False
     kinds = tuple(map(entry.typeof_pyval, arguments)) if awaited is entry else None
-    if kinds in awaited.overloads if kinds else awaited.signatures:
+    if awaited.signatures and (kinds is None or kinds in awaited.overloads):
         return False
     kept = _is_kept(entry, kinds) if kinds else is_at_hand(awaited)
     most, seconds = (FEWER, LESS) if kept else (FEW, SECONDS)

@@ -24,7 +24,7 @@ class Course:
 
     def __init__(self, tube, places):
         self.tube, self.places = tube, np.asarray(places) / places[-1]
-        self.parts = resolved(tube)
+        self.parts, self.given = resolved(tube), as_profile(tube.radius, "m")
 
     def at(self, share, seed) -> dict:
         """Angles [degree], wall, of a body radius and fiber radius [m], too: name -> dual numbers (n,) at places x/l inside
@@ -53,9 +53,9 @@ class Course:
 
     def rise(self, share, seed):
         """Slope dR/d(x/l) of a body's fiber surface [m]."""
-        given, taper, bulge = as_profile(self.tube.radius, "m"), *self._shape(seed)
-        along = shape(share, taper, bulge) * given.slope_at(share)
-        along = along + seed("radius", given.at(share)) * shape_slope(share, taper, bulge)
+        taper, bulge = self._shape(seed)
+        along = shape(share, taper, bulge) * self.given.slope_at(share)
+        along = along + seed("radius", self.given.at(share)) * shape_slope(share, taper, bulge)
         if not rule_of("wall", self.tube.wall):
             return along
         inner, wall, _ = self._walls(share, seed)
@@ -75,7 +75,7 @@ class Course:
 
     def _inner(self, share, seed):
         """Inner radius of a body [m]: what is given moves, and is shaped then."""
-        return seed("radius", as_profile(self.tube.radius, "m").at(share)) * shape(share, *self._shape(seed))
+        return seed("radius", self.given.at(share)) * shape(share, *self._shape(seed))
 
     def _walls(self, share, seed):
         """Inner radius, wall and fiber radius of a body [m]."""

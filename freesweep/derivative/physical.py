@@ -132,7 +132,7 @@ class PhysicalTube(Physics):
         known = self.settled.at(share)
         four, alpha, beta = known.four.copy(), known.alpha.copy(), known.beta.copy()
         plain = Local(y, p, f, m, t_a, t_b, gg, None, None, None)
-        size = np.abs(T) + np.abs(m) + NO_ROOM
+        size, families = np.abs(T) + np.abs(m) + NO_ROOM, len(followed(self.tube))
         four[0] = np.maximum(four[0], low + 1e-9)
         for _ in range(CHANGES):
             four[2] *= alpha
@@ -143,7 +143,6 @@ class PhysicalTube(Physics):
             W = energy(Dual(y), Dual(four[0]), Dual(four[1]), weighed, rubber, wall)
             s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
             _, _, over_a, over_b = equations(plain, s, four, value(W[2]), value(W[3]))
-            families = len(followed(self.tube))
             new_alpha = np.where(alpha, four[2] >= -BEYOND * size, (over_a > BEYOND) & (families > 0))
             new_beta = np.where(beta, four[3] >= -BEYOND * size, (over_b > BEYOND) & (families > 1))
             if np.array_equal(new_alpha, alpha) and np.array_equal(new_beta, beta):
