@@ -72,11 +72,12 @@ def _differentiable(tube, held, result, names, accuracy, tied):
 def _solve(tube, held, accuracy):
     """Solve all states, and put the results into a Dataset."""
     from .interpret import at_once
+    from .solver.along.places import NUMBERS
     from .solver.along.profile import FIELDS
     from .solver.held.held_state import HELD_LENGTH, HELD_ROTATION
     from .solver.held.held_states import hold_many
     from .solver.hold_batch import refuse
-    from .solver.problem import wall_columns
+    from .solver.problem import PHYSICAL, wall_columns
     from .solver.status import OK, PENDING
 
     r, c10, of_length = tube.fiber_surface, tube.material.c10, held.name == "deformed_length"
@@ -85,7 +86,8 @@ def _solve(tube, held, accuracy):
     unique, index = near_stations(tube, every, whole)
     pressures, others, targets = (array.ravel() for array in held.states)
     count = len(pressures)
-    values, bounds = np.full((2, count, 6), np.nan)
+    along = len(NUMBERS) if wall_columns(row) == PHYSICAL else 0
+    values, bounds = np.full((2, count, 6 + along), np.nan)
     codes, least = np.full(count, PENDING), np.full((count, 2), np.nan)
     stable, slack, paths = np.zeros((3, count), np.int64)
     fields = np.full((count, FIELDS, len(unique)), np.nan)
@@ -144,8 +146,8 @@ def _told(tube, held, accuracy, whole, found):
         "status": codes,
         "stable": stable,
         "slack_fiber": slack,
-        "values": values[..., :5],
-        "bounds": bounds[..., :5],
+        "values": np.delete(values, 5, axis=-1),
+        "bounds": np.delete(bounds, 5, axis=-1),
     }
     told |= {"fields": (profiles, whole), "extra": extra}
     result = dataset(tube, held.axes, held.stations, told, without=(held.name,))

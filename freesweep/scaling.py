@@ -9,7 +9,9 @@ import numpy as np
 
 ACCURACIES = (1e-10, 1e-2)  # error bounds that may be asked for, scaled: below lies rounding
 OUTPUTS = ("deformed_length", "volume", "rotation", "strain_energy", "mid_radius")  # order of the kernels' columns
-ALONG = ("slack_alpha", "slack_beta", "outer_radius")  # and behind them those of physical tubes
+SLACK, PULLS = ("slack_alpha", "slack_beta"), ("least_tension_alpha", "least_tension_beta")
+ALONG = (*SLACK, *PULLS, "outer_radius", "largest_stretch")  # and behind them those of physical tubes
+OF_MEMBRANES = (*SLACK, *PULLS)  # of which a membrane is only told these
 
 
 def problem_rows(design, energy, thick=False, threads=0.0) -> np.ndarray:
@@ -55,7 +57,9 @@ def output_scales(design) -> dict:
         "mid_radius": r,
         "slack_alpha": 1.0,
         "slack_beta": 1.0,
+        **dict.fromkeys(PULLS, 2.0 * np.pi * r**2 * c10),
         "outer_radius": r,
+        "largest_stretch": 1.0,
     }
 
 

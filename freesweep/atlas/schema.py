@@ -60,10 +60,15 @@ _SHAPE = {
     "volume": ("m3", "volume of the cavity"),
 }
 
-_ALONG = {  # of physical tubes
-    "outer_radius": ("m", "largest outer radius along the tube"),
+_SLACK = {  # of physical tubes
     "slack_alpha": ("1", "share of the length without a pull in the first family"),
     "slack_beta": ("1", "share of the length without a pull in the second family"),
+}
+_ALONG = _SLACK | {
+    "least_tension_alpha": ("N", "least tension of the whole first family, negative where it would have to push"),
+    "least_tension_beta": ("N", "least tension of the whole second family, negative where it would have to push"),
+    "outer_radius": ("m", "largest outer radius along the tube"),
+    "largest_stretch": ("1", "largest stretch of the wall"),
 }
 
 VARIABLES = {
@@ -78,11 +83,18 @@ VARIABLES = {
     "locked_strain_energy": Variable("J", "strain energy of the wall, locked", (*LOADS, *HELD)),
     **{
         f"locked_{name}": Variable(units, f"{long_name}, locked", (*LOADS, *HELD, *MATERIAL))
-        for name, (units, long_name) in _ALONG.items()
-        if name.startswith("slack")
+        for name, (units, long_name) in _SLACK.items()
     },
     "blocked_force": Variable("N", "force that holds the length, free to rotate", ("force", "held_rotation")),
     "blocked_torque": Variable("N m", "torque that holds the rotation, length free", ("torque", *HELD_LENGTHS)),
+    **{
+        f"{held}_{name}": Variable(units, f"{long_name}, {what} held", without)
+        for held, what, without in (
+            ("blocked_force", "length", ("force", "held_rotation")),
+            ("blocked_torque", "rotation", ("torque", *HELD_LENGTHS)),
+        )
+        for name, (units, long_name) in _SLACK.items()
+    },
     "ideal_blocked_force": Variable(
         "N", "blocked force of inextensible fibers (Eq. 2.16)", ("length", *MATERIAL, "force", "torque", *HELD)
     ),
@@ -92,8 +104,8 @@ VARIABLES = {
 }
 
 EXCHANGED = {  # what becomes what where the fiber families change places
-    f"{state}slack_{one}": f"{state}slack_{other}"
-    for state in ("", "locked_")
+    f"{name}_{one}": f"{name}_{other}"
+    for name in ("slack", "locked_slack", "blocked_force_slack", "blocked_torque_slack", "least_tension")
     for one, other in (("alpha", "beta"), ("beta", "alpha"))
 }
 
@@ -122,17 +134,7 @@ FLAG_OF = {
     ),
 }
 
-# of single actuators alone, which no atlas stores: along the whole tube, and of held ones
-WHOLE = {
-    "largest_stretch": Variable("1", "largest stretch of the wall"),
-    "least_tension_alpha": Variable(
-        "N", "least tension of the whole first family, negative where it would have to push"
-    ),
-    "least_tension_beta": Variable(
-        "N", "least tension of the whole second family, negative where it would have to push"
-    ),
-}
-HELD_ALONE = {
+HELD_ALONE = {  # which no atlas stores
     "held_path": Variable("1", "way by which the held state was found"),
     "least_buckled_pressure": Variable("Pa", "least pressure at which the buckled branch has a state"),
 }
@@ -163,6 +165,10 @@ SHORT = {
     "locked_strain_energy": "locked strain energy",
     **{"locked_slack_alpha": "locked slack share, alpha", "locked_slack_beta": "locked slack share, beta"},
     **{"blocked_force": "blocked force", "blocked_torque": "blocked torque"},
+    "blocked_force_slack_alpha": "slack of alpha, length held",
+    "blocked_force_slack_beta": "slack of beta, length held",
+    "blocked_torque_slack_alpha": "slack of alpha, rotation held",
+    "blocked_torque_slack_beta": "slack of beta, rotation held",
     **{"ideal_blocked_force": "ideal blocked force", "ideal_blocked_torque": "ideal blocked torque"},
     **{"outer_radius": "outer radius", "largest_stretch": "stretch of the wall"},
     **{"slack_alpha": "slack share of family alpha", "slack_beta": "slack share of family beta"},
@@ -192,8 +198,9 @@ def status_of(name) -> str:
     """The variable that says where another has numbers."""
     if name == "limit_pressure":
         return "limit_found"
-    if f"{name}_status" in STATUS_OF:
-        return f"{name}_status"
+    of = name.partition("_slack_")[0]
+    if f"{of}_status" in STATUS_OF:
+        return f"{of}_status"
     return "locked_status" if name.startswith("locked_") else "status"
 
 
@@ -218,9 +225,9 @@ def attributes(name: str) -> dict:
         return {"long_name": HELD_ALONE[name].long_name, **flag_attributes(name)}
     if name.endswith("_error"):
         of = name.removesuffix("_error")
-        units = PROFILES[of][0] if of in PROFILES else (VARIABLES | WHOLE | HELD_ALONE)[of].units
+        units = PROFILES[of][0] if of in PROFILES else (VARIABLES | HELD_ALONE)[of].units
         return {"units": units, "long_name": f"error bound of {of}"}
-    of = (VARIABLES | WHOLE | HELD_ALONE)[name]
+    of = (VARIABLES | HELD_ALONE)[name]
     return {"units": of.units, **_named(name, of.long_name)}
 
 

@@ -19,7 +19,6 @@ from ..description.quantities import Quantities, Quantity
 from .curve_file import columns_of, is_path
 
 FREE = {name: each.units for name, each in schema.VARIABLES.items() if each.without == schema.HELD}  # of a free state
-FREE |= {name: each.units for name, each in schema.WHOLE.items()}
 UNITS = FREE | {
     "force": "N", "torque": "N m", "stroke": "1", "length_change": "m", "limit_pressure": "Pa",
     "stiffness": "N/m", "torsional_stiffness": "N m/degree",

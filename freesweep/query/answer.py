@@ -6,7 +6,7 @@ from ..atlas.schema import EXCHANGED
 from ..status import DEGENERATE, INACCURATE, NOT_INTERPOLABLE, OK
 from . import errors, reference, spline
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
-from .family import LOOSE, MIRRORED, TOLD_FROM
+from .family import LOOSE, MIRRORED, TOLD, TOLD_FROM
 from .locate import place
 from .missing_nodes import MIXED
 from .slack import UNKNOWN
@@ -16,6 +16,7 @@ SORTED = 2000  # points from which on sorting pays
 # [degree]: smaller rotations are held to the tolerance of this one; shares of the length to a hundredth at the usual one
 FLOORS = {reference.ROTATION: 0.1, reference.SLACK_ALPHA: 10.0, reference.SLACK_BETA: 10.0}
 LOAD_FLOOR = 0.01  # of pi r^2 P, pi r^3 P: the same for blocked force and torque
+PULL_FLOOR = 0.1  # of pi r^2 P: the same for the least tension, which is held against what fibers bear elsewhere
 
 
 class Inquiry:
@@ -41,7 +42,7 @@ class Inquiry:
         if table.is_untold:
             self.status[self.valued & ~self.exact] = NOT_INTERPOLABLE
         self.ranks = table.knots[np.arange(d), self.pieces, spline.RANK].astype(np.int64)
-        self.order = np.arange(self.size)
+        self.order, self._told = np.arange(self.size), None
         if self.size > SORTED:
             spline.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-1])), self.order)
 
@@ -70,8 +71,11 @@ class Inquiry:
         whether beside a hole; ``scales`` (d, RANKS) of the estimate.
         """
         if name in TOLD_FROM:
-            *told, beside = self.estimate(TOLD_FROM[name], scales)
-            return *self.table.predictor.outer_radius(self.points, *told), beside
+            if self._told is None:  # one calculation tells all of them
+                *told, beside = self.estimate(TOLD_FROM[name], scales)
+                self._told = *self.table.predictor.worst_places(self.points, *told), beside
+            *told, beside = self._told
+            return *(array[list(TOLD).index(name)] for array in told), beside
         effects, known = self.effects(name, self.orders()), self.table.variable(name).cells[self.cell]
         rest = known[:, DOUBT] + self.rests(known, scales).sum(axis=1)
         if self.method == LINEAR:
@@ -126,6 +130,10 @@ class Inquiry:
             power = 2 if variable == reference.HOLDING_FORCE else 3
             load = np.pi * self.points[:, reference.FIBERS] ** power * self.points[:, reference.PRESSURE]
             return np.maximum(size, LOAD_FLOOR * load)
+        if variable in (reference.LEAST_TENSION_ALPHA, reference.LEAST_TENSION_BETA):
+            area = np.pi * self.points[:, reference.FIBERS] ** 2
+            load = area * self.points[:, reference.PRESSURE] + np.abs(self.points[:, reference.FORCE])
+            return np.maximum(size, PULL_FLOOR * load)
         return size
 
     def is_loose(self, name):

@@ -5,7 +5,8 @@ import numpy as np
 from . import calibration, errors
 from .calibration import CLASSES, RANKS
 from .cells import ROUGH
-from .reference import MID_RADIUS, OUTER_RADIUS
+from .family import TOLD_FROM
+from .reference import MID_RADIUS
 from .spline import RANK
 
 BEYOND = 4e-4  # share of the designs of a class that may need more than its factor
@@ -78,10 +79,8 @@ def piece_scales(inquiry, name, places, exact):
         ratio = np.abs(value - exact) / estimate
         alone = parts > ALONE * parts.sum(axis=1, keepdims=True)
     use = np.isfinite(ratio) & ~beside & (estimate > PLAIN * bound)
-    if use.sum() < SPEAK or table.family.variables[name] in (
-        MID_RADIUS,
-        OUTER_RADIUS,
-    ):  # whose estimate is no sum over axes
+    summed = table.family.variables[name] != MID_RADIUS and name not in TOLD_FROM
+    if use.sum() < SPEAK or not summed:  # an estimate that is no sum over axes
         return scales
     usual = np.quantile(ratio[use & alone.any(axis=1)], HIGH) if (use & alone.any(axis=1)).any() else 0.0
     for a in range(len(table.axes)):

@@ -51,7 +51,7 @@ def solve(
     rows = problem_rows(own | of_lines, energy, model.is_thick, lines.threads[good])
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
     names = ("force",) if kind == reference.LENGTH_HELD else ("torque",) if held else OUTPUTS
-    names += ALONG if (model.is_physical or len(families) < 2) and not held else ()
+    names += ALONG if model.is_physical or len(families) < 2 else ()
     found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
     slack, stable, limits = np.zeros(count, np.int8), np.zeros(count, np.int8), np.full((count, 2), np.nan)
     pressure = np.full(len(good), np.inf) if kind == reference.LOCKED else own["pressure"] / own["c10"]
@@ -96,11 +96,11 @@ def solve(
 def _tell_families(found, slack, single, families):
     """What was found of the lines as that of the ``families``, where those are fewer than two."""
     slack[single] = (slack[single] & 1) * sum(BITS[name] for name in families)
-    for end in ("", "_error"):
-        if f"slack_alpha{end}" in found:
-            own = found[f"slack_alpha{end}"][single]
+    for what, share in (("slack", 1.0), ("least_tension", 1.0 / max(len(families), 1))):
+        for end in ("", "_error") if f"{what}_alpha" in found else ():
+            own = found[f"{what}_alpha{end}"][single]
             for name in FAMILIES:
-                found[f"slack_{name}{end}"][single] = own if name in families else 0.0 * own
+                found[f"{what}_{name}{end}"][single] = (share if name in families else 0.0) * own
 
 
 def _courses(design, good, accuracy, cells, bodies):
@@ -126,11 +126,11 @@ def _courses(design, good, accuracy, cells, bodies):
 
 def _scales(kind, own):
     r, c10 = own["fiber_radius"], own["c10"]
-    if kind == reference.LENGTH_HELD:
-        return {"force": np.pi * r**2 * c10}
-    if kind == reference.ROTATION_HELD:
-        return {"torque": np.pi * r**3 * c10}
-    return output_scales(own)
+    held = {
+        reference.LENGTH_HELD: {"force": np.pi * r**2 * c10},
+        reference.ROTATION_HELD: {"torque": np.pi * r**3 * c10},
+    }
+    return output_scales(own) | held.get(kind, {})
 
 
 def _free(rows, pressure, most, accuracy, followed, thorough):
@@ -172,9 +172,10 @@ def _held(kind, rows, own, accuracy, followed, thorough):
     if thorough or config.DISABLE_JIT or len(tube[0]):
         found = hold_batch.hold_all(*asked, tube, accuracy - SENSITIVITY * error, soon=True)
     else:
-        found = hold_batch._pending(count)
+        found = hold_batch._pending(rows, count)
         if rows.shape[1] == PROBLEM_SIZE:  # vectors hold the source's tubes only
             hold_batch._hold_lanes(*asked, int(tube[1][-1]), accuracy, found)
         found.status[found.status == PENDING] = NOT_CONVERGED
-    bounds = widened(found.values, found.bounds, error)
-    return found.values[:, None], bounds[:, None], found.status, np.zeros(count, np.int64), found.stable
+    values = np.column_stack([found.values, found.along])
+    bounds = widened(values, np.column_stack([found.bounds, found.along_bounds]), error)
+    return values, bounds, found.status, np.zeros(count, np.int64), found.stable

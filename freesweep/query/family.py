@@ -35,8 +35,16 @@ def _slack(prefix):
     return {f"{prefix}slack_alpha": r.SLACK_ALPHA, f"{prefix}slack_beta": r.SLACK_BETA}
 
 
+TOLD = {  # from the radius in the middle, by the first integral
+    "outer_radius": r.OUTER_RADIUS,
+    "largest_stretch": r.LARGEST_STRETCH,
+    "least_tension_alpha": r.LEAST_TENSION_ALPHA,
+    "least_tension_beta": r.LEAST_TENSION_BETA,
+}
+TOLD_FROM = dict.fromkeys(TOLD, "mid_radius")
+
 FAMILIES = {
-    "state": Family(r.LOADED, _SHAPE | {"outer_radius": r.OUTER_RADIUS}, "status", "stable"),
+    "state": Family(r.LOADED, _SHAPE | TOLD, "status", "stable"),
     "slack": Family(r.LOADED, _slack(""), "status", answered="slack_status"),
     "locked_slack": Family(r.LOCKED, _slack("locked_"), "locked_status", answered="locked_slack_status"),
     "locked": Family(r.LOCKED, {f"locked_{name}": variable for name, variable in _SHAPE.items()}, "locked_status"),
@@ -46,9 +54,22 @@ FAMILIES = {
     "blocked_torque": Family(
         r.ROTATION_HELD, {"blocked_torque": r.HOLDING_TORQUE}, "blocked_torque_status", "blocked_torque_stable"
     ),
+    "blocked_force_slack": Family(
+        r.LENGTH_HELD, _slack("blocked_force_"), "blocked_force_status", answered="blocked_force_slack_status"
+    ),
+    "blocked_torque_slack": Family(
+        r.ROTATION_HELD, _slack("blocked_torque_"), "blocked_torque_status", answered="blocked_torque_slack_status"
+    ),
     "limit": Family(r.NONE, {"limit_pressure": r.PLAIN}, None, "limit_found", "limit_pressure_status"),
 }
 FAMILY_OF = {name: key for key, family in FAMILIES.items() for name in family.variables}
+
+
+def plain(name) -> str:
+    """What a variable is of its own state, under pressure, locked or held."""
+    for prefix in ("locked_", "blocked_force_", "blocked_torque_"):
+        name = name.removeprefix(prefix)
+    return name
 
 
 def family_of(key, of_bodies) -> Family:
@@ -64,6 +85,6 @@ IDEAL = ("ideal_blocked_force", "ideal_blocked_torque")  # closed forms: evaluat
 
 MIRRORED = ("rotation", "locked_rotation", "blocked_torque", "ideal_blocked_torque")  # turn round with both angles
 LOOSE = (  # ten times the tolerance of lengths
-    r.ROTATION, r.ENERGY, r.HOLDING_FORCE, r.HOLDING_TORQUE, r.SLACK_ALPHA, r.SLACK_BETA,
+    r.ROTATION, r.ENERGY, r.HOLDING_FORCE, r.HOLDING_TORQUE, r.SLACK_ALPHA, r.SLACK_BETA, r.LARGEST_STRETCH,
+    r.LEAST_TENSION_ALPHA, r.LEAST_TENSION_BETA,
 )  # fmt: skip
-TOLD_FROM = {"outer_radius": "mid_radius"}  # in closed form

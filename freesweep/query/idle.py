@@ -8,7 +8,7 @@ from ..atlas.schema import VARIABLES, without
 from .answer import SORTED, Inquiry
 from .family import FAMILIES, TOLD_FROM
 from .measure import measured
-from .physical_tube import MOONEY_RIVLIN, YEOH, outer_radius, physical_states, slack_somewhere
+from .physical_tube import MOONEY_RIVLIN, TOLD, YEOH, physical_states, slack_somewhere, worst_places
 from .query import Reader
 from .reference import COLUMNS, LOADED, UNIFORM
 
@@ -34,7 +34,7 @@ def compile_physical(constants):
     points, numbers = np.empty((0, len(COLUMNS))), np.empty(0)
     physical_states(LOADED, points, 1.0, 1.0, columns, np.empty((0, UNIFORM)))
     slack_somewhere(points, numbers, 1.0, 1.0, columns, np.empty(0, np.uint8))
-    outer_radius(points, numbers, 1.0, 1.0, columns, numbers, numbers)
+    worst_places(points, numbers, 1.0, 1.0, columns, np.empty((0, TOLD)), np.empty((0, TOLD)))
 
 
 def _read(array):

@@ -13,7 +13,7 @@ from ..status import INACCURATE, NOT_INTERPOLABLE, OK
 from . import reference
 from .answer import Inquiry
 from .axis import LABEL
-from .family import FAMILY_OF, MIRRORED, TOLD_FROM
+from .family import FAMILY_OF, MIRRORED, TOLD, TOLD_FROM
 from .faults import QueryError
 from .query import check_names
 
@@ -147,4 +147,4 @@ def _restore(table, name, points, states, effects, out):
     args = (effects, nothing, nothing, out[0], out[1], out[2])
     table.predictor.restore(table.family.variables[TOLD_FROM.get(name, name)], points, states, *args)
     if name in TOLD_FROM:
-        out[0] = table.predictor.outer_radius(points, out[0], nothing, nothing)[0]
+        out[0] = table.predictor.worst_places(points, out[0], nothing, nothing)[0][list(TOLD).index(name)]

@@ -8,7 +8,10 @@ goes slack.
 import functools
 import math
 
+import numpy as np
+
 from ..jit import entry_point, kernel
+from ..solver.along.places import pulls, strain_square
 from ..solver.load import Load
 from ..solver.physics.physical import density, kind_of, place, uniform_tube
 from ..solver.physics.relaxed import both_reach, multipliers, reach, taut_twist
@@ -46,6 +49,7 @@ PULLS, ENOUGH = 30, 1e-10  # Newton's steps for the resultant, three are usual; 
 FAR = 8.0  # of the stretch: balloons are past their limit long before
 LEAST = 1e-6  # of G, where fibers leave nothing
 MISSING = 1e-5  # of G, what a slack family lacks: below it, the stored state's own end decides otherwise
+TOLD = 4  # numbers of :func:`worst_places`
 MOONEY_RIVLIN, YEOH = (C01,), (C01, C20, C30)
 
 
@@ -270,30 +274,54 @@ def middles(points, mid_radius, thick, loose, columns, out):
             out[k, 0], out[k, 1], out[k, 2] = math.sqrt(max(1.0 + G_1, LEAST)), y, psi
 
 
-@functools.partial(entry_point, others=("solver",))
-def outer_radius(points, mid_radius, thick, loose, columns, out, missed):
-    """The largest outer radius (n,) [m] along tubes with these radii in the middle (n,) [m], from the clamped ends on, and
-    what it may miss between the places that are looked at.
+@kernel
+def worst_at(y, constant, cell, load, outside, out):
+    """Squares of the outer radius and of the largest stretch, and the tensions of both families, less where more is worse,
+    where the stretch is ``y``: into ``out`` (TOLD,).
     """
+    pull, G_1, psi, taut_alpha, taut_beta = along(y, constant, cell, load)
+    G_1 = max(G_1, LEAST - 1.0)
+    s = math.sqrt(1.0 + G_1)
+    _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
+    alpha, beta = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load.m, W_G, W_p)
+    alpha, beta = pulls(alpha, beta, cell, load)
+    out[0], out[1], out[2], out[3] = y * y + outside / s, strain_square(y, G_1, psi, cell, load.wall), -alpha, -beta
+
+
+@functools.partial(entry_point, others=("solver",))
+def worst_places(points, mid_radius, thick, loose, columns, out, missed):
+    """The largest outer radius [m] and stretch, and the least tension of both families [N], (n, TOLD), along tubes with
+    these radii in the middle (n,) [m], from the clamped ends on, and what they may miss between the places looked at.
+    """
+    seen, most, doubt = np.empty((3, TOLD)), np.empty(TOLD), np.empty(TOLD)
     for k in range(len(points)):
         point, r = points[k], points[k, FIBERS]
         cell, load = problem(point, thick, loose, columns)
         y_middle, outside = mid_radius[k] / r, ((point[RADIUS] + point[WALL]) / r) ** 2 - 1.0
-        out[k], missed[k] = math.nan, 0.0
+        tension = 2.0 * math.pi * r * r * point[C10]
+        for i in range(TOLD):
+            out[k, i], missed[k, i] = math.nan, 0.0
         if not y_middle > 0.0:
             continue
-        if abs(outside) < LEAST or y_middle == 1.0:  # the fibers are the outermost, or nothing is deformed
-            out[k] = r * math.sqrt(max(1.0, y_middle) ** 2 + outside)
+        if load.p == 0.0 and load.f == 0.0 and load.m == 0.0:
+            out[k, 0], out[k, 1], out[k, 2], out[k, 3] = r * math.sqrt(1.0 + outside), 1.0, 0.0, 0.0
             continue
         constant = uniform_tube(y_middle, cell, load)[2]
-        before, last, most, doubt = math.nan, math.nan, 0.0, 0.0
         for j in range(PLACES + 1):
-            y = 1.0 + (y_middle - 1.0) * j / PLACES
-            _, G_1, _, _, _ = along(y, constant, cell, load)
-            square = y * y + outside / math.sqrt(max(1.0 + G_1, LEAST))
-            if j > 1:
-                doubt = max(doubt, 0.125 * abs(square - 2.0 * last + before))
-            before, last, most = last, square, max(most, square)
-        inside = most > last and most > 0.0
-        out[k] = r * math.sqrt(most)
-        missed[k] = 0.5 * r * doubt / math.sqrt(most) if inside else 0.0
+            now = j % 3
+            worst_at(1.0 + (y_middle - 1.0) * j / PLACES, constant, cell, load, outside, seen[now])
+            for i in range(TOLD):
+                here, last, before = seen[now, i], seen[now - 1, i], seen[now - 2, i]
+                doubt[i] = max(doubt[i], 0.125 * abs(here - 2.0 * last + before)) if j > 1 else 0.0
+                most[i] = max(most[i], here) if j > 0 else here
+        for i in range(TOLD):
+            inside = most[i] > seen[PLACES % 3, i] and (loose == 0.0 or i < 2 or most[i] < 0.0)
+            missed[k, i] = doubt[i] if inside else 0.0
+        for i in range(2):
+            size = r if i == 0 else 1.0
+            out[k, i] = size * math.sqrt(most[i])
+            missed[k, i] *= 0.5 * size / math.sqrt(most[i])
+            out[k, 2 + i] = -tension * most[2 + i] + 0.0
+            missed[k, 2 + i] *= tension
+        if abs(outside) < LEAST:  # the fibers are the outermost
+            out[k, 0], missed[k, 0] = r * math.sqrt(max(1.0, y_middle) ** 2 + outside), 0.0

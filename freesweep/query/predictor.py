@@ -10,6 +10,15 @@ from ..description.tube_model import THREADS, TubeModel
 from . import bodies, reference, slack
 
 
+def tell_families(told, families):
+    """Put the tension of the line that was followed, the last but one of what is ``told`` (n, TOLD), in the places of the
+    ``families``.
+    """
+    line = told[:, -2].copy()
+    for k, name in enumerate(FAMILIES, -2):
+        told[:, k] = line * (1.0 / len(families) if name in families else 0.0)
+
+
 class Predictor(NamedTuple):
     """The uniform tubes of a ``model`` whose energy is ``energy``; of ``bodies`` those that they are locally."""
 
@@ -93,19 +102,21 @@ class Predictor(NamedTuple):
             found[some] = part
         return found
 
-    def outer_radius(self, points, mid_radius, estimate, bound) -> tuple:
-        """``(value, estimate, bound)`` of the largest outer radius (n,) [m] of physical tubes under pressure, from those of
-        the radius in the middle.
+    def worst_places(self, points, mid_radius, estimate, bound) -> tuple:
+        """``(value, estimate, bound)``, (TOLD, n) each, of what :data:`.family.TOLD` names in its order, of physical tubes
+        under pressure, from those of the radius in the middle.
         """
-        from .physical_tube import outer_radius
+        from .physical_tube import TOLD, worst_places
 
-        found, missed = np.empty((3, len(points))), np.empty((3, len(points)))
-        for some, own, what, _ in self._kinds(points):
+        found, missed = np.empty((3, TOLD, len(points))), np.empty((3, TOLD, len(points)))
+        for some, own, what, few in self._kinds(points):
             for k, middle in enumerate((mid_radius, mid_radius + estimate, mid_radius + bound)):
-                part, lacks = np.empty((2, len(own)))
-                outer_radius(own, middle[some], *what, part, lacks)
-                found[k, some], missed[k, some] = part, lacks
-        rounding = np.finfo(float).eps * found[0]  # of what lies at a clamped end, and is known but for it
+                part, lacks = np.empty((2, len(own), TOLD))
+                worst_places(own, middle[some], *what, part, lacks)
+                if few:
+                    tell_families(part, self.families), tell_families(lacks, self.families)
+                found[k, :, some], missed[k, :, some] = part.T, lacks.T
+        rounding = np.finfo(float).eps * np.abs(found[0])  # of what lies at a clamped end, and is known but for it
         return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0]) + rounding
 
     def slack_families(self, points, states, mid_radius) -> np.ndarray:

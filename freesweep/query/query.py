@@ -27,6 +27,8 @@ STATUSES_OF_ANSWERS = {  # that no atlas holds
     "limit_pressure_status": "status of the limit pressure",
     "slack_status": "status of the slack shares",
     "locked_slack_status": "status of the slack shares, locked",
+    "blocked_force_slack_status": "status of the slack shares, length held",
+    "blocked_torque_slack_status": "status of the slack shares, rotation held",
 }
 CHUNK = 1 << 18  # points answered together: their arrays fit in memory, and many share a cell
 ALONE = 1 << 14  # points for which a second thread is not worth its start

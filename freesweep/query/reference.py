@@ -24,8 +24,9 @@ TAPER, BULGE = 15, 16
 
 NONE, LOADED, LOCKED, LENGTH_HELD, ROTATION_HELD = range(5)  # kinds of states; and variables:
 PLAIN, DEFORMED_LENGTH, VOLUME, ROTATION, ENERGY, MID_RADIUS, HOLDING_FORCE, HOLDING_TORQUE = range(8)
-SLACK_ALPHA, SLACK_BETA, OUTER_RADIUS = range(8, 11)  # the last is told from the middle's
-BODY_RADIUS = 11  # the middle's of a body, which does not only lack something (:mod:`.bodies`)
+SLACK_ALPHA, SLACK_BETA = range(8, 10)
+BODY_RADIUS = 10  # the middle's of a body, which does not only lack something (:mod:`.bodies`)
+OUTER_RADIUS, LARGEST_STRETCH, LEAST_TENSION_ALPHA, LEAST_TENSION_BETA = range(11, 15)  # told from the middle's radius
 
 UNIFORM = 10  # numbers that describe a uniform state: H, ta tb, a, q, sqrt(G), psi, w, multiplier, its rounding, and
 TAUT = 9  # which fibers of a physical tube pull: 0 none, 1 alpha, 2 beta, 3 both

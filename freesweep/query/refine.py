@@ -10,7 +10,7 @@ from ..status import NOT_INTERPOLABLE, VALUED
 from . import reference
 from .answer import Inquiry
 from .exact import solve
-from .family import FAMILIES, FAMILY_OF
+from .family import FAMILIES, FAMILY_OF, plain
 from .faults import QueryError
 
 MOST_PROFILES = 10_000  # each is solved on its own
@@ -58,7 +58,7 @@ def exact_answers(reader, key, points, names, accuracy=None) -> dict:
     )
     found = {}
     for name in names:
-        of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
+        of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, plain(name))
         found[name], found[f"{name}_error"] = solved[of], solved[f"{of}_error"]
     if limit:
         found["limit_found"] = np.isfinite(solved["limit_pressure"]).astype(np.int8)

@@ -62,8 +62,9 @@ class Table:
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
         slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
         self.is_kinked = self.has_slack and self.predictor.is_physical  # numbers have kinks where slack begins or ends
-        # of held loose tubes there is no closed form
-        self.is_untold = frame.model.is_loose and self.family.kind in HELD_NAMES.values()
+        # of held loose tubes there is no closed form, nor of where held ones are slack
+        held = self.family.kind in HELD_NAMES.values()
+        self.is_untold = held and (frame.model.is_loose or self.tells_slack)
         self.codes = np.stack([self._codes(), self._beyond_rest(slack) if self.is_kinked else slack])
         self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
 

@@ -13,35 +13,43 @@ import numpy as np
 from numba import config
 
 from ..interpret import at_once
+from .along.places import NUMBERS
 from .along.profile import FIELDS
 from .halves import one_by_one
 from .held.held_states import hold_many
 from .held.sought import HELD_LENGTH
 from .physics.lagrangian import ROUNDING
-from .problem import FORCE, MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, TORQUE, YEOH, wall_columns
+from .problem import FORCE, MOONEY_RIVLIN, PHYSICAL, PROBLEM_SIZE, SECOND, THIRD, TORQUE, YEOH, wall_columns
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 5  # solutions of one state, at most; two do nearly always
 CLEAR = 20.0  # times its bounds: a difference of C from which a secant is good
 DOUBT, BLIND = 0.02, 0.2  # share of the last correction that a secant, or the guess of sigma, may miss, at least
 TWIST = 2  # column of a free state's values
+HOLDER = 5  # column of the force or torque among a held state's numbers; behind it those of :mod:`.along.places`
 STATUS = 14  # place among the arguments of hold_many
 LEAST_ACCURACY = 1e-11  # asked of free states
 
 
 class Holds(NamedTuple):
-    """Held states (n,): the force or torque, its bound, status, whether it is stable."""
+    """Held states (n,): the force or torque, its bound, status, whether it is stable; of physical tubes the numbers of
+    :mod:`.along.places` and their bounds, (n, k).
+    """
 
     values: np.ndarray
     bounds: np.ndarray
     status: np.ndarray
     stable: np.ndarray
+    along: np.ndarray
+    along_bounds: np.ndarray
 
 
-def _pending(count):
+def _pending(problems, count):
+    along = len(NUMBERS) if wall_columns(problems) == PHYSICAL else 0
     return Holds(
-        np.full(count, np.nan), np.full(count, np.nan), np.full(count, PENDING, np.int64), np.zeros(count, np.int64)
-    )
+        np.full(count, np.nan), np.full(count, np.nan), np.full(count, PENDING, np.int64), np.zeros(count, np.int64),
+        *np.full((2, count, along), np.nan),
+    )  # fmt: skip
 
 
 def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=True, soon=False) -> Holds:
@@ -55,8 +63,8 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
     problems, targets, pressures = map(
         np.ascontiguousarray, (problems, targets, pressures)
     )  # others are compiled for anew
-    count, found = len(pressures), _pending(len(pressures))
-    numbers = np.full((2, count, 6), np.nan)
+    count, found = len(pressures), _pending(problems, len(pressures))
+    numbers = np.full((2, count, HOLDER + 1 + found.along.shape[1]), np.nan)
     scalar = partial(_scalar_calls, problems, targets, kind, first, pressures, tube, accuracy, found, *numbers)
     if lanes and len(tube[0]) == 0 and problems.shape[1] == PROBLEM_SIZE and not config.DISABLE_JIT:
         from .lanes.held import seek_lanes
@@ -67,8 +75,9 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
         left = np.count_nonzero(call[STATUS] == PENDING)
         if left and not (soon and at_once(left, hold_many, hold_many, *call)):
             hold_many(*call)
-    own = np.isfinite(numbers[0, :, -1])
-    found.values[own], found.bounds[own] = numbers[:, own, -1]
+    own = np.isfinite(numbers[0, :, HOLDER])
+    found.values[own], found.bounds[own] = numbers[:, own, HOLDER]
+    found.along[:], found.along_bounds[:] = numbers[:, :, HOLDER + 1 :]
     return found
 
 
@@ -112,10 +121,11 @@ def refuse(problem, pressures, others, targets, kind, status):
     problems = np.repeat(problem[None], count, axis=0)
     problems[:, TORQUE if kind == HELD_LENGTH else FORCE] = others
     constants = YEOH if np.any(problem[[SECOND, THIRD]] != 0.0) else MOONEY_RIVLIN
-    found, each = _pending(count), np.arange(count)
+    found, each = _pending(problems, count), np.arange(count)
     seek_lanes(
-        problems, 0.5 * targets, each, pressures, some, kind == HELD_LENGTH, constants, *found, *np.empty((4, count))
-    )
+        problems, 0.5 * targets, each, pressures, some, kind == HELD_LENGTH, constants, *found[:4],
+        *np.empty((4, count)),
+    )  # fmt: skip
     none = (found.status == COMPRESSED) | (found.status == HELD_IMPOSSIBLE)
     status[none] = found.status[none]
 
@@ -126,7 +136,7 @@ def _hold(problems, targets, length_held, owners, pressures, rows, constants, ba
     from .lanes.held import seek_lanes
 
     guesses = np.full((4, len(pressures)), np.nan)
-    seek_lanes(problems, targets, owners, pressures, rows, length_held, constants, *found, *guesses)
+    seek_lanes(problems, targets, owners, pressures, rows, length_held, constants, *found[:4], *guesses)
     rows = rows[np.isfinite(guesses[0, rows])]
     rows = rows[np.argsort(guesses[1, rows], kind="stable")]  # what shares a vector should need much the same work
     stretches, _, mu, sigma = guesses[:, rows]

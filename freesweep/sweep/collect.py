@@ -8,7 +8,7 @@ import numpy as np
 from .. import ideal, status
 from ..atlas.schema import absent
 from ..description.families import BITS
-from ..scaling import ALONG, OUTPUTS, output_scales, wall_volume_inside
+from ..scaling import ALONG, OF_MEMBRANES, OUTPUTS, SLACK, output_scales, wall_volume_inside
 from .grid import Grid
 from .plan import FREE
 from .records import upward
@@ -43,8 +43,10 @@ def groups(sweep) -> list:
         (FREE, _locked, shapes, []),
         (FREE, _locked, ["locked_strain_energy"], ["locked_status"]),
     ]
-    wanted += [(FREE, _locked, [f"locked_{name}" for name in ALONG[:2]], [])] if along else []
-    wanted += [(kind, _blocked, [kind], [f"{kind}_status", f"{kind}_stable"]) for kind in sweep.blocked]
+    wanted += [(FREE, _locked, [f"locked_{name}" for name in SLACK], [])] if along else []
+    for kind in sweep.blocked:
+        slack = [f"{kind}_{name}" for name in SLACK] if along else []
+        wanted += [(kind, _blocked, [kind, *slack], [f"{kind}_status", f"{kind}_stable"])]
     uniform = not {"alpha", "beta"} & set(sweep.profiles) and not sweep.is_of_bodies and len(sweep.families) == 2
     if uniform and not sweep.model.is_loose:  # bars may push, threads do not
         wanted += [(FREE, _ideal, [name], [f"{name}_status"]) for name in ideal.NAMES]
@@ -52,10 +54,10 @@ def groups(sweep) -> list:
 
 
 def _along(sweep):
-    """What an atlas tells of physical tubes along their length: of a thick wall its outer radius, too, but of bodies."""
+    """What an atlas tells of physical tubes along their length: of thick walls most, of bodies nothing but slack."""
     if not sweep.is_physical:
         return ()
-    return ALONG if sweep.model.is_thick and not sweep.is_of_bodies else ALONG[:2]
+    return SLACK if sweep.is_of_bodies else ALONG if sweep.model.is_thick else OF_MEMBRANES
 
 
 def _group(sweep, kind, make, values, codes):
@@ -100,15 +102,23 @@ def _outputs(table, records, at, rows):
         bound = _spread(states["bounds"][..., k].astype(float), solved, valued, np.nan) * scales[name]
         arrays[name], arrays[f"{name}_error"] = value, upward(bound + SAME_PROBLEM * np.abs(value))
     turn, single, families = found.swapped[:, None], found.single[:, None], table.grid.sweep.families
-    for end in ("", "_error") if "slack_alpha" in arrays else ():
-        one, other = arrays[f"slack_alpha{end}"], arrays[f"slack_beta{end}"]
-        for name, own in (("alpha", np.where(turn, other, one)), ("beta", np.where(turn, one, other))):
-            arrays[f"slack_{name}{end}"] = np.where(single, one if name in families else 0.0 * one, own)
+    for what, share in (("slack", 1.0), ("least_tension", 1.0 / max(len(families), 1))):
+        _tell_families(arrays, what, share, turn, single, families)
     slack = _spread(states["slack"], solved, valued, 0)
     both = np.where(turn, (slack & 1) << 1 | slack >> 1, slack)
     arrays["slack_fiber"] = np.where(single, (slack & 1) * sum(BITS[name] for name in families), both)
     arrays["stable"] = valued  # the walk keeps to stable states
     return arrays
+
+
+def _tell_families(arrays, what, share, turn, single, families):
+    """Put what is known of the two lines that were followed in the places of the families: of those that ``turn``, changed,
+    of a ``single`` line the share of it that each of its ``families`` has.
+    """
+    for end in ("", "_error") if f"{what}_alpha" in arrays else ():
+        one, other = arrays[f"{what}_alpha{end}"], arrays[f"{what}_beta{end}"]
+        for name, own in (("alpha", np.where(turn, other, one)), ("beta", np.where(turn, one, other))):
+            arrays[f"{what}_{name}{end}"] = np.where(single, (share if name in families else 0.0) * one, own)
 
 
 def _states(table, records, at):
@@ -148,12 +158,19 @@ def _blocked(table, records, at):
     if name == "blocked_torque":
         value = np.where(found.mirrored[:, None], -value, value) + 0.0
     bound = _spread(states["bound"].astype(float), solved, valued, np.nan) * scale
-    return {
+    arrays = {
         name: value,
         f"{name}_error": upward(bound + SAME_PROBLEM * np.abs(value)),
         f"{name}_status": codes,
         f"{name}_stable": _spread(states["stable"], solved, valued, 0),
     }
+    if "slack" in states.dtype.names:
+        for k, slack in enumerate(SLACK):
+            share, bound = (_spread(states[of][..., k], solved, valued, np.nan) for of in ("slack", "slack_bound"))
+            arrays[f"{name}_{slack}"], arrays[f"{name}_{slack}_error"] = share, bound
+        turned, single = found.swapped[:, None], found.single[:, None]
+        _tell_families(arrays, f"{name}_slack", 1.0, turned, single, table.grid.sweep.families)
+    return arrays
 
 
 def _ideal(table, _, at):

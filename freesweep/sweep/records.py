@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..scaling import ALONG, OUTPUTS
+from ..scaling import ALONG, OUTPUTS, SLACK
 from ..status import NOT_CONVERGED
 
 
@@ -13,12 +13,13 @@ def _free_state(count):
 FREE_STATE, PHYSICAL_STATE = _free_state(len(OUTPUTS)), _free_state(len(OUTPUTS) + len(ALONG))
 LIMIT = np.dtype([("limit", "<f8"), ("bound", "<f8")])  # of each problem
 HELD_STATE = np.dtype([("value", "<f8"), ("bound", "<f4"), ("status", "i1"), ("stable", "i1")])
+PHYSICAL_HELD = np.dtype([*HELD_STATE.descr, ("slack", "<f8", len(SLACK)), ("slack_bound", "<f4", len(SLACK))])
 
 
 def state(kind, physical) -> np.dtype:
     """The record of a state of one kind, of the source's tubes or of physical ones."""
     if kind != "free":
-        return HELD_STATE
+        return PHYSICAL_HELD if physical else HELD_STATE
     return PHYSICAL_STATE if physical else FREE_STATE
 
 
@@ -32,7 +33,7 @@ def upward(bound):
 def unsolved(dtype, status):
     """A record of nothing but its status."""
     record = np.zeros((), dtype)
-    for name in set(dtype.names) & {"values", "bounds", "value", "bound", "limit"}:
+    for name in set(dtype.names) & {"values", "bounds", "value", "bound", "slack_bound", "limit"}:
         record[name] = np.nan
     if "status" in dtype.names:
         record["status"] = status

@@ -4,9 +4,10 @@ import numpy as np
 
 from ..description.profiles import SENSITIVITY, widened
 from ..description.tube_model import THREADS as CODES
+from ..scaling import SLACK
 from ..status import DEGENERATE, INVALID
 from .canonical_problem import PHYSICAL, THREADS
-from .records import HELD_STATE, LIMIT, state, unsolved, upward
+from .records import LIMIT, state, unsolved, upward
 
 BASE_CELLS = 24
 THREADS_OF_TWO = CODES[2, "loose"]  # the largest of those of two families
@@ -82,7 +83,11 @@ def _solve_held(kind, problems, targets, first, pressures, followed, accuracy, l
     tube, error = followed
     held = HELD_LENGTH if kind == "blocked_force" else HELD_ROTATION
     found = hold_all(problems, targets, held, first, pressures, tube, accuracy - SENSITIVITY * error, lanes)
-    states = np.empty(len(pressures), HELD_STATE)
+    states = np.empty(len(pressures), state(kind, is_physical(problems)))
     states["value"], states["bound"] = found.values, upward(widened(found.values, found.bounds, error))
     states["status"], states["stable"] = found.status, found.stable
+    if is_physical(problems):
+        some = slice(len(SLACK))
+        slack, bound = found.along[:, some], found.along_bounds[:, some]
+        states["slack"], states["slack_bound"] = slack, upward(widened(slack, bound, error))
     return states, np.empty(0, LIMIT)

@@ -10,7 +10,7 @@ from ..atlas.schema import SHAPE
 from ..description.tube_model import model_of
 from ..query import reference
 from ..query.exact import CELLS, solve
-from ..query.family import FAMILIES
+from ..query.family import FAMILIES, plain
 from ..scaling import ACCURACIES, ALONG
 from .cross_check import compare, ideal
 
@@ -27,7 +27,7 @@ def faults(points) -> list:
     highest = float(data["pressure"].max()) if "limit_pressure" in data else None
     for key, family in FAMILIES.items():
         # what is seen along a tube is as exact as its places are near, whatever accuracy is asked for
-        names = [name for name in family.variables if name in data and name.removeprefix("locked_") not in ALONG]
+        names = [name for name in family.variables if name in data and plain(name) not in ALONG]
         if key == "limit" or not names:
             continue
         most = highest if key == "state" else None

@@ -10,6 +10,7 @@ from freesweep.description.tube_model import MODELS, TubeModel
 from freesweep.query import reference
 from freesweep.query.cells import BESIDE
 from freesweep.query.exact import solve
+from freesweep.query.family import TOLD
 from freesweep.query.predictor import Predictor
 from freesweep.query.refine import as_points, exact_answers
 from freesweep.query.slack import UNKNOWN
@@ -188,17 +189,21 @@ def test_the_outer_radius_follows_from_the_middle_s(crossed):
     ).all()
 
 
-def test_where_fibers_lie_within_the_wall_its_outer_layer_is_followed_along_the_tube():
+@pytest.mark.parametrize("model", [PHYSICAL._replace(fiber_radius="inner"), BONDED._replace(fiber_radius="inner")])
+def test_the_middle_tells_what_is_worst_along_the_tube(model):
+    """Fibers lie within the wall: its outer layer is followed, too."""
     here = points(30)
     here[:, reference.FIBERS] = here[:, reference.RADIUS]
-    solved = solve(reference.LOADED, here, "full", 1e-6, model=PHYSICAL._replace(fiber_radius="inner"))
+    solved = solve(reference.LOADED, here, "full", 1e-6, model=model)
     known = np.isfinite(solved["mid_radius"])
-    predictor = Predictor(PHYSICAL._replace(fiber_radius="inner"), "full")
     nothing = np.zeros(known.sum())
-    told, missed, _ = predictor.outer_radius(here[known], solved["mid_radius"][known], nothing, nothing)
-    gap = np.abs(told - solved["outer_radius"][known])
-    assert (gap <= missed + solved["outer_radius_error"][known] + 1e-9 * told).mean() > 0.9
-    assert np.median(gap / told) < 1e-6
+    told, missed, _ = Predictor(model, "full").worst_places(here[known], solved["mid_radius"][known], nothing, nothing)
+    load = np.pi * here[known, reference.FIBERS] ** 2 * here[known, reference.PRESSURE]
+    for name, value, lacks in zip(TOLD, told, missed):
+        gap, size = np.abs(value - solved[name][known]), load if "tension" in name else value
+        assert (gap <= lacks + solved[f"{name}_error"][known] + 1e-9 * size).mean() > 0.9, name
+        assert np.median(gap / size) < 1e-6, name
+        assert np.max(gap / size) < 1e-2, name
 
 
 def test_the_middle_of_bonded_membranes_is_strained_as_the_source_s():

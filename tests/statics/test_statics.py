@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from freesweep import Actuator, ActuatorError, MooneyRivlin, inflate, lock
-from freesweep.atlas.schema import FLAG_OF, PROFILES, STATUS_OF, VARIABLES, WHOLE, attributes
+from freesweep.atlas.schema import FLAG_OF, PROFILES, STATUS_OF, VARIABLES, attributes
 from freesweep.status import BEYOND_LIMIT, COMPRESSED, OK, VALUED
 
 RUBBER = MooneyRivlin(c10=0.17e6, c01=0.08e6)  # of the source's prototypes A, B, C
@@ -157,7 +157,7 @@ def test_every_variable_is_described_by_the_schema(locked):
     outputs = [name for name in VARIABLES if name in solved]
     assert set(outputs) >= set(OUTPUTS)
     assert ("limit_pressure" in outputs) != locked
-    outputs += [*PROFILES, *WHOLE]
+    outputs += PROFILES
     known = {*outputs, *(f"{name}_error" for name in outputs), "status", *FLAG_OF, *solved.coords}
     known -= {"blocked_force_stable", "blocked_torque_stable"}
     assert set(solved.variables) == known - ({"limit_found"} if locked else set())

@@ -1,5 +1,5 @@
 """What a physical tube is like along its length: over which share of it a family is slack, or would have to push, and how
-wide it gets.
+hard, how wide it gets, and how far its wall is stretched.
 
 Looked at are places along the deformed shape: its ends, and the middles of its cells. Where a family pulls at one place and
 not at the next, its pull ends where it meets zero: on the line between both if fibers may push; if not, on the line through
@@ -13,8 +13,10 @@ from ..either import isnt, select
 from ..numerics.properties_along import at_point
 from ..physics import body, lagrangian, over_cell
 
-NUMBERS = SLACK_ALPHA, SLACK_BETA, OUTER = range(3)  # shares without a pull, and the largest outer radius
-PLACE, ALPHA, BETA, SQUARE = range(4)  # rows of what is seen: multipliers less the least pull, outer radius squared
+# shares without a pull, the least pulls [2 pi r0^2 C10], the largest outer radius and stretch of the wall
+NUMBERS = SLACK_ALPHA, SLACK_BETA, LEAST_ALPHA, LEAST_BETA, OUTER, STRETCH = range(6)
+# rows of what is seen: multipliers less the least that counts as a pull, pulls, squares of outer radius and stretch
+ROWS = PLACE, ALPHA, BETA, PULL_ALPHA, PULL_BETA, SQUARE, STRAIN = range(7)
 DOUBT = 0.5  # of the way between two places: how far off the end of a pull may be
 FAINT = 1e-6  # of the load: less of a pull may be none
 CURVED = 0.125  # of a second difference: by how much a curve passes the largest of its samples
@@ -33,18 +35,51 @@ def outer_square(y, G_1, cell, wall):
 
 
 @kernel
+def principal_square(y, G_1, psi, rho_square):
+    """Squared largest stretch of the layer of that squared undeformed radius, in radii of the fibers: in its surface it is
+    stretched by [[r/rho, r psi], [0, sqrt(G)]], and across it by what keeps the volume.
+    """
+    r_square = y * y + (rho_square - 1.0) / sqrt(1.0 + G_1)
+    hoop = r_square / rho_square
+    half, area = 0.5 * (1.0 + G_1 + hoop + r_square * psi * psi), (1.0 + G_1) * hoop
+    return max(half + sqrt(max(half * half - area, 0.0 * half)), 1.0 / area)
+
+
+@kernel
+def strain_square(y, G_1, psi, cell, wall):
+    """Squared largest stretch of a thick wall's first and last layers; a membrane is one layer."""
+    if len(cell) == 3:
+        inner = wall[1]
+    else:
+        inner = cell[5]
+    first, last = select(inner > 0.0, inner, 1.0), select(inner > 0.0, inner + cell[2], 1.0)
+    return max(principal_square(y, G_1, psi, first), principal_square(y, G_1, psi, last))
+
+
+@kernel
+def pulls(alpha, beta, cell, load):
+    """Tensions of both families, of the whole circumference [2 pi r0^2 C10], from their multipliers."""
+    ta, tb = cell[0] + cell[1], cell[0] - cell[1]
+    return load.gamma * alpha * sqrt(1.0 + ta * ta), load.gamma * beta * sqrt(1.0 + tb * tb)
+
+
+@kernel
 def inside(y, v, cell, load, near):
-    """In the middle of a cell: ``(multipliers of both families, outer radius squared, what is handed on)``."""
+    """In the middle of a cell: ``(multipliers of both families, their tensions, squares of outer radius and stretch, what is
+    handed on)``.
+    """
     at, near = over_cell.look(y, v, cell, load, near)
     square, alpha, beta = body.of_multipliers(cell, outer_square(y, at.G_1, cell, load.wall), at.a, at.b)
-    return alpha, beta, square, near
+    strain = strain_square(y, at.G_1, at.psi, cell, load.wall)
+    return alpha, beta, (*pulls(alpha, beta, cell, load), square, strain), near
 
 
 @kernel
 def at_end(y, flux, cell, load):
     """The same at an end, where the flux is known; a plane of symmetry has none."""
-    _, G_1, alpha, beta = lagrangian.at_flux(y, flux, cell, load)
-    return alpha, beta, outer_square(y, G_1, cell, load.wall)
+    psi, G_1, alpha, beta = lagrangian.at_flux(y, flux, cell, load)
+    squares = outer_square(y, G_1, cell, load.wall), strain_square(y, G_1, psi, cell, load.wall)
+    return alpha, beta, (*pulls(alpha, beta, cell, load), *squares)
 
 
 @kernel
@@ -76,15 +111,45 @@ def widest(before, here, there, most, missed):
 
 
 @kernel
-def together(fine, coarse):
-    """``(numbers, bounds)`` from those of two meshes, each ``(alpha, its doubt, beta, its doubt, most, missed)``."""
-    outer, other = sqrt(fine[4]), sqrt(coarse[4])
+def least(before, here, there, lowest, missed, loose):
+    """``(lowest, missed)`` of a pull: what cannot push pulls by 0 at least."""
+    lower = here < lowest
+    curved = CURVED * abs(before - 2.0 * here + there)
+    if loose:
+        curved = min(curved, here)
+    return select(lower, here, lowest), select(lower, curved, missed)
+
+
+@kernel
+def root(fine, coarse):
+    """``(value, bound)`` of the root of a largest square, from ``(most, missed)`` of two meshes."""
+    one, other = sqrt(fine[0]), sqrt(coarse[0])
+    return (4.0 * one - other) / 3.0, FALLEN * abs(one - other) + 0.5 * fine[1] / one + ROUNDING * one
+
+
+@kernel
+def lowest(fine, coarse, size):
+    """The same of a least pull, where the load is ``size``."""
+    return (4.0 * fine[0] - coarse[0]) / 3.0, FALLEN * abs(fine[0] - coarse[0]) + fine[1] + ROUNDING * size
+
+
+@kernel
+def together(fine, coarse, load):
+    """``(numbers, bounds)`` from those of two meshes, each ``(alpha, its doubt, beta, its doubt)`` of the shares, then
+    ``(number, missed)`` of the least pulls and of the largest squares.
+    """
+    size = load.p + abs(load.f)
+    pull_a, bound_a = lowest(fine[1], coarse[1], size)
+    pull_b, bound_b = lowest(fine[2], coarse[2], size)
+    outer, missed = root(fine[3], coarse[3])
+    stretch, strained = root(fine[4], coarse[4])
+    fine, coarse = fine[0], coarse[0]
     return (
-        (fine[0], fine[2], (4.0 * outer - other) / 3.0),
+        (fine[0], fine[2], pull_a, pull_b, outer, stretch),
         (
             fine[1] + abs(fine[0] - coarse[0]) + ROUNDING * fine[0],
             fine[3] + abs(fine[2] - coarse[2]) + ROUNDING * fine[2],
-            FALLEN * abs(outer - other) + 0.5 * fine[5] / outer + ROUNDING * outer,
+            bound_a, bound_b, missed, strained,
         ),
     )  # fmt: skip
 
@@ -113,3 +178,5 @@ def rest(course, wall, numbers, bounds):
                 most, missed = here, CURVED * abs(before - 2.0 * middle + after)
     for k in range(len(numbers)):
         numbers[k], bounds[k] = (sqrt(most), 0.5 * missed / sqrt(most)) if k == OUTER else (0.0, 0.0)
+    if len(numbers) > STRETCH:
+        numbers[STRETCH] = 1.0

@@ -29,7 +29,8 @@ def pushing(alpha, beta, share, load):
 @kernel
 def look_along(fine, n, base, tube, load, seen, numbers, bounds):
     """:func:`pushing` anywhere along a tube, whose finest meshes are ``fine``, the last of n cells. Of a physical one
-    ``numbers`` and ``bounds``, as many as there is room for, take those of :mod:`places`; ``seen`` (4, > n + 1) is scratch.
+    ``numbers`` and ``bounds``, as many as there is room for, take those of :mod:`places`; ``seen`` (ROWS, > n + 1) is
+    scratch.
     """
     return _look_along(fine, n, base, tube, load, seen, numbers, bounds, load.wall)
 
@@ -43,7 +44,7 @@ def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
         sharp = summed(seen, n + 2, load)
         x, y = mesh_of(1, n // 2, fine)
         see(x, y, n // 2, base, tube, load_of(1, load, fine), seen)
-        found, missed = places.together(sharp, summed(seen, n // 2 + 2, load))
+        found, missed = places.together(sharp, summed(seen, n // 2 + 2, load), load)
         for k in range(len(numbers)):
             numbers[k], bounds[k] = found[k], missed[k]
     return flag
@@ -62,36 +63,45 @@ def see(x, y, n, base, tube, load, seen):
             node = min(k, n)
             cell = at_point(course, 0 if k == 0 else course.shape[0] - 1, 0.0 if k == 0 else 1.0)
             flux = 0.0 if symmetric and k > 0 else flux_at(x, y, node, n, own, load)
-            alpha, beta, square = places.at_end(y[node], flux, cell, load)
+            alpha, beta, others = places.at_end(y[node], flux, cell, load)
             place, below = x[node], at_ends
         else:
             v, place, below = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (x[j] + x[j + 1]), least
-            alpha, beta, square, near = places.inside(0.5 * (y[j] + y[j + 1]), v, cell_at(own, j), load, near)
+            alpha, beta, others, near = places.inside(0.5 * (y[j] + y[j + 1]), v, cell_at(own, j), load, near)
         seen[places.PLACE, k], seen[places.ALPHA, k], seen[places.BETA, k] = place, alpha - below, beta - below
-        seen[places.SQUARE, k] = square
+        seen[places.PULL_ALPHA, k], seen[places.PULL_BETA, k] = others[0], others[1]
+        seen[places.SQUARE, k], seen[places.STRAIN, k] = others[2], others[3]
         flag |= (1 if any_family and alpha < below else 0) | (2 if both and beta < below else 0)
     return flag
 
 
 @kernel
 def summed(seen, count, load):
-    """``(share of alpha, its doubt, share of beta, its doubt, largest square, what lies above it)`` of ``count`` places."""
-    x, squares, faint = seen[places.PLACE], seen[places.SQUARE], places.FAINT * (load.p + abs(load.f))
-    loose = may_go_slack(load.wall)
-    total, found = x[count - 1] - x[0], (0.0, 0.0, 0.0, 0.0)
-    most, missed = max(squares[0], squares[count - 1]), 0.0
-    for i in range(count - 1):
-        before, beyond, h = max(i - 1, 0), min(i + 2, count - 1), (x[i + 1] - x[i]) / total
+    """``(share of alpha, its doubt, share of beta, its doubt)`` of ``count`` places, then ``(number, missed)`` of the least
+    pulls, the largest square of the outer radius and of the stretch.
+    """
+    x, faint, loose = seen[places.PLACE], places.FAINT * (load.p + abs(load.f)), may_go_slack(load.wall)
+    a, b, last = seen[places.ALPHA], seen[places.BETA], count - 1
+    pull_a, pull_b, squares, strains = (
+        seen[places.PULL_ALPHA], seen[places.PULL_BETA], seen[places.SQUARE], seen[places.STRAIN]
+    )  # fmt: skip
+    total, found = x[last] - x[0], (0.0, 0.0, 0.0, 0.0)
+    least_a, least_b = (min(pull_a[0], pull_a[last]), 0.0), (min(pull_b[0], pull_b[last]), 0.0)
+    widest, most = (max(squares[0], squares[last]), 0.0), (max(strains[0], strains[last]), 0.0)
+    for i in range(last):
+        before, beyond, h = max(i - 1, 0), min(i + 2, last), (x[i + 1] - x[i]) / total
         h_before = (x[i] - x[before]) / total if i > 0 else h
         h_beyond = (x[beyond] - x[i + 1]) / total if i < count - 2 else h
         steps = h_before, h, h_beyond, faint, loose
-        a, b = seen[places.ALPHA], seen[places.BETA]
         part_a, doubt_a = places.without_pull(a[before], a[i], a[i + 1], a[beyond], *steps)
         part_b, doubt_b = places.without_pull(b[before], b[i], b[i + 1], b[beyond], *steps)
         found = found[0] + part_a, found[1] + doubt_a, found[2] + part_b, found[3] + doubt_b
         if i > 0:
-            most, missed = places.widest(squares[before], squares[i], squares[i + 1], most, missed)
-    return (*found, most, missed)
+            least_a = places.least(pull_a[before], pull_a[i], pull_a[i + 1], *least_a, loose)
+            least_b = places.least(pull_b[before], pull_b[i], pull_b[i + 1], *least_b, loose)
+            widest = places.widest(squares[before], squares[i], squares[i + 1], *widest)
+            most = places.widest(strains[before], strains[i], strains[i + 1], *most)
+    return found, least_a, least_b, widest, most
 
 
 @kernel

@@ -241,7 +241,7 @@ def follow_many(
         empty ``course`` for tubes that are the same all along, of which half is solved
     accuracy : bound to reach, scaled
     values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds; of
-        physical tubes (n, 8), with the numbers of :mod:`..along.places`
+        physical tubes (n, 11), with the numbers of :mod:`..along.places`
     status, slack : (n,) codes; rows that are not PENDING are passed over; values are NaN unless the status is OK or
         INACCURATE
     limits : (k, 2) limit pressure and its bound, NaN if none was met

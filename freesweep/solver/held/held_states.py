@@ -7,6 +7,7 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from .. import guide
+from ..along import places
 from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
@@ -154,7 +155,7 @@ class States(NamedTuple):
 
 
 @kernel
-def leave_at_rest(states, i, problem, tube):
+def leave_at_rest(states, i, problem, walls, tube):
     """The undeformed tube; the fiber angles of one that varies are put in by who asks."""
     rest, fields = 0.5 * problem[LENGTH], states.profiles[i]
     states.status[i], states.stable[i] = OK, 1
@@ -162,6 +163,8 @@ def leave_at_rest(states, i, problem, tube):
         states.values[i, k], states.bounds[i, k] = 0.0, 0.0
     states.values[i, 0], states.values[i, 4] = rest, 1.0
     states.values[i, 1] = (1.0 if tube.half else 0.5) * volume(tube.course, tube.places)
+    if states.values.shape[1] > 6:
+        places.rest(tube.course, wall_of(problem, walls), states.values[i, 6:], states.bounds[i, 6:])
     for j in range(len(states.stations)):
         for k in range(FIELDS):
             fields[k, j] = 0.0
@@ -215,7 +218,7 @@ def hold(states, i, problem, walls, p, other, target, kind, buckled, tube, accur
     if not ends_last(problem, walls, tube):
         states.status[i] = INVALID
     elif p == 0.0 and other == 0.0 and natural and not buckled:
-        leave_at_rest(states, i, problem, tube)
+        leave_at_rest(states, i, problem, walls, tube)
     elif kind == HELD_ROTATION and not turns(tube.course):
         states.status[i] = HELD_IMPOSSIBLE
     else:
@@ -240,8 +243,9 @@ def hold_many(
     those whose status is not PENDING are passed over, and where no value is found none is written. ``targets`` are in radii
     (deformed length) or radians, of the whole tube; a tube that is the same all along is solved by half, unless ``buckled``:
     then ``course`` is its own, of two halves. ``values`` and ``bounds`` are (n, 6): length, volume, twist, energy of half
-    the tube, stretch in the middle, multiplier. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2)
-    the least pressure of the ``buckled`` branch and its bound.
+    the tube, stretch in the middle, multiplier; of physical tubes (n, 12), if the numbers of :mod:`..along.places` are
+    asked for. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2) the least pressure of the
+    ``buckled`` branch and its bound.
     """
     alike, base = course.shape[0] == 0, edges[len(edges) - 1]
     own_course, own_places = of_problems(course) if alike else course, np.zeros(2) if alike else places.copy()

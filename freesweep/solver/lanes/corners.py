@@ -106,7 +106,7 @@ def value_at(values, z, n, lane):
 
 @kernel
 def gather(x, y, n, cell, load, seen, places, new_x, new_y):
-    """Move nodes of a mesh, with the shape on it, to where families go slack. ``seen`` (4, > n + 1, WIDTH), ``places``,
+    """Move nodes of a mesh, with the shape on it, to where families go slack. ``seen`` (ROWS, > n + 1, WIDTH), ``places``,
     ``new_x`` and ``new_y`` (> n, WIDTH) are scratch.
     """
     see(x, y, n, cell, load, seen)

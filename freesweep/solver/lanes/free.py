@@ -117,8 +117,8 @@ def solve(
     that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
     """
     size = (base << most) + 2
-    space = aligned(23, size)
-    meshes, work, table, out, found = space[:7], space[7:11], space[11:19], space[19:21], space[21:]
+    space = aligned(26, size)
+    meshes, work, table, out, found = space[:7], space[7:14], space[14:22], space[22:24], space[24:]
     shape, small = aligned(2, base + 1), aligned(3, COLUMNS)
     x, y = shape[0], shape[1]
     columns, sizes, start = small[0], small[1], small[2]

@@ -150,7 +150,7 @@ def solve(
     """Solve the ``active`` lanes, whose uniform tubes have stretch ``u``; ``x`` and ``y`` (n + 1, WIDTH) are the graded base
     mesh and a first guess, replaced by its solution.
 
-    ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (4, as many, WIDTH). ``out`` (2, > OUTPUTS, WIDTH) takes values
+    ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (7, as many, WIDTH). ``out`` (2, > OUTPUTS, WIDTH) takes values
     and bounds of the lanes that are met, of physical tubes those of :mod:`..along.places` behind them; ``found`` (2, ...) is
     scratch. ``kept`` (WIDTH, 5, ...), unless None, takes their finest meshes as :func:`..along.profile.at_stations`
     reads them, with ``doublings``. Returns masks: ``(met, alpha fibers would have to push, beta fibers would)``.

@@ -5,7 +5,7 @@ from math import sqrt
 import numpy as np
 
 from ...jit import entry_point, kernel
-from ..along.places import OUTER
+from ..along.places import OUTER, STRETCH
 from ..along.profile import at_stations
 from ..load import Load, at_pressure, fibers_alone
 from ..physics import lagrangian
@@ -132,6 +132,7 @@ def settle(p, problem, clamped, row, values, bounds, status):
         values[row, 0], values[row, 1], values[row, 4] = half, half, 1.0
         if values.shape[1] > OUTPUTS:
             values[row, OUTPUTS + OUTER] = sqrt(problem[INNER] + problem[AREA]) if problem[INNER] > 0.0 else 1.0
+            values[row, OUTPUTS + STRETCH] = 1.0
     elif not p + f > 0.0 and not p == np.inf:
         status[row] = COMPRESSED
     else:

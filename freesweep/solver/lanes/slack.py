@@ -15,8 +15,8 @@ from .vector import get, mask_of, put, select, spread
 @kernel
 def look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready):
     """Masks: where the alpha, and where the beta family would have to push, or is slack, somewhere along half a tube, on its
-    finest mesh of n cells. Of physical tubes ``out`` (2, > first + 2, WIDTH) takes the numbers of :mod:`..along.places`
-    and their bounds in the lanes that are ``ready``, from the row ``first`` on; ``seen`` (4, > n + 1, WIDTH) is
+    finest mesh of n cells. Of physical tubes ``out`` (2, > first + 5, WIDTH) takes the numbers of :mod:`..along.places`
+    and their bounds in the lanes that are ``ready``, from the row ``first`` on; ``seen`` (ROWS, > n + 1, WIDTH) is
     scratch.
     """
     return _look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready, load.wall)
@@ -29,7 +29,7 @@ def _look_along(x, y, n, coarse_x, coarse_y, cell, load, seen, out, first, ready
     alpha, beta = see(x, y, n, cell, load, seen)
     sharp = summed(seen, n + 2, load)
     see(coarse_x, coarse_y, n // 2, cell, load, seen)
-    numbers, bounds = places.together(sharp, summed(seen, n // 2 + 2, load))
+    numbers, bounds = places.together(sharp, summed(seen, n // 2 + 2, load), load)
     for k in range(len(numbers)):
         put(out[0], first + k, select(ready, numbers[k], get(out[0], first + k)))
         put(out[1], first + k, select(ready, bounds[k], get(out[1], first + k)))
@@ -63,18 +63,21 @@ def see(x, y, n, cell, load, seen):
         middle, v, place, below = 0.5 * (get(y, j) + get(y, j + 1)), rise / h, 0.5 * (get(x, j) + get(x, j + 1)), least
         if k == 0:
             _, L_y, L_v, _, _, _ = lagrangian.density(middle, v, of_length(cell, h), load)
-            of_alpha, of_beta, square = places.at_end(get(y, 0), 0.5 * h * L_y - L_v, cell, load)
+            of_alpha, of_beta, others = places.at_end(get(y, 0), 0.5 * h * L_y - L_v, cell, load)
             place, below = get(x, 0), at_end
         elif k == n + 1:
-            of_alpha, of_beta, square = places.at_end(get(y, n), spread(0.0), cell, load)
+            of_alpha, of_beta, others = places.at_end(get(y, n), spread(0.0), cell, load)
             place = get(x, n)
         else:
-            of_alpha, of_beta, square, near = places.inside(middle, v, cell, load, near)
+            of_alpha, of_beta, others, near = places.inside(middle, v, cell, load, near)
         alpha, beta = alpha | (of_alpha < below), beta | (of_beta < below)
         put(seen[places.PLACE], k, place)
         put(seen[places.ALPHA], k, of_alpha - below)
         put(seen[places.BETA], k, of_beta - below)
-        put(seen[places.SQUARE], k, square)
+        put(seen[places.PULL_ALPHA], k, others[0])
+        put(seen[places.PULL_BETA], k, others[1])
+        put(seen[places.SQUARE], k, others[2])
+        put(seen[places.STRAIN], k, others[3])
     if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
     if not has_any_family(load.wall):
@@ -85,13 +88,17 @@ def see(x, y, n, cell, load, seen):
 @kernel
 def summed(seen, count, load):
     """As :func:`freesweep.solver.along.slack.summed`."""
-    x, a, b, squares = seen[places.PLACE], seen[places.ALPHA], seen[places.BETA], seen[places.SQUARE]
-    faint, loose = places.FAINT * (load.p + abs(load.f)), may_go_slack(load.wall)
-    total, zero = get(x, count - 1) - get(x, 0), spread(0.0)
+    x, a, b = seen[places.PLACE], seen[places.ALPHA], seen[places.BETA]
+    pull_a, pull_b, squares, strains = (
+        seen[places.PULL_ALPHA], seen[places.PULL_BETA], seen[places.SQUARE], seen[places.STRAIN]
+    )  # fmt: skip
+    faint, loose, last = places.FAINT * (load.p + abs(load.f)), may_go_slack(load.wall), count - 1
+    total, zero = get(x, last) - get(x, 0), spread(0.0)
     share_a, doubt_a, share_b, doubt_b = zero, zero, zero, zero
-    most, missed = max(get(squares, 0), get(squares, count - 1)), zero
-    for i in range(count - 1):
-        before, beyond = max(i - 1, 0), min(i + 2, count - 1)
+    least_a, least_b = (min(get(pull_a, 0), get(pull_a, last)), zero), (min(get(pull_b, 0), get(pull_b, last)), zero)
+    widest, most = (max(get(squares, 0), get(squares, last)), zero), (max(get(strains, 0), get(strains, last)), zero)
+    for i in range(last):
+        before, beyond = max(i - 1, 0), min(i + 2, last)
         h = (get(x, i + 1) - get(x, i)) / total
         h_before, h_beyond = h, h
         if i > 0:
@@ -107,5 +114,8 @@ def summed(seen, count, load):
         )
         share_b, doubt_b = share_b + part, doubt_b + doubt
         if i > 0:
-            most, missed = places.widest(get(squares, i - 1), get(squares, i), get(squares, i + 1), most, missed)
-    return share_a, doubt_a, share_b, doubt_b, most, missed
+            least_a = places.least(get(pull_a, i - 1), get(pull_a, i), get(pull_a, i + 1), *least_a, loose)
+            least_b = places.least(get(pull_b, i - 1), get(pull_b, i), get(pull_b, i + 1), *least_b, loose)
+            widest = places.widest(get(squares, i - 1), get(squares, i), get(squares, i + 1), *widest)
+            most = places.widest(get(strains, i - 1), get(strains, i), get(strains, i + 1), *most)
+    return (share_a, doubt_a, share_b, doubt_b), least_a, least_b, widest, most
