@@ -108,14 +108,15 @@ class Predictor(NamedTuple):
         """
         from .physical_tube import TOLD, worst_places
 
-        found, missed = np.empty((3, TOLD, len(points))), np.empty((3, TOLD, len(points)))
+        found, missed = np.empty((2, 3, len(points), TOLD))
         for some, own, what, few in self._kinds(points):
             for k, middle in enumerate((mid_radius, mid_radius + estimate, mid_radius + bound)):
                 part, lacks = np.empty((2, len(own), TOLD))
                 worst_places(own, middle[some], *what, part, lacks)
                 if few:
                     tell_families(part, self.families), tell_families(lacks, self.families)
-                found[k, :, some], missed[k, :, some] = part.T, lacks.T
+                found[k, some], missed[k, some] = part, lacks
+        found, missed = found.swapaxes(1, 2), missed.swapaxes(1, 2)
         rounding = np.finfo(float).eps * np.abs(found[0])  # of what lies at a clamped end, and is known but for it
         return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0]) + rounding
 

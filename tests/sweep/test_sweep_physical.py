@@ -8,7 +8,7 @@ import xarray as xr
 from grids import FIXED, completed, make, spec
 from shards import same_bits
 
-from freesweep import Actuator, MooneyRivlin, inflate
+from freesweep import Actuator, Atlas, MooneyRivlin, blocked_force, blocked_torque, inflate, status
 from freesweep.atlas.content import dimensions, faults
 from freesweep.description.tube_model import MODELS, attributes_of, model_of
 from freesweep.query.exact import solve
@@ -127,6 +127,34 @@ def test_a_sweep_holds_what_single_solves_give_whoever_solves(tmp_path, monkeypa
             apart = np.abs(alone[name].values - stored[name].values)
             assert np.all(apart <= alone[f"{name}_error"].values + stored[f"{name}_error"].values)
         assert np.array_equal(alone.slack_fiber, stored.slack_fiber)
+
+
+def test_where_held_tubes_are_slack_is_stored_and_solved_for_between_nodes(tmp_path):
+    grid = {"alpha": [20.0, 30.0], "beta": [-50.0, 60.0], "pressure": [3e4, 6e4]}
+    sweep = parse(spec(grid).replace("[actuator]", '[actuator]\nmodel = "physical"') + "\n[solver]\nblocked = true")
+    made = make(tmp_path / "held.nc", sweep, threads=1)
+    names = [f"blocked_{load}_slack_{family}" for load in ("force", "torque") for family in ("alpha", "beta")]
+    assert float(made["blocked_force_slack_alpha"].max()) > 0.0
+    for beta in grid["beta"]:
+        design = {"alpha": 30.0, "beta": beta, "length": FIXED["length"], "radius": FIXED["radius"], "wall": FIXED["wall"]}
+        tube = Actuator(**design, model="physical", material=MooneyRivlin(FIXED["c10"], FIXED["c01"]))
+        stored = made.sel(alpha=30.0, beta=beta)
+        for load, solve_one in (("force", blocked_force), ("torque", blocked_torque)):
+            alone = solve_one(tube, grid["pressure"], accuracy=1e-7)
+            for family in ("alpha", "beta"):
+                name, own = f"blocked_{load}_slack_{family}", f"slack_{family}"
+                apart = np.abs(alone[own].values - stored[name].values)
+                assert np.all(apart <= alone[f"{own}_error"].values + stored[f"{name}_error"].values), name
+    atlas = Atlas(made, "held.nc")
+    between = atlas.query(alpha=30.0, beta=60.0, pressure=4e4, variables=names)
+    assert int(between["blocked_force_slack_status"]) == status.NOT_INTERPOLABLE
+    turned = atlas.query(alpha=60.0, beta=30.0, pressure=4e4, variables=names, refine=True)
+    refined = atlas.query(alpha=30.0, beta=60.0, pressure=4e4, variables=names, refine=True)
+    for name in names:
+        assert np.isfinite(refined[name]), name
+    for load in ("force", "torque"):
+        one, other = f"blocked_{load}_slack_alpha", f"blocked_{load}_slack_beta"
+        assert float(turned[one]) == pytest.approx(float(refined[other]), abs=float(refined[f"{other}_error"]) + 1e-9)
 
 
 @pytest.mark.long  # compiles as the sweep above
