@@ -103,6 +103,8 @@ VARIABLES = {
     ),
 }
 
+STATES = {"locked_": "locked", "blocked_force_": "length held", "blocked_torque_": "rotation held"}  # by prefix
+
 EXCHANGED = {  # what becomes what where the fiber families change places
     f"{name}_{one}": f"{name}_{other}"
     for name in ("slack", "locked_slack", "blocked_force_slack", "blocked_torque_slack", "least_tension")
@@ -179,6 +181,13 @@ SHORT = {
     **{"alpha_deformed": "deformed alpha", "beta_deformed": "deformed beta"},
     **{"fiber_tension_alpha": "tension of family alpha", "fiber_tension_beta": "tension of family beta"},
 }
+
+
+def plain(name: str) -> str:
+    """What a variable is of its own state, under pressure or one of STATES."""
+    for prefix in STATES:
+        name = name.removeprefix(prefix)
+    return name
 
 
 def without(name: str) -> tuple:

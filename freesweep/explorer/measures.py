@@ -4,12 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..atlas.schema import EXCHANGED, PARAMETERS, attributes
+from ..atlas.schema import PARAMETERS, attributes
 from ..description.tube_model import fiber_surface
 from ..description.units import factor
 from ..inverse.outputs import output
 from ..plot.between import EXACT
 from ..query.family import FAMILIES, FAMILY_OF, LOOSE
+from ..query.table import HELD_NAMES
 from ..status import NOT_INTERPOLABLE, VALUED
 
 ANY = 1e9  # a tolerance: each measure is held to its own, so none hides another
@@ -52,6 +53,9 @@ _LABELS = {
     "ideal_blocked_force": ("Blocked force, ideal", 0.0),
     "ideal_blocked_torque": ("Blocked torque, ideal", 0.0),
     "outer_radius": ("Outer radius", None),
+    "largest_stretch": ("Largest stretch of the wall", None),
+    "least_tension_alpha": ("Least tension of alpha", None),
+    "least_tension_beta": ("Least tension of beta", None),
     "slack_alpha": ("Slack share of alpha", None),
     "slack_beta": ("Slack share of beta", None),
 }
@@ -80,15 +84,16 @@ def _is_told(reader, name):
     """Whether a query answers a variable: it varies along the axes of its family (locked energies may along more)."""
     if name not in FAMILY_OF:
         return True
+    if FAMILIES[FAMILY_OF[name]].kind in HELD_NAMES.values() and (reader.frame.model.is_loose or "slack" in name):
+        return False  # told at nodes only
     first = next(one for one in FAMILIES[FAMILY_OF[name]].variables if one in reader.frame.dims)
     return set(reader.frame.dims[name]) == set(reader.frame.dims[first])
 
 
 def _plain(name):
-    plain, end = name.removeprefix("locked_"), ", locked" if name.startswith("locked_") else ""
-    about = attributes(name)
-    label, centre = _LABELS.get(plain, (about["long_name"], None))
-    return Measure(name, name, label + end, "%" if plain in EXCHANGED else about["units"], centre)
+    about, end = attributes(name), ", locked" if name.startswith("locked_") else ""
+    label, centre = _LABELS.get(name.removeprefix("locked_"), (about["long_name"], None))
+    return Measure(name, name, label + end, "%" if "slack" in name else about["units"], centre)
 
 
 def _tells_outer_radius(frame):

@@ -10,7 +10,7 @@ from .exact import loads_of, tube_of
 
 FREE = {
     "stroke", "rotation", "deformed_length", "mid_radius", "outer_radius", "volume", "strain_energy", "slack_alpha",
-    "slack_beta",
+    "slack_beta", "largest_stretch", "least_tension_alpha", "least_tension_beta",
 }  # fmt: skip
 LOCKED = {"stroke", "rotation", "deformed_length", "mid_radius", "volume", "strain_energy"}
 HELD = {"blocked_force": "force", "blocked_torque": "torque"}

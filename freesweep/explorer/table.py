@@ -25,6 +25,7 @@ SCALES = {  # what a measure grows with, as powers of sizes: what is left is smo
     "rotation": {"length": 1, "radius": -1}, "deformed_length": {"length": 1}, "mid_radius": {"radius": 1},
     "outer_radius": {"radius": 1}, "volume": {"length": 1, "radius": 2}, "strain_energy": {"length": 1, "radius": 1},
     "blocked_force": {"radius": 2}, "blocked_torque": {"radius": 3},
+    "least_tension_alpha": {"radius": 2}, "least_tension_beta": {"radius": 2},
 }  # fmt: skip
 
 

@@ -40,6 +40,9 @@ _SHOWN = {
     "volume": Display("volume of the cavity", "mL", _scaled(1e6), None),
     "strain_energy": Display("strain energy of the wall", "mJ", _scaled(1e3), None),
     "outer_radius": Display("largest outer radius", "mm", _scaled(1e3), None),
+    "largest_stretch": Display("largest stretch of the wall", "", _scaled(1.0), None),
+    "least_tension_alpha": Display("least tension of family alpha", "N", _scaled(1.0), None),
+    "least_tension_beta": Display("least tension of family beta", "N", _scaled(1.0), None),
     "slack_alpha": Display("part of the length where family alpha is slack", "%", _scaled(100.0), None),
     "slack_beta": Display("part of the length where family beta is slack", "%", _scaled(100.0), None),
     "limit_pressure": Display("limit pressure", "kPa", _scaled(1e-3), None),
@@ -72,21 +75,22 @@ PARAMETER_UNITS = {  # shown unit and its factor, where it is not the stored one
 
 def display(variable: str) -> Display:
     """How ``variable`` (a name of ``schema.VARIABLES``) is shown."""
-    return _SHOWN[variable.removeprefix("locked_")]
+    return _SHOWN[schema.plain(variable)]
 
 
 def absolute(variable: str) -> Display:
     """The same for plots along one axis, where sizes need no scale: lengths and radii in [mm]."""
-    plain = variable.removeprefix("locked_")
-    return _ABSOLUTE.get(plain, _SHOWN[plain])
+    name = schema.plain(variable)
+    return _ABSOLUTE.get(name, _SHOWN[name])
 
 
 def title(variable: str) -> str:
     """Heading of a plot of ``variable``."""
     label = display(variable).label.split(" /")[0]
     label = label[0].upper() + label[1:]
-    if variable.startswith("locked_"):
-        return f"{label}, locked"
+    for prefix, state in schema.STATES.items():
+        if variable.startswith(prefix):
+            return f"{label}, {state}"
     if variable.startswith("ideal_"):
         return f"{label} of inextensible fibers"
     return label if variable == "limit_pressure" else f"{label} under pressure"

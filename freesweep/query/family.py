@@ -42,9 +42,12 @@ TOLD = {  # from the radius in the middle, by the first integral
     "least_tension_beta": r.LEAST_TENSION_BETA,
 }
 TOLD_FROM = dict.fromkeys(TOLD, "mid_radius")
+PULLS = ("least_tension_alpha", "least_tension_beta")  # less well than the others
+TABLE_OF = {"tension": "state"}  # families that are told from another's table
 
 FAMILIES = {
     "state": Family(r.LOADED, _SHAPE | TOLD, "status", "stable"),
+    "tension": Family(r.LOADED, {name: TOLD[name] for name in PULLS}, "status", answered="tension_status"),
     "slack": Family(r.LOADED, _slack(""), "status", answered="slack_status"),
     "locked_slack": Family(r.LOCKED, _slack("locked_"), "locked_status", answered="locked_slack_status"),
     "locked": Family(r.LOCKED, {f"locked_{name}": variable for name, variable in _SHAPE.items()}, "locked_status"),
@@ -63,13 +66,6 @@ FAMILIES = {
     "limit": Family(r.NONE, {"limit_pressure": r.PLAIN}, None, "limit_found", "limit_pressure_status"),
 }
 FAMILY_OF = {name: key for key, family in FAMILIES.items() for name in family.variables}
-
-
-def plain(name) -> str:
-    """What a variable is of its own state, under pressure, locked or held."""
-    for prefix in ("locked_", "blocked_force_", "blocked_torque_"):
-        name = name.removeprefix(prefix)
-    return name
 
 
 def family_of(key, of_bodies) -> Family:

@@ -11,7 +11,7 @@ from ..status import VALUED
 from . import calibration, errors
 from .answer import Inquiry
 from .calibrate import calibrate, piece_scales
-from .family import FAMILIES
+from .family import FAMILIES, FAMILY_OF
 from .query import Reader
 from .reference import ALPHA, BETA
 from .refine import exact_answers
@@ -20,7 +20,10 @@ SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
 FEWEST, FEW = 2_000, 10_000  # at least, and at most, of physical tubes, which take a thousand times as long
 FEWEST_BODIES = 500  # of bodies, each of which is followed along and solved by itself
-HELD_SHARE, SLACK_SHARE = 2, 4  # held states cost more, slack shares are solved for once more: so much fewer designs
+HELD_SHARE, SLACK_SHARE = (
+    2,
+    4,
+)  # held states cost more, shares and tensions are solved for once more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
 LOOSE_SHARPER = 1.0  # where fibers go slack digits are dear, and what lies between nodes errs by far more
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
@@ -50,10 +53,12 @@ def measured(data, designs=None) -> dict:
         least, most = FEWEST_BODIES, FEWEST
     count = designs or int(np.clip(data["status"].size // EACH, least, most))
     for key, family in FAMILIES.items():
-        names = sorted((name for name in family.variables if name in data), key=lambda name: name != "mid_radius")
+        names = [name for name in family.variables if name in data and FAMILY_OF[name] == key]
+        names.sort(key=lambda name: name != "mid_radius")
         if key == "limit" or not names or not reader.table(key).names:
             continue
-        own = count // (HELD_SHARE if key.startswith("blocked") else SLACK_SHARE if key.endswith("slack") else 1)
+        again = key.endswith("slack") or key == "tension"
+        own = count // (HELD_SHARE if key.startswith("blocked") else SLACK_SHARE if again else 1)
         drawn = _draw(reader, reader.table(key), own)
         share, results = _family(reader, key, names, drawn)
         answered[key] = share
@@ -82,7 +87,7 @@ def _family(reader, key, names, values):
     sharper = LOOSE_SHARPER if reader.frame.model.is_loose else SHARPER
     accuracy = max(sharper * reader.frame.accuracy, ACCURACIES[0])
     exact = exact_answers(reader, key, inquiry.points[places], names, accuracy)
-    solved = np.isin(exact[table.family.answer_status], VALUED)
+    solved = np.isin(exact[FAMILIES[key].answer_status], VALUED)
     with ThreadPoolExecutor(TOGETHER if table.size <= MUCH else 1) as pool:
         kept = dict(
             zip(names, pool.map(lambda name: _compare(inquiry, name, places, exact[name], solved, reader), names))

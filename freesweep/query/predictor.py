@@ -117,7 +117,9 @@ class Predictor(NamedTuple):
                     tell_families(part, self.families), tell_families(lacks, self.families)
                 found[k, some], missed[k, some] = part, lacks
         found, missed = found.swapaxes(1, 2), missed.swapaxes(1, 2)
-        rounding = np.finfo(float).eps * np.abs(found[0])  # of what lies at a clamped end, and is known but for it
+        # of what lies at a clamped end, and is known but for it, or is 0
+        size = np.pi * points[:, reference.FIBERS] ** 2 * points[:, reference.PRESSURE]
+        rounding = np.finfo(float).eps * np.maximum(np.abs(found[0]), (np.arange(TOLD) > 1)[:, None] * size)
         return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0]) + rounding
 
     def slack_families(self, points, states, mid_radius) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..thick_wall import DESIGN, NOTES, attributes_of
 from . import calibration
 from .answer import CUBIC, LINEAR, Inquiry
 from .box import Parts
-from .family import FAMILIES, FAMILY_OF, IDEAL
+from .family import FAMILIES, FAMILY_OF, IDEAL, TABLE_OF
 from .faults import QueryError, unknown
 from .grid_axes import Frame
 from .ideal import ideal_answer
@@ -25,6 +25,7 @@ from .table import Table
 
 STATUSES_OF_ANSWERS = {  # that no atlas holds
     "limit_pressure_status": "status of the limit pressure",
+    "tension_status": "status of the least tensions",
     "slack_status": "status of the slack shares",
     "locked_slack_status": "status of the slack shares, locked",
     "blocked_force_slack_status": "status of the slack shares, length held",
@@ -47,6 +48,7 @@ class Reader:
 
     def table(self, key, values=None) -> Table:
         """The table of a family of variables; with ``values`` (axis -> (n,)) one that serves to answer at them."""
+        key = TABLE_OF.get(key, key)
         if key not in self._tables:
             names = self.frame.axes_of(FAMILIES[key].variables)
             self._tables[key] = Parts(lambda box: Table(self.data, self.frame, key, box), self.frame, names)
@@ -95,13 +97,13 @@ class Reader:
         for key in FAMILIES:
             own = [name for name in names if FAMILY_OF.get(name) == key]
             if own:
-                found |= self._in_chunks(self.table(key, values), values, size, own, method, tolerance, coarse)
+                found |= self._in_chunks(key, self.table(key, values), values, size, own, method, tolerance, coarse)
         for name in names:
             if name in IDEAL:
                 found |= ideal_answer(self.frame, name, values)
         return found
 
-    def _in_chunks(self, table, values, size, names, method, tolerance, coarse):
+    def _in_chunks(self, key, table, values, size, names, method, tolerance, coarse):
         bounds = [*range(0, size, CHUNK), size]
         if ALONE < size <= CHUNK:
             bounds = [0, size // 2, size]
@@ -109,7 +111,7 @@ class Reader:
 
         def one(part):
             own = {name: values[name][slice(*part)] for name in table.known}
-            return self._answer_chunk(table, own, names, method, tolerance, coarse)
+            return self._answer_chunk(key, table, own, names, method, tolerance, coarse)
 
         if len(parts) == 1:
             return one(parts[0])
@@ -120,7 +122,7 @@ class Reader:
         return {name: np.concatenate([answer[name] for answer in answers]) for name in answers[0]}
 
     @np.errstate(all="ignore")  # whatever a file holds: what is no number is refused
-    def _answer_chunk(self, table, values, names, method, tolerance, coarse):
+    def _answer_chunk(self, key, table, values, names, method, tolerance, coarse):
         inquiry = Inquiry(table, values, method)
         flags = inquiry.flags()
         found, too_large = {}, np.zeros(inquiry.size, bool)
@@ -139,9 +141,9 @@ class Reader:
         valued &= ~too_large
         for name in found:
             found[name] = np.where(valued, found[name], np.nan)
-        for name, flag in flags.items():
+        for name, flag in flags.items() if key not in TABLE_OF else ():
             found[name] = np.where(valued, flag, 0).astype(np.int8)
-        found[table.family.answer_status] = status
+        found[FAMILIES[key].answer_status] = status
         return found
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..atlas.schema import plain
 from ..description.along import written
 from ..description.families import FAMILIES as FAMILIES_OF_FIBERS
 from ..description.given import numbers
@@ -10,7 +11,7 @@ from ..status import NOT_INTERPOLABLE, VALUED
 from . import reference
 from .answer import Inquiry
 from .exact import solve
-from .family import FAMILIES, FAMILY_OF, plain
+from .family import FAMILIES, FAMILY_OF
 from .faults import QueryError
 
 MOST_PROFILES = 10_000  # each is solved on its own

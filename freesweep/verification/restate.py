@@ -6,11 +6,11 @@ the atlas may be any; the others are those of the states solved alone, but for t
 
 import numpy as np
 
-from ..atlas.schema import SHAPE
+from ..atlas.schema import SHAPE, plain
 from ..description.tube_model import model_of
 from ..query import reference
 from ..query.exact import CELLS, solve
-from ..query.family import FAMILIES, plain
+from ..query.family import FAMILIES
 from ..scaling import ACCURACIES, ALONG
 from .cross_check import compare, ideal
 

@@ -136,7 +136,13 @@ def test_where_held_tubes_are_slack_is_stored_and_solved_for_between_nodes(tmp_p
     names = [f"blocked_{load}_slack_{family}" for load in ("force", "torque") for family in ("alpha", "beta")]
     assert float(made["blocked_force_slack_alpha"].max()) > 0.0
     for beta in grid["beta"]:
-        design = {"alpha": 30.0, "beta": beta, "length": FIXED["length"], "radius": FIXED["radius"], "wall": FIXED["wall"]}
+        design = {
+            "alpha": 30.0,
+            "beta": beta,
+            "length": FIXED["length"],
+            "radius": FIXED["radius"],
+            "wall": FIXED["wall"],
+        }
         tube = Actuator(**design, model="physical", material=MooneyRivlin(FIXED["c10"], FIXED["c01"]))
         stored = made.sel(alpha=30.0, beta=beta)
         for load, solve_one in (("force", blocked_force), ("torque", blocked_torque)):
