@@ -48,9 +48,9 @@ class Asked:
         """Whether vectors can do it: a tube of the source's that is the same all along, solved by its half."""
         return self.half and not self.is_physical
 
-    def stations(self):
-        """Where shapes to begin from have to be known [m]."""
-        return np.minimum(self.x * self.tube.length, self.tube.length)
+    def places(self, finer):
+        """Where shapes to begin from have to be known, x/l: of each cell so many times a quarter."""
+        return grid.finer(self.x, np.searchsorted(self.x, self.segments), 4**finer)
 
     def states(self, loads, target):
         """Values and bounds (outputs, 1 + parameters, n) of n states in vectors: ``loads`` and what is held, (n,) each."""
@@ -71,8 +71,10 @@ class Asked:
                 break
         return self.holding.table(loads[self.unknown], *under(loads, self.seeds))
 
-    def state(self, loads, target, y):
-        """Values and bounds (outputs, 1 + parameters) of one state whose stretches at :meth:`stations` are ``y``."""
+    def state(self, loads, target, stretches):
+        """Values and bounds (outputs, 1 + parameters) of one state whose stretches at :meth:`places` ``stretches(finer)``
+        tells.
+        """
         hold = None
         if self.unknown is not None:
             unit = float(measures(self.tube, loads)[self.unknown])
@@ -88,7 +90,11 @@ class Asked:
 
         known = self._physics(loads, () if hold is None else self.seeds[:1])
         wanted = self._physics(loads, self.seeds)
-        return solve(known, wanted, self.x, y, self.half, self.segments, hold, finish, SHARE * self.accuracy)
+
+        def shape(finer):
+            return self.places(finer), stretches(finer)
+
+        return solve(known, wanted, shape, self.half, self.segments, hold, finish, SHARE * self.accuracy)
 
     def _physics(self, loads, seeds):
         kind = PhysicalTube if self.is_physical else Physics

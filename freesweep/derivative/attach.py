@@ -1,6 +1,7 @@
 """Derivatives of a Dataset's outputs, put beside them."""
 
 import warnings
+from functools import cache
 
 import numpy as np
 
@@ -16,12 +17,13 @@ MANY = 64  # states for which it is worth to compile vectors
 LOST = "derivatives: {count} of {all} states were not met again on meshes of their own; theirs are NaN"
 
 
-def shapes_of(asked, solve):
-    """Stretches at the stations of what is ``asked``, one axis more than the states: from ``solve(stations, accuracy)``."""
+def shapes_of(asked, solve, finer=0):
+    """Stretches (states, places) at the places of what is ``asked``: from ``solve(stations, accuracy)``."""
+    places, tube = asked.places(finer), asked.tube
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # who asks has been warned
-        shapes = solve(asked.stations(), GUESS)
-    return shapes["deformed_radius"].values / asked.tube.fiber_surface_at(asked.x)
+        shapes = solve(np.minimum(places * tube.length, tube.length), GUESS)
+    return shapes["deformed_radius"].values.reshape(-1, len(places)) / tube.fiber_surface_at(places)
 
 
 def attach(result, asked, loads, solve, target=None):
@@ -42,15 +44,12 @@ def attach(result, asked, loads, solve, target=None):
         values[..., same], bounds[..., same] = found[0][..., same], found[1][..., same]
     else:
         same = np.zeros(len(todo), bool)
-    shapes, lost = None, 0
+    shapes, lost = cache(lambda finer: shapes_of(asked, solve, finer)), 0
     for i in np.flatnonzero(~same):
         own, held = _at(loads, i), None if target is None else float(target[i])
         rest = is_at_rest(own, asked.held, held, asked.tube)
-        if shapes is None and not rest:
-            shapes = shapes_of(asked, solve)
-            shapes = shapes.reshape(-1, shapes.shape[-1])
         try:
-            found = asked.at_rest(own) if rest else asked.state(own, held, shapes[todo[i]])
+            found = asked.at_rest(own) if rest else asked.state(own, held, lambda finer, i=i: shapes(finer)[todo[i]])
             found = tuple(array[..., None] for array in found)
             here = slice(i, i + 1)
             if not np.all(_are_same(found, known[:, here], near[:, here], units[:, here])):

@@ -11,8 +11,8 @@ from .equilibrium import Meshes, NotFound, equilibrium, outputs, sums
 
 LEVELS = 4  # meshes, each with twice the cells of the one before, that are solved at once
 FINEST = 8  # doublings of the coarsest mesh's cells
-COARSEST = FINEST - LEVELS + 1  # as many, at most, of those that have no state
-FINER = 2  # times that the cells of the first mesh are split into four
+COARSEST, OF_WAVES = 7, 5  # as many, at most, of those that have no state; of a shape that needs many places
+FINER = 2  # times that the places of a shape are asked four times as densely
 SAFETY = 3.3  # as in the solver's bounds
 FAINT = 0.02  # likewise
 ROUNDING = 1e-11  # of a derivative's own unit: what nearly cancels in it
@@ -72,18 +72,19 @@ def shrunk(physics, meshes, y):
     raise NotFound
 
 
-def solve(known, wanted, x, y, free, segments, hold, finish, accuracy) -> Found:
-    """Outputs and derivatives of the state whose stretches at ``x`` are about ``y``: ``known`` solves, ``wanted`` has all
-    parameters; ``finish`` makes tables of outputs (meshes, outputs, 1 + parameters), and the unit of each number.
+def solve(known, wanted, shape, free, segments, hold, finish, accuracy) -> Found:
+    """Outputs and derivatives of the state of which ``shape(finer)`` gives places and the stretches there, about: ``known``
+    solves, ``wanted`` has all parameters; ``finish`` makes tables of outputs (meshes, outputs, 1 + parameters), and the
+    unit of each number.
 
     Where the kind of cell changes (:mod:`physical`) a node is put: on either side everything is smooth then. What is left of
     its distance from there enters the bounds, as the results moved when it was moved before.
     """
-    known, x, y, hold = on_first(known, x, y, free, segments, hold)
+    known, x, y, hold, least = on_first(known, shape, free, segments, hold)
     kinks, before, shift = known.kinks(segments), None, None
     for made in range(ROUNDS):
         ends = np.union1d(segments, kinks)
-        found, units, seen = on_nested(known, wanted, x, y, free, ends, segments, hold, finish, accuracy)
+        found, units, seen = on_nested(known, wanted, x, y, free, ends, segments, hold, least, finish, accuracy)
         if len(kinks) == 0 and len(seen) == 0:
             return found
         if len(seen) == len(kinks):
@@ -99,22 +100,28 @@ def solve(known, wanted, x, y, free, segments, hold, finish, accuracy) -> Found:
     raise NotFound
 
 
-def on_first(known, x, y, free, segments, hold):
-    """``(physics, x, y, hold)`` of the state on the mesh of its guess, or where that has none on a finer one."""
-    shape = PchipInterpolator(x, y)
+def on_first(known, shape, free, segments, hold):
+    """``(physics, x, y, hold, least)`` of the state on the mesh of its guess, and how fine meshes begin. Where that has
+    none, the waves of a long tube lie between its places: a fine mesh follows a shape of more of them.
+    """
     for finer in range(FINER + 1):
-        places, physics = grid.finer(x, np.searchsorted(x, segments), 4**finer), copy(known)
+        places, y = shape(finer)
+        physics, least = copy(known), 0
+        if finer:
+            guess, least = Shape(known, places, y, segments), OF_WAVES
+            places = grid.finer(*guess.graded(segments, free), 1 << COARSEST)
+            y = guess.stretch(places)
         mesh = Meshes([places], free)
         try:
-            return physics, places, *equilibrium(physics, mesh, shrunk(physics, mesh, shape(places)), hold)
+            return physics, places, *equilibrium(physics, mesh, shrunk(physics, mesh, y), hold), least
         except NotFound:
             if finer == FINER:
                 raise
 
 
-def on_nested(known, wanted, x, y, free, ends, segments, hold, finish, accuracy):
-    """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change; the coarsest mesh is a
-    finer one where that has no state.
+def on_nested(known, wanted, x, y, free, ends, segments, hold, least, finish, accuracy):
+    """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change; the coarsest,
+    doubled ``least`` times, is a finer one where that has no state.
     """
     shape = Shape(known, x, y, ends)
     nodes, edges = shape.graded(ends, free)
@@ -123,7 +130,7 @@ def on_nested(known, wanted, x, y, free, ends, segments, hold, finish, accuracy)
         meshes = Meshes([grid.finer(nodes, edges, 1 << level) for level in levels], free)
         return meshes, *equilibrium(physics, meshes, shape.on(physics, meshes), hold)
 
-    for coarsest in range(COARSEST + 1):
+    for coarsest in range(least, COARSEST + 1):
         levels, physics = range(coarsest, coarsest + LEVELS), copy(known)
         try:
             meshes, y, own = stand(physics, levels, shape, hold)
@@ -140,7 +147,7 @@ def on_nested(known, wanted, x, y, free, ends, segments, hold, finish, accuracy)
         table += list(rows)
         seen += [physics.kinks(segments, meshes.cells(k)) for k in range(len(levels))]
         values, bounds = extrapolate(table, units)
-        if np.max(bounds / units) <= accuracy or levels[-1] == FINEST:
+        if np.max(bounds / units) <= accuracy or levels[-1] >= FINEST:
             break
         last = meshes.nodes(len(levels) - 1)
         levels = [levels[-1] + 1]

@@ -186,6 +186,42 @@ def test_a_held_tube(kind):
     assert float(found["d_torque_d_rotation"]) == pytest.approx((beside[1] - beside[0]) / (2.0 * step), rel=1e-5)
 
 
+LONG = {
+    "alpha": 13.06613969031451,
+    "beta": 26.299283502409153,
+    "length": 0.9950600737283346,
+    "radius": 0.01166852719835675,
+    "wall": 1.664657960789709e-4,
+}
+TAPERED = {
+    "alpha": 7.059714181268543,
+    "beta": -11.874102784164279,
+    "length": 0.5597748193147407,
+    "radius": 0.006826927791755357,
+    "wall": [(0, 1.5228267558507828e-4), (1, 1.614363264055485e-4)],
+}
+WAVES = {
+    "85 radii": LONG
+    | {"c10": 108834.94485795904, "c01": 5536.907362012035, "pressure": 665888.7396256209}
+    | {"force": 49.159045084294036, "rotation": 1340.9616445059567},
+    "27 waves": TAPERED
+    | {"c10": 145916.95814355768, "c01": 24243.6825206693, "pressure": 483586.8925524441}
+    | {"force": 56.86025486497788, "rotation": -451.63443725920297},
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", WAVES)
+def test_a_long_tube_with_waves(kind):
+    """Maxwell's symmetries, where waves lie between the places of a coarse shape."""
+    found = solved("blocked_torque", WAVES[kind], derivatives=["pressure", "force", "rotation"])
+    assert int(found["status"]) == 0
+    by_rotation = np.degrees(float(found["d_deformed_length_d_rotation"]))
+    assert float(found["d_torque_d_force"]) == pytest.approx(-by_rotation, rel=1e-8)
+    by_pressure = float(found["d_deformed_length_d_pressure"])
+    assert float(found["d_volume_d_force"]) == pytest.approx(by_pressure, rel=1e-8)
+
+
 def test_a_locked_tube_of_nearly_one_family_grows_with_its_sizes():
     """Euler's theorem, where the middle stretches twentyfold."""
     design = {"alpha": 38.06, "beta": 40.97, "length": 0.318, "radius": 4.04e-3, "wall": 5.5e-4}

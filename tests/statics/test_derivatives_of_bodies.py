@@ -117,8 +117,8 @@ def judge(way, state, monkeypatch, names="all"):
     """Derivatives against differences of the same body's values, which are those of the solver within both bounds."""
     seen, shapes = {}, attach.shapes_of
 
-    def spied(asked, solve):
-        seen["asked"], seen["y"] = asked, shapes(asked, solve)
+    def spied(asked, solve, finer):
+        seen["asked"], seen["y"] = asked, shapes(asked, solve, finer)
         return seen["y"]
 
     monkeypatch.setattr(attach, "shapes_of", spied)
@@ -136,7 +136,8 @@ def judge(way, state, monkeypatch, names="all"):
         tube = body(changed)
         other = Asked(tube, (), 1e-8, *read_course(tube, 1e-8), asked.held, asked.unknown)
         other.x = asked.x
-        return other.state(own | ({name: own[name] + by} if name in own else {}), changed.get(asked.held), y)[0][:, 0]
+        loads = own | ({name: own[name] + by} if name in own else {})
+        return other.state(loads, changed.get(asked.held), lambda _: y)[0][:, 0]
 
     for name in asked.parameters:
         h = STEPS[name]
