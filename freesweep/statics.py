@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import status
-from .atlas.schema import attributes
 from .derivative.request import asked_of
 from .description import profiles
 from .description.actuator import Actuator
@@ -58,9 +57,9 @@ def lock(
     for name in (f"{what}_{family}" for what in ("fiber_tension", "least_tension") for family in FAMILIES):
         # the kernel's locked state is that of the pressure c10
         for one in (name, f"{name}_error"):
-            result[one] = result[one] / tube.material.c10
-            result[one].attrs = attributes(one)
-            result[one].attrs.update(units="N/Pa", long_name=f"{result[one].attrs['long_name']} per pressure")
+            scaled = result.variables[one]  # to put in another would take longer than to solve the tube
+            scaled.values = scaled.values / tube.material.c10
+            scaled.attrs |= {"units": "N/Pa", "long_name": f"{scaled.attrs['long_name']} per pressure"}
     return result
 
 

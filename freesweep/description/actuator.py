@@ -343,7 +343,8 @@ class Actuator:
             return resolved(self).scale[1]
         place = MODELS[self.model].fiber_radius if self.fiber_radius is None else self.fiber_radius
         if isinstance(place, str):
-            return fiber_place(place, self.radius, float(np.min(self.profile("wall").samples())))
+            inside = float(np.min(self.profile("wall").samples())) if SHARES[place] else 0.0
+            return fiber_place(place, self.radius, inside)
         return place
 
     @property

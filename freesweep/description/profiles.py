@@ -291,7 +291,14 @@ def _shares(width, *profiles, least=SAMPLES):
     missed, and where there is a callable so dense that nothing is that takes more than two gaps.
     """
     count = max(least, int(DENSE * width) if any(profile.function for profile in profiles) else 0)
-    return np.concatenate([[0.0], np.sort(np.arange(1, count) * GOLDEN % 1.0), [1.0]])
+    return _irregular(count)
+
+
+@functools.cache
+def _irregular(count):
+    places = np.concatenate([[0.0], np.sort(np.arange(1, count) * GOLDEN % 1.0), [1.0]])
+    places.flags.writeable = False
+    return places
 
 
 def _cut(breaks, missed):

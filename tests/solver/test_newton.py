@@ -8,21 +8,23 @@
 Half of each is solved: x from the end to the plane of symmetry at X = 1/2.
 """
 
-from math import cosh, exp, log, pi, sinh, sqrt, tanh
+from math import cosh, log, pi, sinh, sqrt, tanh
 
-import numba
 import numpy as np
 import pytest
+from plain import as_kernels_divide, plain
 from scipy.optimize import brentq
 
-from freesweep.solver.free.space import make_track
+from freesweep.solver.free import space
 from freesweep.solver.load import NO_CHANGE, Load
-from freesweep.solver.numerics import held, mesh, nested, newton
-from freesweep.solver.numerics.bordered import FOLLOWED, correct
-from freesweep.solver.numerics.continuation import advance, is_stable, last_alike, make_unit
+from freesweep.solver.numerics import bordered, continuation, held, mesh, nested, newton
+from freesweep.solver.numerics.bordered import FOLLOWED
 from freesweep.solver.numerics.path import Held, Path
 from freesweep.solver.numerics.properties_along import Tube
 
+bordered, continuation, held, mesh, nested, newton, space = plain(
+    bordered, continuation, held, mesh, nested, newton, space
+)  # so small a problem is solved in less time than compiled for
 X = 0.5
 FILM, BRATU = 0.0, 1.0
 BRATU_LIMIT = 3.513830719125162
@@ -30,33 +32,29 @@ REST = NO_CHANGE
 ALONG_MU = Load(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
-@numba.njit
 def at_point(y, v, cell, load):
     mu = load[3]
     if cell[0] == BRATU:
-        growth = mu * exp(y - 1.0)
+        growth = mu * np.exp(y - 1.0)
         return 1.0, growth, -v, growth, 0.0, -1.0
     root = sqrt(1.0 + v * v)
     return y - mu, -root, -(y - mu) * v / root, 0.0, -v / root, -(y - mu) / root**3
 
 
-@numba.njit
 def density(y, v, cell, load):
     if len(cell) > 4:  # and what is handed on from cell to cell: nothing
         return (*at_point(y, v, cell, load), cell[4])
     return at_point(y, v, cell, load)
 
 
-@numba.njit
 def conjugate(y, v, cell, load, direction):
     if cell[0] == BRATU:
-        growth = direction[3] * exp(y - 1.0)
+        growth = direction[3] * np.exp(y - 1.0)
         return growth, growth, 0.0, 0.0
     root = sqrt(1.0 + v * v)
     return direction[3] * root, 0.0, direction[3] * v / root, 0.0
 
 
-@numba.njit
 def integrands(y, v, cell, load):
     """Length of the axis, volume/pi, length of the meridian, area/(2 pi)."""
     root = sqrt(1.0 + v * v)
@@ -65,10 +63,15 @@ def integrands(y, v, cell, load):
     return 1.0, y * y, root, y * root, 0.0
 
 
-@numba.njit
 def scales(outputs, cell, load, length, tolerance):
     floor = 2e-13 + 10.0 * tolerance
     return (1.0, 1.0, 1.0, 1.0, 1.0, 1.0), (floor, floor, floor, floor, floor, floor)
+
+
+@pytest.fixture(autouse=True)
+def division():
+    with as_kernels_divide():
+        yield
 
 
 def catenoid(c):
@@ -202,23 +205,25 @@ def fold_of_bratu(cells, begin):
     x, y = start(cells)
     load = Load(0.0, 0.0, 0.0, begin, 0.0, 0.0, 0.0)
     assert on_one_mesh(x, y, BRATU, load)[0] == newton.CONVERGED
-    track = make_track(cells, True, False)
+    track = space.make_track(cells, True, False)
     track.x[:], track.y[:] = x, y
     path, own, work = Path(REST, ALONG_MU, 0.0, False), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
-    status, _, mu, slope = correct(
+    status, _, mu, slope = bordered.correct(
         density, conjugate, track, track.y, begin, cells, own, path, 1.0, track.tangent, work
     )
     assert status == FOLLOWED
-    slope, step = make_unit(track, cells, mu, slope, path), 0.01
+    slope, step = continuation.make_unit(track, cells, mu, slope, path), 0.01
     while True:
-        status, negative, ahead, next_slope, made, step = advance(
+        status, negative, ahead, next_slope, made, step = continuation.advance(
             density, conjugate, track, cells, own, path, mu, slope, step, work
         )
         assert status == FOLLOWED
-        if not is_stable(negative, next_slope, 1.0):
-            return last_alike(density, conjugate, track, cells, own, path, mu, slope, made, 1.0, True, work)[0]
+        if not continuation.is_stable(negative, next_slope, 1.0):
+            return continuation.last_alike(
+                density, conjugate, track, cells, own, path, mu, slope, made, 1.0, True, work
+            )[0]
         track.y[:], track.tangent[:] = track.next_y, track.next_tangent
-        mu, slope = ahead, make_unit(track, cells, ahead, next_slope, path)
+        mu, slope = ahead, continuation.make_unit(track, cells, ahead, next_slope, path)
 
 
 @pytest.mark.parametrize("begin", [0.5, 2.0, 3.4])
@@ -232,22 +237,24 @@ def test_the_fold_of_bratus_problem(begin):
 def test_where_the_conjugate_integral_is_held_a_way_goes_on_through_the_fold():
     """Its load rises to the fold's and falls again; all states are stable while it is held."""
     cells, work, own = 96, np.zeros((13, 98)), np.array([[BRATU, 0.0, 0.0]])
-    track = make_track(cells, True, True)
+    track = space.make_track(cells, True, True)
     track.x[:], track.y[:-1] = start(cells)
     load = Load(0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0)
     assert on_one_mesh(track.x, track.y[:-1], BRATU, load)[0] == newton.CONVERGED
     first, _ = held.hold(conjugate, track.x, track.y, cells, own, load, ALONG_MU, work[8])
     track.y[-1] = 2.0
     path = Path(REST, REST, 1.0, False, Held(ALONG_MU, first, 9.0 * first, True, 0))
-    status, _, mu, slope = correct(density, conjugate, track, track.y, 0.0, cells, own, path, 1.0, track.tangent, work)
-    slope, step, loads, shares = make_unit(track, cells, mu, slope, path), 0.01, [], []
+    status, _, mu, slope = bordered.correct(
+        density, conjugate, track, track.y, 0.0, cells, own, path, 1.0, track.tangent, work
+    )
+    slope, step, loads, shares = continuation.make_unit(track, cells, mu, slope, path), 0.01, [], []
     while mu < 1.0:
-        status, unstable, mu, slope, _, step = advance(
+        status, unstable, mu, slope, _, step = continuation.advance(
             density, conjugate, track, cells, own, path, mu, slope, step, work
         )
         assert (status, unstable) == (FOLLOWED, 0)
         track.y[:], track.tangent[:] = track.next_y, track.next_tangent
-        slope = make_unit(track, cells, mu, slope, path)
+        slope = continuation.make_unit(track, cells, mu, slope, path)
         loads.append(track.y[-1])
         shares.append(mu)
     top = int(np.argmax(loads))
