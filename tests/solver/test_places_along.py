@@ -12,7 +12,8 @@ BONDED = Load(*LOAD[:2], (1.0, 0.5, 0.0), *LOAD[3:])
 
 
 def seen(x, alpha, beta, squares):
-    return np.array([x, alpha, beta, squares])
+    """What is seen where the pulls are the multipliers, and the wall is stretched as it is wide."""
+    return np.array([x, alpha, beta, alpha, beta, squares, squares])
 
 
 @pytest.mark.parametrize(("load", "pushes"), [(LOAD, False), (BONDED, True)])
@@ -21,7 +22,7 @@ def test_a_pull_that_falls_linearly_ends_where_it_is_zero(load, pushes):
     alpha, beta = 0.73 - x, x - 1.26  # slack at the far end, and at the near one
     if not pushes:  # of a slack family nothing is told but that it is
         alpha, beta = (np.where(one > 0.0, one, -1e-300) for one in (alpha, beta))
-    found = summed(seen(x, alpha, beta, 1.0 + 0.0 * x), len(x), load)
+    found = summed(seen(x, alpha, beta, 1.0 + 0.0 * x), len(x), load)[0]
     assert found[0] == pytest.approx((2.0 - 0.73) / 2.0, abs=1e-12)
     assert found[2] == pytest.approx(1.26 / 2.0, abs=1e-12)
     assert (found[1], found[3]) == pytest.approx((places.DOUBT * 0.1 / 2.0,) * 2)
@@ -30,15 +31,15 @@ def test_a_pull_that_falls_linearly_ends_where_it_is_zero(load, pushes):
 def test_all_slack_and_all_taut_are_told_without_doubt_and_faint_pulls_with_all_of_it():
     x = np.linspace(0.0, 1.0, 11)
     alpha, beta = -1e-300 + 0.0 * x, 1.0 + 0.0 * x
-    assert summed(seen(x, alpha, beta, 1.0 + 0.0 * x), len(x), LOAD)[:4] == pytest.approx((1.0, 0.0, 0.0, 0.0))
+    assert summed(seen(x, alpha, beta, 1.0 + 0.0 * x), len(x), LOAD)[0] == pytest.approx((1.0, 0.0, 0.0, 0.0))
     faint = 0.1 * places.FAINT + 0.0 * x
-    assert summed(seen(x, faint, beta, 1.0 + 0.0 * x), len(x), LOAD)[:2] == pytest.approx((0.0, 1.0))
+    assert summed(seen(x, faint, beta, 1.0 + 0.0 * x), len(x), LOAD)[0][:2] == pytest.approx((0.0, 1.0))
 
 
 def test_one_place_with_a_pull_among_slack_ones_may_be_slack_up_to_it():
     x = np.linspace(0.0, 1.0, 11)
     alpha = np.where(np.arange(11) == 5, 1.0, -1e-300)
-    share, doubt = summed(seen(x, alpha, 1.0 + 0.0 * x, 1.0 + 0.0 * x), len(x), LOAD)[:2]
+    share, doubt = summed(seen(x, alpha, 1.0 + 0.0 * x, 1.0 + 0.0 * x), len(x), LOAD)[0][:2]
     assert share == pytest.approx(0.8)
     assert doubt == pytest.approx(0.2)
 
@@ -46,14 +47,26 @@ def test_one_place_with_a_pull_among_slack_ones_may_be_slack_up_to_it():
 def test_what_lies_above_the_widest_place_is_told():
     x = np.linspace(0.0, 1.0, 11)
     squares = 4.0 - (x - 0.53) ** 2
-    most, missed = summed(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, squares), len(x), LOAD)[4:]
-    assert most < 4.0 <= most + missed
-    at_end = summed(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, 4.0 - x), len(x), LOAD)[4:]
-    assert at_end == (4.0, 0.0)
+    for most, missed in summed(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, squares), len(x), LOAD)[3:]:
+        assert most < 4.0 <= most + missed
+    assert summed(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, 4.0 - x), len(x), LOAD)[3:] == ((4.0, 0.0), (4.0, 0.0))
+
+
+@pytest.mark.parametrize("load", [LOAD, BONDED])
+def test_what_lies_below_the_least_pull_is_told(load):
+    x = np.linspace(0.0, 1.0, 11)
+    pull = 0.7 + (x - 0.53) ** 2
+    _, (least, missed), other, _, _ = summed(seen(x, pull, 1.0 + x, 1.0 + 0.0 * x), len(x), load)
+    assert least - missed <= 0.7 < least
+    assert other == (1.0, 0.0)
 
 
 def test_two_meshes_tell_the_bound():
-    numbers, bounds = places.together((0.30, 0.01, 0.0, 0.0, 4.0004, 0.0), (0.32, 0.02, 0.0, 0.0, 4.0016, 0.0))
+    nothing = (0.0, 0.0)
+    fine = (0.30, 0.01, 0.0, 0.0), (0.7001, 0.0), nothing, (4.0004, 0.0), (9.0006, 0.0)
+    coarse = (0.32, 0.02, 0.0, 0.0), (0.7004, 0.0), nothing, (4.0016, 0.0), (9.0024, 0.0)
+    numbers, bounds = places.together(fine, coarse, LOAD)
     assert numbers[:2] == (0.30, 0.0)
     assert bounds[:2] == pytest.approx((0.03, 0.0))
-    assert abs(numbers[places.OUTER] - 2.0) < bounds[places.OUTER] < 4e-4  # errors that fall by four
+    for number, exact in ((places.LEAST_ALPHA, 0.7), (places.OUTER, 2.0), (places.STRETCH, 3.0)):  # errors that fall by four
+        assert abs(numbers[number] - exact) < bounds[number] < 4e-4

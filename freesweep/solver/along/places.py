@@ -20,7 +20,7 @@ ROWS = PLACE, ALPHA, BETA, PULL_ALPHA, PULL_BETA, SQUARE, STRAIN = range(7)
 DOUBT = 0.5  # of the way between two places: how far off the end of a pull may be
 FAINT = 1e-6  # of the load: less of a pull may be none
 CURVED = 0.125  # of a second difference: by how much a curve passes the largest of its samples
-FALLEN = 1.1  # times what two meshes differ by: what the finer one's extrapolation may be off, if errors fall by half
+FALLEN = 1.5  # times what two meshes differ by: what the finer one may be off, if errors fall by less than half
 ROUNDING = 1e-12
 SAMPLES = 32  # of a wall, along each of its segments
 SMALLEST = 1e-30
