@@ -51,34 +51,49 @@ class _TooLong(Exception):
 _clock = _Clock()
 
 
-def at_once(states, awaited, entry, *arguments) -> bool:
-    """Whether the call ``entry(*arguments)`` of an entry point, for so many states, was done in plain Python.
+def at_once(states, awaited, entry, *arguments, instead=None) -> bool:
+    """Whether the call ``entry(*arguments)`` of an entry point, for so many states, was done without the compiler: in plain
+    Python, or by the machine code of this very entry point, if there is any. ``instead``: what the ``awaited`` entry point
+    would be called with, if it is another one.
 
     False, with all arguments as they were, where the ``awaited`` entry point's machine code is at hand, where many states
     are asked for or those asked for take long, fewer and less long if that code need only be loaded, and where plain Python
-    raises an error at a number that kernels take for infinite. What serves a tube serves no body: code is that for the kinds
-    of the arguments, where the entry point itself is awaited.
+    raises an error at a number that kernels take for infinite. What serves a tube serves no body, and what serves one
+    family of rubbers not the other: code is that for the kinds of the arguments.
     """
     if not isinstance(awaited, Dispatcher):
         return False
-    kinds = tuple(map(entry.typeof_pyval, arguments)) if awaited is entry else None
-    if awaited.signatures and (kinds is None or kinds in awaited.overloads):
+    kinds = _kinds(awaited, arguments if instead is None else instead)
+    if kinds in awaited.overloads:
         return False
-    kept = _is_kept(entry, kinds) if kinds else is_at_hand(awaited)
+    kept = _is_kept(awaited, kinds)
     most, seconds = (FEWER, LESS) if kept else (FEW, SECONDS)
     spent = _spent.setdefault((awaited, kinds), [0, 0.0])
     spent[0] += states
-    if spent[0] <= most and spent[1] < seconds and _is_done(entry, arguments, spent, seconds):
-        return True
+    if spent[0] <= most and spent[1] < seconds:
+        if entry is not awaited and not kept and _has_code(entry, _kinds(entry, arguments)):
+            entry(*arguments)
+            return True
+        if _is_done(entry, arguments, spent, seconds):
+            return True
     if spent[0] < NEVER and not kept:
         _tell(_folder(awaited))
     spent[0] = NEVER
     return False
 
 
+def _kinds(entry, arguments):
+    return tuple(map(entry.typeof_pyval, arguments))
+
+
 def _tell(folder):
     where = "once for each version" if folder else "in each process, for there is no folder to keep them in"
     print(f"freesweep: compiling the kernels, {where}: half a minute to three", file=sys.stderr)
+
+
+def _has_code(entry, kinds):
+    """Whether there is machine code for arguments of these kinds, in this process or on disk."""
+    return kinds in entry.overloads or _is_kept(entry, kinds)
 
 
 def _is_kept(entry, kinds):

@@ -54,10 +54,9 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     pressures, limp = next_to_nothing(problems, first, pressures)
     drawn = len(stations) > 0 and wall_columns(problems) == PHYSICAL  # vectors draw no profiles of such tubes
     if lanes and len(tube[0]) == 0 and not drawn and not config.DISABLE_JIT:
-        from .lanes.free import solve_lanes
-
         calls = _scalar_calls(problems, first, pressures, tube, accuracy, stations, found)
-        if not (soon and all(at_once(len(call[4]), solve_lanes, follow_many, *call) for call in calls)):
+        solve, given = _vector_call(problems, stations)
+        if not (soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls)):
             _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
     for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
         left = np.count_nonzero(call[11] == PENDING)
@@ -127,6 +126,16 @@ def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, fo
                 tubes, owners, pressures, stretches, rows[alike], *kind, *fineness, accuracy, *found[:4],
                 *(drawn if len(kind) == 1 else ()),
             )  # fmt: skip
+
+
+def _vector_call(problems, stations):
+    """The entry point by which vectors solve such problems as the first, and arguments of the kinds that it is given."""
+    (_, solve, kind, _), whole, states = next(_kinds(problems[:1])), np.empty(0, np.int64), np.empty((0, OUTPUTS))
+    fineness = next(iter(tries(problems, 1, problems)))[1:]
+    drawn = () if len(kind) > 1 else (NOTHING, np.empty((0, FIELDS, 0))) if len(stations) else (None, None)
+    return solve, (
+        problems, whole, NOTHING, NOTHING, whole, *kind, *fineness, 1.0, states, states, whole, whole, *drawn
+    )  # fmt: skip
 
 
 def tries(problems, base, alike):

@@ -69,7 +69,18 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
     if lanes and len(tube[0]) == 0 and problems.shape[1] == PROBLEM_SIZE and not config.DISABLE_JIT:
         from .lanes.held import seek_lanes
 
-        if not (soon and at_once(count, seek_lanes, hold_many, *next(scalar()))):
+        given = (
+            problems,
+            targets,
+            first,
+            pressures,
+            first,
+            True,
+            _constants(problems[0]),
+            *found[:4],
+            *np.empty((4, 0)),
+        )
+        if not (soon and at_once(count, seek_lanes, hold_many, *next(scalar()), instead=given)):
             _hold_lanes(problems, targets, kind, first, pressures, int(tube[1][-1]), accuracy, found)
     for call in scalar():
         left = np.count_nonzero(call[STATUS] == PENDING)
@@ -120,14 +131,17 @@ def refuse(problem, pressures, others, targets, kind, status):
     some = np.flatnonzero(pressures > 0.0)
     problems = np.repeat(problem[None], count, axis=0)
     problems[:, TORQUE if kind == HELD_LENGTH else FORCE] = others
-    constants = YEOH if np.any(problem[[SECOND, THIRD]] != 0.0) else MOONEY_RIVLIN
-    found, each = _pending(problems, count), np.arange(count)
+    found, each, constants = _pending(problems, count), np.arange(count), _constants(problem)
     seek_lanes(
         problems, 0.5 * targets, each, pressures, some, kind == HELD_LENGTH, constants, *found[:4],
         *np.empty((4, count)),
     )  # fmt: skip
     none = (found.status == COMPRESSED) | (found.status == HELD_IMPOSSIBLE)
     status[none] = found.status[none]
+
+
+def _constants(problem):
+    return YEOH if np.any(problem[[SECOND, THIRD]] != 0.0) else MOONEY_RIVLIN
 
 
 def _hold(problems, targets, length_held, owners, pressures, rows, constants, base, accuracy, found):

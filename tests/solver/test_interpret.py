@@ -152,7 +152,7 @@ def test_time_in_which_others_had_the_processor_does_not_count(entry, monkeypatc
 def test_only_what_vectors_leave_counts(monkeypatch):
     """Many states of which vectors solve all but one: plain Python is asked for one."""
     asked = []
-    monkeypatch.setattr(batch, "at_once", lambda states, awaited, *_: asked.append((states, awaited)) or False)
+    monkeypatch.setattr(batch, "at_once", lambda states, awaited, *_, **__: asked.append((states, awaited)) or False)
 
     def solve_all_but_one(_, __, ___, ____, rows, _____, ______, _______, values, bounds, status, *________):
         status[rows[1:]] = 0
@@ -204,3 +204,29 @@ def test_machine_code_for_other_kinds_of_arguments_is_not_at_hand(entry, capsys)
     entry(other)
     assert not interpret.at_once(1, entry, entry, other)
     assert not capsys.readouterr().err
+
+
+def test_vectors_are_not_compiled_for_a_few_states_of_another_rubber(entry, capsys):
+    """The scalar kernel's machine code, which serves every rubber, solves them meanwhile."""
+    awaited, other = numba.njit(invert), np.ones(1, np.float32)
+    awaited(np.ones(1))
+    numbers = np.array([4.0])
+    assert not interpret.at_once(1, awaited, entry, numbers, instead=(np.ones(1),))
+    assert interpret.at_once(1, awaited, entry, numbers, instead=(other,))
+    entry(np.ones(1))
+    assert interpret.at_once(1, awaited, entry, numbers, instead=(other,))
+    assert numbers == 4.0
+    assert len(awaited.signatures) == 1
+    assert not capsys.readouterr().err
+    assert not interpret.at_once(interpret.FEW, awaited, entry, numbers, instead=(other,))
+
+
+def test_the_vectors_awaited_are_those_of_the_rubber(monkeypatch):
+    kinds = []
+    monkeypatch.setattr(batch, "at_once", lambda *_, instead=None: kinds.append(instead) or True)
+    problems = np.zeros((2, 11))
+    problems[1, 9] = 0.1
+    for k in (0, 1):
+        batch.walk_all(problems[k : k + 1], np.array([0, 1]), np.ones(1), batch.uniform(24), 1e-6, soon=True)
+    vectors = [given for given in kinds if given is not None]
+    assert [len(given[5]) for given in vectors] == [1, 3]

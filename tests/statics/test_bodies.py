@@ -58,7 +58,9 @@ def plain(monkeypatch):
     """States of membranes without the compiler: there is no machine code of bodies for all tests."""
     for states in (batch, hold_batch, interpret):
         monkeypatch.setattr(
-            states, "at_once", lambda _, __, entry, *arguments: interpret._is_done(entry, arguments, [0, 0.0], 300.0)
+            states,
+            "at_once",
+            lambda _, __, entry, *arguments, **___: interpret._is_done(entry, arguments, [0, 0.0], 300.0),
         )
 
 

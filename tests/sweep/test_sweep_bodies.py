@@ -57,7 +57,7 @@ def plain():
         for states, entry in ((batch, "follow_many"), (hold_batch, "hold_many")):
             twin = interpret._twin(getattr(states, entry).py_func)
             patch.setattr(states, entry, lambda *arguments, twin=twin: _quietly(twin, arguments))
-            patch.setattr(states, "at_once", lambda *_: False)
+            patch.setattr(states, "at_once", lambda *_, **__: False)
         yield
 
 
