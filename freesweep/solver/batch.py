@@ -11,12 +11,12 @@ from .along.profile import FIELDS
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
-from .physics.wall import LOOSE, TAUT
 from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
 from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
 NOTHING = np.empty(0)
+PIECES = 1, 2, 4
 FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
@@ -119,11 +119,11 @@ def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, fo
     for carry, solve, kind, some in _kinds(problems):
         carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, cosines)
         carried = some[owners] & asked & np.isfinite(stretches)
-        for tubes, *fineness in tries(problems, base, problems[some]):
+        for fineness in tries(problems, base):
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_steepness(cosines[rows]), kind="stable")
             solve(
-                tubes, owners, pressures, stretches, rows[alike], *kind, *fineness, accuracy, *found[:4],
+                problems, owners, pressures, stretches, rows[alike], *kind, fineness, accuracy, *found[:4],
                 *(drawn if len(kind) == 1 else ()),
             )  # fmt: skip
 
@@ -131,28 +131,17 @@ def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, fo
 def _vector_call(problems, stations):
     """The entry point by which vectors solve such problems as the first, and arguments of the kinds that it is given."""
     (_, solve, kind, _), whole, states = next(_kinds(problems[:1])), np.empty(0, np.int64), np.empty((0, OUTPUTS))
-    fineness = next(iter(tries(problems, 1, problems)))[1:]
     drawn = () if len(kind) > 1 else (NOTHING, np.empty((0, FIELDS, 0))) if len(stations) else (None, None)
     return solve, (
-        problems, whole, NOTHING, NOTHING, whole, *kind, *fineness, 1.0, states, states, whole, whole, *drawn
+        problems, whole, NOTHING, NOTHING, whole, *kind, 1, 1.0, states, states, whole, whole, *drawn
     )  # fmt: skip
 
 
-def tries(problems, base, alike):
-    """``(problems, cells of the base mesh)`` of one try after the other, and for physical tubes the most doublings: of those
-    whose fibers go slack some need many, and a vector is at work as long as any of its states. The loose fibers of tubes
-    that are ``alike`` are first taken for taut: that is far cheaper, and right of half of the states.
+def tries(problems, base):
+    """How fine one try after the other is: cells of the base mesh; of physical tubes, which need none, in how many pieces
+    each part of the way is summed in which the same fibers pull.
     """
-    from .lanes.nested import FEW_DOUBLINGS, LANE_DOUBLINGS
-
-    if wall_columns(problems) != PHYSICAL:
-        return (problems, base), (problems, FINER * base)
-    finer = (problems, base, FEW_DOUBLINGS), (problems, base, LANE_DOUBLINGS), (problems, FINER * base, LANE_DOUBLINGS)
-    if alike[0, THREADS] != LOOSE:
-        return finer
-    taut = problems.copy()
-    taut[:, THREADS] = TAUT
-    return (taut, base, FEW_DOUBLINGS), *finer
+    return PIECES if wall_columns(problems) == PHYSICAL else (base, FINER * base)
 
 
 def _kinds(problems):

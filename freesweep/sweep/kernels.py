@@ -129,9 +129,7 @@ def compile_idle(words):
         if "carry_physical" in words:
             carry_physical(problems, first, numbers, whole, constants, 1, states, states, whole, numbers, numbers)
         if "solve_physical" in words:
-            solve_physical(
-                problems, whole, numbers, numbers, whole, constants, 1, BASE_CELLS, 1, 1.0, states, states, whole, whole
-            )
+            solve_physical(problems, whole, numbers, numbers, whole, constants, 1, 1, 1.0, states, states, whole, whole)
         if "physical_states" in words:
             compile_physical(constants)
         if "carry_lanes" in words:

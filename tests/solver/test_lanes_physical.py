@@ -1,4 +1,4 @@
-"""Vectors of tubes with thick walls and loose fibers against the scalar kernels, the source's membrane, and finer meshes."""
+"""Vectors of tubes with thick walls and loose fibers against the scalar kernels, the source's membrane, and finer rules."""
 
 import numpy as np
 import pytest
@@ -44,30 +44,17 @@ def test_vectors_agree_with_the_scalar_kernels_within_the_bounds(part, monkeypat
 
 
 @pytest.mark.parametrize("part", PARTS)
-def test_bounds_hold_against_far_finer_meshes(part, only_vectors):
-    thick, loose = PARTS[part]
-    problems, first, pressures = designs(50 if loose else 120, 31)  # loose ones are dear
-    problems = tubes(problems, thick, loose)
+def test_bounds_hold_against_finer_rules(part, only_vectors, monkeypatch):
+    problems, first, pressures = designs(150, 31)
+    problems = tubes(problems, *PARTS[part])
     found = walked(problems, first, pressures)
-    exact = batch.walk_all(problems, first, pressures, batch.uniform(96), 1e-9)
+    monkeypatch.setattr(batch, "PIECES", (8,))
+    exact = walked(problems, first, pressures)
     both = (found.status == OK) & (exact.status == OK)
     assert both.mean() > 0.8
     missed = np.abs(found.values - exact.values)[both] > (found.bounds + exact.bounds)[both]
-    assert missed.any(axis=1).mean() < 0.004
-
-
-def test_a_state_found_with_fibers_taken_for_taut_is_that_of_loose_ones(only_vectors, monkeypatch):
-    problems, first, pressures = designs(40, 11)
-    problems, tries = tubes(problems, True, True), batch.tries
-    found = walked(problems, first, pressures)
-    monkeypatch.setattr(batch, "tries", lambda *given: tries(*given)[1:])
-    loose = walked(problems, first, pressures)
-    both = (found.status == OK) & (loose.status == OK)
-    taut = both & (found.slack == 0)
-    assert 0.2 < taut.mean() < 0.8
-    assert np.array_equal(found.slack[both], loose.slack[both])
-    assert np.array_equal(found.values[both & ~taut], loose.values[both & ~taut])
-    assert np.all(np.abs(found.values - loose.values)[taut] <= (found.bounds + loose.bounds)[taut])
+    assert missed.any(axis=1).mean() < 0.003
+    assert np.median(found.bounds[both][:, :5], axis=0).max() < 1e-7
 
 
 def test_a_wall_without_thickness_and_bonded_fibers_are_the_source_s_tube(only_vectors):

@@ -5,6 +5,7 @@ the fibers' extension changes, or fibers are loose, the secant finds the place o
 """
 
 from ...jit import kernel
+from ..cells import nothing_yet
 from ..guide import FAR_FROM, STRAY
 from ..physics import lagrangian
 from ..physics.uniform_tube import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
@@ -18,46 +19,76 @@ SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernel
 
 
 @kernel
-def seek(here, cell, start, end, low, high, first, last, todo):
-    """``(L_yy, L_vv)`` where the stretches ``here`` are equilibria on a way along which L_y, ``first`` at its share ``low``
-    and ``last`` at ``high``, is not linear: see :func:`..physics.uniform_tube.curvature_at`.
+def kept(where, new, old):
+    """What the next look may start from, of the lanes that took part in the last."""
+    return (
+        select(where, new[0], old[0]), select(where, new[1], old[1]), select(where, new[2], old[2]),
+        select(where, new[3], old[3]), select(where, new[4], old[4]), select(where, new[5], old[5]),
+        select(where, new[6], old[6]), select(where, new[7], old[7]), select(where, new[8], old[8]),
+    )  # fmt: skip
+
+
+@kernel
+def seek(here, cell, start, end, low, high, t, steep, near, todo):
+    """``(L_yy, L_vv, t, steep, what is handed on)`` where the stretches ``here`` are equilibria on a way, between its shares
+    ``low`` and ``high``, along which L_y is not linear: from a guess of the share t, and of how L_y changes with it. See
+    :func:`..physics.uniform_tube.curvature_at`.
     """
-    close = CLOSE * max(abs(first), abs(last))
-    L_yy, L_vv = spread(1.0), spread(-1.0)
-    for i in range(SECANTS):
-        t = min(max(low - first * (high - low) / (last - first), low), high) if i % 2 == 0 else 0.5 * (low + high)
-        _, L_y, _, now_yy, _, now_vv = lagrangian.density(here, 0.0, cell, between(start, end, t))
-        there = todo & (abs(L_y) <= close)
+    zero = spread(0.0)
+    t = select(todo & ~((t >= low) & (t <= high)), 0.5 * (low + high), t)
+    L_yy, L_vv, before, L_before = spread(1.0), spread(-1.0), t, zero
+    for _ in range(SECANTS):
+        (_, L_y, _, now_yy, _, now_vv), then = lagrangian.density_beside(here, zero, cell, between(start, end, t), near)
+        near = kept(todo, then, near)
+        moved = todo & (abs(t - before) > 0.0)
+        rise = (L_y - L_before) / select(moved, t - before, 1.0)
+        steep = select(moved & (rise * steep > 0.0), rise, steep)
+        there = todo & (abs(L_y) <= CLOSE * abs(steep) * (high - low))
         L_yy, L_vv = select(there, now_yy, L_yy), select(there, now_vv, L_vv)
         todo = todo & ~there
         if not some(todo):
             break
-        above = L_y * last > 0.0
-        first, last = select(above, first, L_y), select(above, L_y, last)
-        low, high = select(above, low, t), select(above, t, high)
-    return L_yy, L_vv
+        above = L_y * steep > 0.0
+        low, high = select(todo & ~above, t, low), select(todo & above, t, high)
+        before, L_before = t, L_y
+        ahead = t - L_y / steep
+        t = select(todo, select((ahead > low) & (ahead < high), ahead, 0.5 * (low + high)), t)
+    return L_yy, L_vv, t, steep, near
 
 
 @kernel
 def scan(u, change, samples, cell, start, end, low, high, half, asked):
     """Where the load rises at all so many ``samples`` of the way, and between them; smallest and largest -L_yy."""
-    risen, least, most = asked, spread(HUGE), spread(0.0)
+    risen, least, most, zero = asked, spread(HUGE), spread(0.0), spread(0.0)
     first, second = spread(0.0), spread(0.0)
     drawn, before, after = lagrangian.drawn_in(cell, end), between(start, end, low), between(start, end, high)
     bent = asked if leaves_choice(end.wall) else asked & (abs(end.gamma - start.gamma) > 0.0)
+    t, t_before, steep, near = low, low, zero, nothing_yet(zero)
     i = 0
     while True:
         within = asked & (samples + 1.0 > i)
         if not some(within):
             break
-        here = u + change * min(i / samples, 1.0)
-        _, low_y, _, low_yy, _, low_vv = lagrangian.density(here, 0.0, cell, before)
-        _, high_y, _, high_yy, _, high_vv = lagrangian.density(here, 0.0, cell, after)
-        share = low_y / (low_y - high_y)
-        L_yy, L_vv = low_yy + share * (high_yy - low_yy), low_vv + share * (high_vv - low_vv)
-        if some(bent):
-            bent_yy, bent_vv = seek(here, cell, start, end, low, high, low_y, high_y, bent & within)
-            L_yy, L_vv = select(bent, bent_yy, L_yy), select(bent, bent_vv, L_vv)
+        here, L_yy, L_vv = u + change * min(i / samples, 1.0), spread(1.0), spread(-1.0)
+        if some(within & ~bent):
+            _, low_y, _, low_yy, _, low_vv = lagrangian.density(here, 0.0, cell, before)
+            _, high_y, _, high_yy, _, high_vv = lagrangian.density(here, 0.0, cell, after)
+            share = low_y / (low_y - high_y)
+            L_yy, L_vv = low_yy + share * (high_yy - low_yy), low_vv + share * (high_vv - low_vv)
+        own = bent & within
+        if some(own):
+            if i == 0:
+                (_, high_y, _, _, _, _), near = lagrangian.density_beside(here, zero, cell, after, near)
+                (_, low_y, _, bent_yy, _, bent_vv), near = lagrangian.density_beside(here, zero, cell, before, near)
+                steep = (high_y - low_y) / (high - low)
+            else:
+                share = min(i / samples, 1.0)
+                ahead = 2.0 * t - t_before if i > 1 else low + share * (high - low)
+                guess = select(share >= 1.0, high, ahead)
+                t_before = select(own, t, t_before)
+                bent_yy, bent_vv, found, rise, near = seek(here, cell, start, end, low, high, guess, steep, near, own)
+                t, steep = select(own, found, t), select(own, rise, steep)
+            L_yy, L_vv = select(own, bent_yy, L_yy), select(own, bent_vv, L_vv)
         far = L_yy * half * half < FAR * FAR * L_vv
         slope = -L_yy
         risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
@@ -93,14 +124,17 @@ def rising(u, trial, cell, start, end, low, high, half, asked):
 @kernel
 def follow(u, cell, start, end, half, asked):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the lanes that arrived."""
-    t, step = spread(0.0), spread(FIRST_STEP)
-    todo, done = asked, mask_of(0)
+    t, step, zero = spread(0.0), spread(FIRST_STEP), spread(0.0)
+    todo, done, near = asked, mask_of(0), nothing_yet(zero)
     while some(todo):
         ahead = min(t + step, 1.0)
         trial, before, least, most = u, spread(HUGE), spread(0.0), spread(HUGE)
         going, arrived = todo, mask_of(0)
         for _ in range(ITERATIONS):
-            room, L_y, _, L_yy, _, _ = lagrangian.density(trial, 0.0, cell, between(start, end, ahead))
+            (room, L_y, _, L_yy, _, _), then = lagrangian.density_beside(
+                trial, zero, cell, between(start, end, ahead), near
+            )
+            near = kept(going, then, near)
             going = going & (room > 0.0) & (L_yy < 0.0)
             least, most = select(L_y > 0.0, trial, least), select(L_y > 0.0, most, trial)
             new = trial - L_y / L_yy

@@ -11,12 +11,10 @@ from ...jit import entry_point, kernel
 from ..load import Load
 from ..numerics.properties_along import Tube
 from ..physics import lagrangian
-from ..physics.wall import TAUT, may_go_slack
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
-from . import corners, first_guess, layer, nested
+from . import first_guess, layer, nested, quadrature, slack_ends
 from .pack import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
-from .slack import see
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
 
@@ -90,33 +88,29 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
 
 
 @kernel
-def worth(x, y, n, cell, load, asked, work, more, wall):
-    """Of the lanes ``asked`` for, with the first shape ``y`` on a base mesh, those whose fibers are what they are taken for;
-    where they may go slack, nodes gather.
-    """
-    if len(wall) == 1:
-        return asked
-    if may_go_slack(wall):
-        corners.gather(x, y, n, cell, load, work, more[0], more[1], more[2])
-    return asked & taken_right(*see(x, y, n, cell, load, work), wall) if wall[2] == TAUT else asked
-
-
-@kernel
-def taken_right(alpha, beta, wall):
-    """Where fibers that were taken for taut have not to push."""
-    return mask_of(-1) if len(wall) == 1 or wall[2] != TAUT else ~(alpha | beta)
+def seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start):
+    """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too."""
+    for lane in range(WIDTH):
+        row = order[group + min(lane, count - 1)]
+        rows[lane] = row
+        enter(lane, problems[owners[row]], columns)
+        start[0, lane] = stretches[row]
+        if pressures[row] == np.inf:
+            lock(lane, columns)
+        else:
+            columns[PRESSURE, lane] = pressures[row]
 
 
 @kernel
 def solve(
-    problems, owners, pressures, stretches, order, constants, walls, layers, base, most, accuracy, values, bounds, status,
-    slack, stations, profiles,
+    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack, stations,
+    profiles,
 ):  # fmt: skip
-    """Solve the rows in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]`` and has the uniform
-    stretch ``stretches[i]``. Other arguments as of :func:`follow_many`; rows that a lane could not do keep the status
-    that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
+    """Solve the rows of the source's tubes in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]``
+    and has the uniform stretch ``stretches[i]``. Other arguments as of :func:`follow_many`; rows that a lane could not do
+    keep the status that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
     """
-    size = (base << most) + 2
+    size = (base << nested.LANE_DOUBLINGS) + 2
     space = aligned(26, size)
     meshes, work, table, out, found = space[:7], space[7:14], space[14:22], space[22:24], space[24:]
     shape, small = aligned(2, base + 1), aligned(3, COLUMNS)
@@ -131,24 +125,15 @@ def solve(
     rows = np.zeros(WIDTH, np.int64)
     for group in range(0, len(order), WIDTH):
         count = min(WIDTH, len(order) - group)
-        for lane in range(WIDTH):
-            row = order[group + min(lane, count - 1)]
-            rows[lane] = row
-            enter(lane, problems[owners[row]], columns)
-            start[0, lane] = stretches[row]
-            if pressures[row] == np.inf:
-                lock(lane, columns)
-            else:
-                columns[PRESSURE, lane] = pressures[row]
-        cell, _, load = loads(columns, constants, walls, layers)
+        seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start)
+        cell, _, load = loads(columns, constants, SOURCE, 1)
         u, half = get(start, 0), get(columns, HALF)
         layer.begin(u, cell, load, half, base, work, meshes, x, y)
-        asked = worth(x, y, base, cell, load, mask_of((1 << count) - 1), work, meshes, load.wall)
         met, alpha, beta = nested.solve(
-            x, y, base, u, cell, load, half, asked, most, accuracy, meshes, work, table, sizes, found,
-            out, kept, doublings,
+            x, y, base, u, cell, load, half, mask_of((1 << count) - 1), accuracy, meshes, work, table, sizes, found, out,
+            kept, doublings,
         )  # fmt: skip
-        met = met & first_guess.within(y, base, u, cell, load, half) & taken_right(alpha, beta, load.wall)
+        met = met & first_guess.within(y, base, u, cell, load, half)
         done = bits(met)
         if stations is not None:
             done = draw_profiles(done, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles)
@@ -174,17 +159,26 @@ def solve_lanes(
 ):  # fmt: skip
     """:func:`solve` the source's tubes."""
     solve(
-        problems, owners, pressures, stretches, order, constants, SOURCE, 1, base, nested.LANE_DOUBLINGS, accuracy, values,
-        bounds, status, slack, stations, profiles,
+        problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack, stations,
+        profiles,
     )  # fmt: skip
 
 
 @entry_point
 def solve_physical(
-    problems, owners, pressures, stretches, order, constants, layers, base, most, accuracy, values, bounds, status, slack,
+    problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack,
 ):  # fmt: skip
-    """:func:`solve` physical tubes, with ``most`` doublings of the base mesh."""
-    solve(
-        problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, base, most, accuracy, values, bounds,
-        status, slack, None, None,
-    )  # fmt: skip
+    """Solve rows of physical tubes as :func:`solve` does the source's, by :mod:`quadrature`, in so many ``pieces``."""
+    room, ends, numbers = aligned(15, quadrature.LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
+    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
+    columns, start, scratch = small[0], small[1], small[2]
+    rows, counts = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
+    for group in range(0, len(order), WIDTH):
+        count = min(WIDTH, len(order) - group)
+        seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start)
+        cell, _, load = loads(columns, constants, PHYSICAL, layers)
+        met, alpha, beta = quadrature.solve(
+            get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, ends[:5],
+            ends[5:], edges, numbers[:2], scratch, counts, numbers[2:],
+        )  # fmt: skip
+        record(bits(met), bits(alpha), bits(beta), rows, numbers[2:], values, bounds, status, slack)

@@ -1,54 +1,36 @@
 """Nested meshes of :mod:`freesweep.solver.numerics.nested` for a vector of designs: the same values, the same bounds.
 
 Three meshes suffice where bounds that are more generous by EARLY meet the accuracy. A lane whose bounds meet the accuracy
-keeps its numbers; the others go on to finer meshes. A lane that needs more than the ``most`` doublings, or fails, is left
+keeps its numbers; the others go on to finer meshes. A lane that needs more than LANE_DOUBLINGS, or fails, is left
 to another try or the scalar kernels.
 """
 
 from ...jit import kernel
-from ..cells import behind, nothing_yet
 from ..numerics import finest
 from ..numerics.nested import FAINT, SAFETY, SMALLEST_TOLERANCE, TINY
 from ..numerics.newton import SMALL_STEP
 from ..physics import lagrangian
 from . import mesh, middle, newton
-from .slack import look_along
+from .slack import pushing
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
 OUTPUTS = 5  # length, volume, twist, energy, middle stretch
 MIDDLE = 4
 LANE_DOUBLINGS = 6  # of the base mesh
-FEW_DOUBLINGS = 3  # suffice for all but a few of a hundred physical tubes
 LARGEST_TOLERANCE = 1e-7  # of Newton's last step; what it leaves is in the bounds
 EARLY = 2.2  # of bounds that no third extrapolation confirms
 STILL = 1e-3  # radii: if the last node moves more, the layer is not resolved there, and all outputs err the more
 
 
 @kernel
-def differ(kind, other, wall):
-    """Where two cells are not of one kind, of which the source's tubes have one."""
-    if len(wall) == 1:
-        return mask_of(0)
-    return abs(kind - other) > 0.5
-
-
-@kernel
 def integrate(x, y, n, cell, load, row):
-    """Integrals over the tube on one mesh, and the stretch in the middle; where the kind of cell, in which the density is
-    smooth, changes along it.
-    """
-    broken, before, near = mask_of(0), 0.0, nothing_yet(spread(0.0))
+    """Integrals over the tube on one mesh, and the stretch in the middle."""
     length, volume, twist, energy = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     x_left, y_left = get(x, 0), get(y, 0)
     for j in range(n):
         x_right, y_right = get(x, j + 1), get(y, j + 1)
         h = x_right - x_left
-        s, v, t, w, kind, near = lagrangian.integrands(
-            0.5 * (y_left + y_right), (y_right - y_left) / h, behind(cell, h, near), load
-        )
-        if j > 0:
-            broken = broken | differ(kind, before, load.wall)
-        before = kind
+        s, v, t, w, _ = lagrangian.integrands(0.5 * (y_left + y_right), (y_right - y_left) / h, cell, load)
         length = length + h * s
         volume = volume + h * v
         twist = twist + h * t
@@ -59,11 +41,10 @@ def integrate(x, y, n, cell, load, row):
     put(row, 2, twist)
     put(row, 3, energy)
     put(row, 4, y_left)
-    return broken
 
 
 @kernel
-def extrapolate(table, level, cell, load, length, error, missed, broken, sizes, values, bounds):
+def extrapolate(table, level, cell, load, length, error, missed, sizes, values, bounds):
     """Fourth-order values and bounds from the last four rows, or the first three; returns the largest scaled bound,
     rounding left out.
     """
@@ -75,17 +56,16 @@ def extrapolate(table, level, cell, load, length, error, missed, broken, sizes, 
     put(sizes, 2, scale[2])
     put(sizes, 3, scale[3])
     put(sizes, 4, scale[4])
-    order, before = select(broken, spread(1.0), spread(15.0)), select(broken, spread(4.0), spread(225.0))
     change, share, largest = spread(TINY), spread(0.0), spread(0.0)
     for k in range(OUTPUTS):
         change = change + FAINT / OUTPUTS * abs(get(row, k) - get(table[level - 1], k)) / get(sizes, k)
     for k in range(OUTPUTS):
         b, c, d = get(table[level - 2], k), get(table[level - 1], k), get(row, k)
         second, third = (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-        estimate = abs(third - second) / order
+        estimate = abs(third - second) / 15.0
         if level > 2:
             first = (4.0 * b - get(table[level - 3], k)) / 3.0
-            estimate = max(estimate, abs(second - first) / before)
+            estimate = max(estimate, abs(second - first) / 225.0)
         put(values, k, third)
         put(bounds, k, estimate)
         share = max(share, estimate / (abs(d - c) + get(sizes, k) * change))
@@ -144,16 +124,14 @@ def keep(ready, count, error, coarsest_x, coarsest_y, coarse_x, coarse_y, x, y, 
 
 
 @kernel
-def solve(
-    x, y, n, u, cell, load, length, active, most, accuracy, meshes, work, table, sizes, found, out, kept, doublings
-):
+def solve(x, y, n, u, cell, load, length, active, accuracy, meshes, work, table, sizes, found, out, kept, doublings):
     """Solve the ``active`` lanes, whose uniform tubes have stretch ``u``; ``x`` and ``y`` (n + 1, WIDTH) are the graded base
     mesh and a first guess, replaced by its solution.
 
-    ``meshes`` is scratch (7, > n 2^most, WIDTH), ``work`` (7, as many, WIDTH). ``out`` (2, > OUTPUTS, WIDTH) takes values
-    and bounds of the lanes that are met, of physical tubes those of :mod:`..along.places` behind them; ``found`` (2, ...) is
-    scratch. ``kept`` (WIDTH, 5, ...), unless None, takes their finest meshes as :func:`..along.profile.at_stations`
-    reads them, with ``doublings``. Returns masks: ``(met, alpha fibers would have to push, beta fibers would)``.
+    ``meshes`` is scratch (7, > n 2^LANE_DOUBLINGS, WIDTH), ``work`` (7, as many, WIDTH). ``out`` (2, > OUTPUTS, WIDTH) takes
+    values and bounds of the lanes that are met; ``found`` (2, ...) is scratch. ``kept`` (WIDTH, 5, ...), unless None, takes
+    their finest meshes as :func:`..along.profile.at_stations` reads them, with ``doublings``. Returns masks: ``(met, alpha
+    fibers would have to push, beta fibers would)``.
     """
     # the energy at a low pressure is little beside the work whose error it takes: more than the accuracy of the rest
     tolerance = max(min(accuracy * accuracy, LARGEST_TOLERANCE), SMALLEST_TOLERANCE)
@@ -189,7 +167,7 @@ def solve(
     put(table[0], MIDDLE, middle.stretch(half_y, n // 2, n, u, long, share, room))
     met, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
     level, count = 1, n
-    while some(todo) and level <= most:
+    while some(todo) and level <= LANE_DOUBLINGS:
         level += 1
         mesh.split(x, n, 1 << (level - 1), fine_x)
         foresee(half_x, half_y, here_x, here_y, count, fine_x, fine_y, work[0], work[1])
@@ -209,24 +187,20 @@ def solve(
             )
             converged, error = converged | again, select(again, last, error)
         todo = todo & converged
-        broken = integrate(here_x, here_y, count, cell, load, table[level])
+        integrate(here_x, here_y, count, cell, load, table[level])
         put(table[level], MIDDLE, middle.stretch(here_y, count, n, u, long, share, room))
         if kept is not None:
             if level == 2:
                 continue  # profiles want more of the nodes than the integrals do
-        largest = extrapolate(
-            table, level, cell, load, length, max(error, coarser), missed, broken, sizes, found[0], found[1]
-        )
+        largest = extrapolate(table, level, cell, load, length, max(error, coarser), missed, sizes, found[0], found[1])
         ready = todo & (largest <= accuracy)
         if level == 2:
-            ready = ready & ~broken & resolved & (abs(get(here_y, count) - get(half_y, count // 2)) < STILL)
+            ready = ready & resolved & (abs(get(here_y, count) - get(half_y, count // 2)) < STILL)
         for k in range(OUTPUTS):
             put(out[0], k, select(ready, get(found[0], k), get(out[0], k)))
             put(out[1], k, select(ready, get(found[1], k), get(out[1], k)))
         if some(ready):
-            alpha_here, beta_here = look_along(
-                here_x, here_y, count, half_x, half_y, cell, load, work, out, OUTPUTS, ready
-            )
+            alpha_here, beta_here = pushing(here_y, count, cell, load)
             alpha, beta = alpha | (alpha_here & ready), beta | (beta_here & ready)
             if kept is not None:
                 put(sizes, 0, max(error, coarser))

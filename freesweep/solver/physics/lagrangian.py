@@ -16,6 +16,7 @@ from ...jit import kernel
 from ..cells import as_expected, expecting, passed_on, point_of
 from ..load import fibers_alone
 from . import body, membrane, over_cell, physical
+from .first_integral import at_level, level_of, summed  # noqa: F401
 from .membrane import (  # noqa: F401
     DRAWN_IN,
     ENERGY_ROUNDING,
@@ -83,6 +84,21 @@ def _density_at(y, v, point, load, wall):
     if len(wall) == 1:
         return body.of_partials(point, membrane.density(y, w, tube, own))
     return body.of_partials(point, physical.density(y, w, tube, own))
+
+
+@kernel
+def density_beside(y, v, point, load, near):
+    """:func:`density` of a tube that is the same all along, looked for from what a neighbour handed on; and what is handed
+    on.
+    """
+    return _density_beside(y, v, point, load, near, load.wall)
+
+
+@kernel
+def _density_beside(y, v, point, load, near, wall):
+    if len(wall) == 1:
+        return membrane.density(y, v, point, load), near
+    return physical.density_beside(y, v, point, load, near)
 
 
 @kernel

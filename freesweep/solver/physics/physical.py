@@ -99,8 +99,8 @@ def place_beside(y, v, T, cell, load, near):
         return room, G_1, psi, zero, zero, alpha, beta, slopes(y, G_1, psi, area, load.rubber, wall)
     low, widest, _, _ = spread_of(y, v, cell[0], cell[1], load.gamma * load.gamma, wall)
     room = min(widest - low, T)
-    known, kind, G_1, psi, dG, dpsi, W = beside(
-        y, v, cell[0], cell[1], load.gamma * load.gamma, max(T, NO_ROOM), load.m, area, load.rubber, wall, near
+    known, kind, G_1, psi, dG, dpsi, W, _ = beside(
+        y, v, cell[0], cell[1], load.gamma * load.gamma, (max(T, NO_ROOM),), load.m, area, load.rubber, wall, near
     )
     alpha, beta = is_taut(kind)
     if some(isnt(known)):
@@ -198,6 +198,13 @@ def partials(at, y, v, load):
 def density(y, v, cell, load):
     """``(room, L_y, L_v, L_yy, L_yv, L_vv)``."""
     return partials(state(y, v, cell, load, nothing_yet(0.0 * y)), y, v, load)
+
+
+@kernel
+def density_beside(y, v, cell, load, near):
+    """:func:`density` from a neighbour's, and what is handed on."""
+    at = state(y, v, cell, load, near)
+    return partials(at, y, v, load), handed_on(at, y, v, load)
 
 
 @kernel

@@ -26,7 +26,7 @@ from math import sqrt
 
 from ...jit import kernel
 from ..either import isnt, select, some
-from .wall import LOOSE, NONE, ONE_BONDED, has_two_families, narrowest, slopes
+from .wall import LOOSE, NONE, ONE_BONDED, has_two_families, narrowest, slopes, stored
 
 ITERATIONS = 60  # five do nearly always
 CLOSE = 1e-7  # of the unit of what is sought: the next step of Newton's method is its square
@@ -159,13 +159,24 @@ def is_taut(kind):
 
 
 @kernel
-def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
-    """Newton's method for G and psi from what a neighbour handed on, ``near`` = (which families are taut, or -1 where
-    nothing is known, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v). A family that would have to push goes slack, a slack one
-    that is overreached goes taut; where none does any more, this is the maximum.
+def under(pull, y, G_1, psi, m, area, rubber, wall):
+    """The resultant that is meant by ``pull``: (T,), that one; (level, level), the one under which the density of a uniform
+    tube, ``T sqrt(G) - W + m psi``, has that level. Of all G and psi it is least at those that the fibers take under it:
+    what they are off counts by its square.
+    """
+    if len(pull) == 1:
+        return pull[0]
+    return max((pull[0] + stored(y, G_1, psi, area, rubber, wall) - m * psi) / axial(1.0 + G_1, 0.0 * y), NO_ROOM)
 
-    Returns ``(known, which families are taut, G - 1, psi, dG, dpsi, slopes of W)``. The last change, which is too small to
-    look once more, is not yet made.
+
+@kernel
+def beside(y, v, H, D, gg, pull, m, area, rubber, wall, near):
+    """Newton's method for G and psi from what a neighbour handed on, ``near`` = (which families are taut, or -1 where
+    nothing is known, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), under a ``pull`` (:func:`under`). A family that would have
+    to push goes slack, a slack one that is overreached goes taut; where none does any more, this is the maximum.
+
+    Returns ``(known, which families are taut, G - 1, psi, dG, dpsi, slopes of W, the resultant)``. The last change, which is
+    too small to look once more, is not yet made.
     """
     stretch, low, still = gg - 1.0, max(v * v, narrowest(y, wall)) - 1.0, 0.0 * y
     spare_alpha, spare_beta = spares(wall)
@@ -178,6 +189,7 @@ def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
     psi = select(both, both_psi, psi)
     known, bonded = y > 0.0, y == y if wall[2] == ONE_BONDED else y < y
     dpsi, dG, going, W = still, still, known, (still, still, still, still, still, still, still, still, still)
+    T = still + pull[0]
     for _ in range(NEARBY):
         known = known & (isnt(going) | (G_1 > low))
         going = going & known
@@ -185,7 +197,7 @@ def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
             break
         W = slopes(y, G_1, psi, area, rubber, wall)
         _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = W
-        s, before = axial(1.0 + G_1, v), kind
+        s, before, T = axial(1.0 + G_1, v), kind, under(pull, y, G_1, psi, m, area, rubber, wall)
         a, b = multipliers(y, s, psi, both, both, H, D, T, m, W_G, W_p)
         total = 0.5 * T / s - W_G
         kind = select(
@@ -219,7 +231,7 @@ def beside(y, v, H, D, gg, T, m, area, rubber, wall, near):
         both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
         to_G_1 = select(both, both_G_1, select(more & none, reach(y, to_psi, t, stretch), to_G_1))
         psi, G_1 = select(going, select(both, both_psi, to_psi), psi), select(going, to_G_1, G_1)
-    return known & isnt(going), kind, G_1, psi, dG, dpsi, W
+    return known & isnt(going), kind, G_1, psi, dG, dpsi, W, T
 
 
 @kernel

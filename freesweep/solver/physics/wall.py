@@ -27,7 +27,6 @@ from . import mooney_wall
 from .membrane import excess, yeoh_slope
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
-TAUT = -1.0  # two loose families, both taken for taut; who does so looks whether they are
 MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
 MISSED = 1e-8  # of the energy: what a pole at the axis may leave
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
@@ -65,12 +64,6 @@ def may_go_slack(wall):
     if len(wall) == 1:
         return False
     return (wall[2] == LOOSE) | (wall[2] == ONE_LOOSE)
-
-
-@kernel
-def cannot_push(wall):
-    """Whether fibers that would have to push are slack, or were wrongly taken for taut."""
-    return may_go_slack(wall) | (wall[2] == TAUT)
 
 
 @kernel

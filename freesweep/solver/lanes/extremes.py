@@ -1,0 +1,47 @@
+"""The largest of what is known at the places of Clenshaw and Curtis, for a vector of designs.
+
+By the angle of which a place is the cosine, places lie evenly, and what is smooth along the tube is smooth, and even about
+both ends. Beside the largest place goes a polynomial through five of them; by what it rises more, or less, than a parabola
+through three it may be wrong, and by a little of what bends it.
+"""
+
+from ...jit import kernel
+from .vector import get, select
+
+CAUTION, BENT = 2.0, 0.05  # times what two curves differ by, and times the fourth difference
+
+
+@kernel
+def beside(row, k, last):
+    """The number of place k, mirrored at both ends."""
+    return get(row, last - abs(last - abs(k)))
+
+
+@kernel
+def rises(before, here, after, slope, bend, third, fourth):
+    """``(by what a curve of these differences rises to its peak beside a place, what may be wrong of it)``."""
+    flat, own = 0.5 * (after - before), before - 2.0 * here + after
+    peak = (here >= before) & (here >= after) & (own < 0.0)
+    simple = select(peak, flat * flat / select(peak, -2.0 * own, 1.0), 0.0)
+    bent = peak & (bend < 0.0)
+    on = select(bent, -slope / select(bent, bend, 1.0), 0.0)
+    on = min(max(on, -1.0), 1.0)
+    lift = on * (slope + on * (bend / 2.0 + on * (third / 6.0 + on * fourth / 24.0)))
+    lift = select(bent, max(lift, 0.0), simple)
+    return lift, select(peak, CAUTION * abs(lift - simple) + BENT * abs(fourth), 0.0)
+
+
+@kernel
+def widest(row, last, most, missed):
+    """``(most, missed)``: the largest number so far, with those of a ``row`` up to ``last``, and what may be wrong of it."""
+    for k in range(last + 1):
+        first, before, here = beside(row, k - 2, last), beside(row, k - 1, last), get(row, k)
+        after, second = beside(row, k + 1, last), beside(row, k + 2, last)
+        lift, wrong = rises(
+            before, here, after, (8.0 * (after - before) - second + first) / 12.0,
+            (16.0 * (after + before) - 30.0 * here - second - first) / 12.0,
+            0.5 * (second - first) - (after - before), second + first - 4.0 * (after + before) + 6.0 * here,
+        )  # fmt: skip
+        wider = here + lift > most
+        most, missed = select(wider, here + lift, most), select(wider, wrong, missed)
+    return most, missed

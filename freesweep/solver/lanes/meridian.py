@@ -1,0 +1,132 @@
+"""Half a tube that is the same all along, told by its middle, and one place of it, for a vector of designs.
+
+Toward the uniform stretch u the layer at an end falls as exp(-depth), to meet that of the other end in the middle::
+
+    y = u - (u - 1) (z + q^2/z)/(1 + q^2),    z = exp(-depth),    q = exp(-depth of the middle)
+
+The level of the first integral is that of the middle's uniform tube, and tells the resultant R = T/cosine of the meridian's
+angle (:mod:`..physics.first_integral`) at any other stretch. With it x along the tube, and all that is summed along it, are
+integrals of smooth functions of the depth ::
+
+    dx/d(depth) = dy/d(depth) / (sqrt(G) sine),   sine^2 = (R - T)(R + T)/R^2
+
+between the places where families go slack. Near the middle R - T has no digits: there it follows from its slope, which has
+twice as many. Depths are counted from 0 to 1, finer where the layer begins.
+"""
+
+from math import exp, sqrt
+from typing import NamedTuple
+
+from ...jit import kernel
+from ..cells import nothing_yet
+from ..physics import lagrangian
+from .vector import WIDTH, get, put, select, spread
+
+DEEPEST = 24.0  # where nothing is left of the layer
+EVEN, LEAST_EVEN = 6.0, 0.15  # depth up to which equal steps do; the least share of equal steps
+CERTAIN = 1e-8  # share of R from which R - T is more than rounding
+APART = 1e-6  # of 2 q |u - 1|: difference of two stretches that has digits
+MEETS = 1e-9  # of q: as near to the middle as counts as there
+LEAST_RATE = 1e-12
+
+
+class Middle(NamedTuple):
+    """Uniform stretch u, rate of the layer, depth of the middle, q, 1/(1 + q^2); stretch and level there, and how x grows
+    with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall.
+    """
+
+    u: float
+    rate: float
+    depth: float
+    q: float
+    whole: float
+    y: float
+    level: float
+    per_depth: float
+    rise: float
+    bend: float
+    s: float
+    psi: float
+    energy: float
+
+
+class Place(NamedTuple):
+    """Stretch and :class:`..physics.first_integral.Level` of a place, cosine of the meridian's angle there, and how x grows
+    with the share t of the depth.
+    """
+
+    y: float
+    at: tuple
+    cosine: float
+    per_share: float
+
+
+@kernel
+def fallen(depth, scratch):
+    """exp(-depth)."""
+    put(scratch, 0, depth)
+    for lane in range(WIDTH):
+        scratch[0, lane] = exp(-scratch[0, lane])
+    return get(scratch, 0)
+
+
+@kernel
+def deep(t, depth):
+    """``(depth at the share t, its derivative)`` of the ``depth`` of the middle."""
+    even = max(1.0 - depth / EVEN, LEAST_EVEN)
+    return depth * t * (even + (1.0 - even) * t * t), depth * (even + 3.0 * (1.0 - even) * t * t)
+
+
+@kernel
+def middle(u, depth, cell, load, scratch):
+    """The :class:`Middle` at that depth."""
+    zero = spread(0.0)
+    (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
+    _, G_1, _, _ = lagrangian.level_of(u, cell, load, near)
+    q, s_u = fallen(depth, scratch), sqrt(1.0 + G_1)
+    whole = 1.0 / (1.0 + q * q)
+    away = (1.0 - u) * 2.0 * q * whole
+    y = u + away
+    (_, L_y, _, own_yy, _, _), near = lagrangian.density_beside(y, zero, cell, load, near)
+    level, G_1, psi, energy = lagrangian.level_of(y, cell, load, near)
+    far = abs(away) > APART
+    per_away = 1.0 / select(far, away, 1.0)
+    T, s = load.p * y * y + load.f, sqrt(1.0 + G_1)
+    mean_yy, s_y = select(far, L_y * per_away, L_yy), select(far, (s - s_u) * per_away, 0.0)  # on the way from u
+    rise = -mean_yy * away / s
+    return Middle(
+        u, sqrt(max(L_yy / L_vv, LEAST_RATE)), depth, q, whole, y, level, sqrt(max(-T / (s * mean_yy), 0.0)), rise,
+        -(own_yy + 2.0 * rise * s_y) / s, s, psi, energy,
+    )  # fmt: skip
+
+
+@kernel
+def look(t, mid, cell, load, near, scratch):
+    """The :class:`Place` at the share t of the depth."""
+    depth, per_share = deep(t, mid.depth)
+    z = fallen(depth, scratch)
+    inside = z - mid.q > MEETS * mid.q
+    over = mid.whole * select(inside, (z - mid.q) / z, 0.0)
+    on = (1.0 - mid.u) * over * (z - mid.q)  # from the middle's stretch
+    y = mid.y + on
+    at = lagrangian.at_level(y, mid.level, cell, load, near)
+    T = load.p * y * y + load.f
+    beyond = at.R - T
+    near_by = on * (2.0 / 3.0 * mid.rise + at.rise / 3.0 + mid.bend * on / 6.0)
+    beyond = select(beyond > CERTAIN * at.R, beyond, max(near_by, 0.0))
+    sine = sqrt(beyond * (beyond + 2.0 * T)) / (T + beyond)
+    turned = inside & (sine > 0.0)
+    rise = abs(1.0 - mid.u) * over * (z + mid.q)  # of y by the depth
+    per_depth = select(turned, rise / (sqrt(1.0 + at.G_1) * select(turned, sine, 1.0)), mid.per_depth)
+    return Place(y, at, T / (T + beyond), per_depth * per_share)
+
+
+@kernel
+def handed_on(y, at, near):
+    """What the next place may start from: (kind, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), rises as from the one before."""
+    zero = spread(0.0)
+    alike = (at.kind == near[0]) & (abs(y - near[1]) > APART)
+    per_y = 1.0 / select(alike, y - near[1], 1.0)
+    psi_y = select(alike, (at.psi - near[3]) * per_y, zero)
+    G_y = select(alike, (at.G_1 - near[6]) * per_y, zero)
+    return select(at.room > 0.0, at.kind, -1.0), y, zero, at.psi, psi_y, zero, at.G_1, G_y, zero

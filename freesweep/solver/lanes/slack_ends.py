@@ -1,0 +1,91 @@
+"""Where along half a tube families of fibers go slack, or would have to push, for a vector of designs.
+
+A family pulls at one place and not at the next: between them its pull is followed to where it ends, by the regula falsi of
+Anderson and Bjorck. What it lacks of being taut goes on behind its pull, by another slope.
+"""
+
+from ...jit import kernel
+from ..along.slack import NOTHING, TENSIONLESS
+from ..physics.wall import may_go_slack
+from .meridian import look
+from .vector import WIDTH, get, select, some, spread
+
+MOST = 8  # ends in half a tube; more are left to finer parts
+STEPS, CLOSE = 24, 1e-9  # of the search, and how exactly [of the depth] an end is found
+ENDS = LEFT, RIGHT, BEFORE, BEHIND, FAMILY = range(5)  # what brackets an end
+
+
+@kernel
+def pulls(at, load):
+    """By how much both families pull more than what counts as none; not more than 0 where they are slack, or push."""
+    least = NOTHING if may_go_slack(load.wall) else -TENSIONLESS * (load.p + abs(load.f))
+    return at.a - least, at.b - least
+
+
+@kernel
+def bracket(first, width, places, pull, family, last, seen, ends, counts, starts):
+    """Write where the ``pull`` of a family changes its sign, at the ``places`` 0 to ``last`` of a part of that ``width``, to
+    ``ends`` (5, MOST, WIDTH), of which each lane has ``counts`` (WIDTH,); what was ``seen`` (4, ...) before to ``starts``.
+    """
+    for lane in range(WIDTH):
+        for k in range(last):
+            here, there = pull[k, lane], pull[k + 1, lane]
+            if (here > 0.0) != (there > 0.0) and counts[lane] < MOST:
+                j = counts[lane]
+                ends[LEFT, j, lane], ends[RIGHT, j, lane] = first + width * places[k], first + width * places[k + 1]
+                ends[BEFORE, j, lane], ends[BEHIND, j, lane], ends[FAMILY, j, lane] = here, there, family
+                for i in range(4):
+                    starts[i, j, lane] = seen[i, k, lane]
+                counts[lane] = j + 1
+
+
+@kernel
+def passed_over(pull, lengths, last):
+    """How long the places are beside which a pull may have ended, and begun again, or the other way round, unseen."""
+    total = spread(0.0)
+    for k in range(1, last):
+        before, here, after = get(pull, k - 1), get(pull, k), get(pull, k + 1)
+        bend, half = before - 2.0 * here + after, 0.5 * (after - before)
+        alike = ((before > 0.0) & (here > 0.0) & (after > 0.0)) | ((before < 0.0) & (here < 0.0) & (after < 0.0))
+        turns = alike & (abs(here) <= abs(before)) & (abs(here) <= abs(after)) & (bend * here > 0.0)
+        vertex = here - half * half / select(turns, 2.0 * bend, 1.0)
+        total = total + select(turns & (vertex * here < 0.0), get(lengths, k), 0.0)
+    return total
+
+
+@kernel
+def search(ends, j, going, mid, cell, load, near, scratch):
+    """``(t, lost)``: the share of the depth at which the end j of the lanes that are ``going`` lies, each within its
+    bracket, and where it was not found.
+    """
+    left, right = get(ends[LEFT], j), get(ends[RIGHT], j)
+    before, behind, of_alpha = get(ends[BEFORE], j), get(ends[BEHIND], j), get(ends[FAMILY], j) < 0.5
+    t = select(going, right + 1.0, 1.0)
+    for _ in range(STEPS):
+        new = right - behind * (right - left) / select(going, behind - before, 1.0)
+        new = select((new > left) & (new < right), new, 0.5 * (left + right))
+        moved = abs(new - t)
+        t = select(going, new, t)
+        going = going & (moved > CLOSE)
+        if not some(going):
+            break
+        alpha, beta = pulls(look(t, mid, cell, load, near, scratch).at, load)
+        pull = select(of_alpha, alpha, beta)
+        same = pull * behind > 0.0
+        share = 1.0 - pull / select(same, behind, before)
+        share = select(share > 0.0, share, 0.5)
+        before, behind = select(same, before * share, pull), select(same, pull, behind * share)
+        left, right = select(same, left, t), select(same, t, right)
+    return t, going
+
+
+@kernel
+def sort(edges, counts):
+    """Put each lane's edges 1 to its count in order."""
+    for lane in range(WIDTH):
+        for j in range(2, counts[lane] + 1):
+            t, i = edges[j, lane], j
+            while i > 1 and edges[i - 1, lane] > t:
+                edges[i, lane] = edges[i - 1, lane]
+                i -= 1
+            edges[i, lane] = t

@@ -1,0 +1,128 @@
+"""A place along a physical tube that is the same all along, from the level of its first integral.
+
+Where nothing varies along x, ``L - v L_v`` is the same at every place. With the resultant R = T/cosine of the meridian's
+angle, in place of T, G and psi are those of a uniform tube (the slope enters by R alone), and ::
+
+    level = R sqrt(G) - e W(y, G, psi) + m psi,    R^2 - T^2 = (T v/s)^2 = L_v^2
+
+The density of a uniform tube grows with its resultant by sqrt(G), and R follows from it without any derivative. Where G and
+psi are not yet known exactly, R is least at those that are right, so that Newton's method for them (:mod:`relaxed`) goes on
+as if R were given.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+from ...jit import kernel
+from ..either import isnt, select, some
+from .physical import LEAST, NO_ROOM, kind_of, place, place_beside
+from .relaxed import beside, both_reach, is_taut, lacking, multipliers, taut_twist, under
+from .wall import least_square, may_go_slack, slopes, stored
+
+LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it meets
+
+
+class Level(NamedTuple):
+    """What is known of a place: room, the resultant R, how R - T rises with y; G - 1, twist rate; which families are taut,
+    and their multipliers, of a slack one, below 0, what it lacks of being taut.
+    """
+
+    room: float
+    R: float
+    rise: float
+    G_1: float
+    psi: float
+    kind: float
+    a: float
+    b: float
+
+
+@kernel
+def levelled(y, level, cell, load):
+    """``(R, G - 1, psi, taut alpha, taut beta)``, whatever the neighbours are. The density is convex in R: from the second
+    step on Newton's method comes from above.
+    """
+    area, m, wall = load.e * cell[2], load.m, load.wall
+    R = max(load.p * y * y + load.f, NO_ROOM)
+    _, G_1, psi, alpha, beta = place(y, 0.0 * y, R, cell, load)
+    going = y > 0.0
+    for _ in range(LEVELS):
+        better = under((level, level), y, G_1, psi, m, area, load.rubber, wall)
+        change = abs(better - R)
+        R = select(going, better, R)
+        going = going & (change > CLOSE * R)
+        if not some(going):
+            break
+        _, wide, twist, with_alpha, with_beta = place(y, 0.0 * y, R, cell, load)
+        G_1, psi = select(going, wide, G_1), select(going, twist, psi)
+        alpha, beta = (going & with_alpha) | (isnt(going) & alpha), (going & with_beta) | (isnt(going) & beta)
+    return R, G_1, psi, alpha, beta
+
+
+@kernel
+def at_level(y, level, cell, load, near):
+    """The :class:`Level` at one point, from what a neighbour handed on."""
+    H, D, gg, wall, m = cell[0], cell[1], load.gamma * load.gamma, load.wall, load.m
+    area, still = load.e * cell[2], 0.0 * y
+    if wall[2] > 0.0:
+        known, kind, G_1, psi, dG, dpsi, W, R = beside(
+            y, still, H, D, gg, (level, level), m, area, load.rubber, wall, near
+        )
+        alpha, beta = is_taut(kind)
+        lost = isnt(known)
+        if some(lost):
+            other, wide, twist, with_alpha, with_beta = levelled(y, level, cell, load)
+            R, G_1, psi = select(lost, other, R), select(lost, wide, G_1), select(lost, twist, psi)
+            dG, dpsi = select(lost, still, dG), select(lost, still, dpsi)
+            alpha, beta = (lost & with_alpha) | (known & alpha), (lost & with_beta) | (known & beta)
+            V = slopes(y, G_1, psi, area, load.rubber, wall)
+            W = (
+                select(lost, V[0], W[0]), select(lost, V[1], W[1]), select(lost, V[2], W[2]), select(lost, V[3], W[3]),
+                select(lost, V[4], W[4]), select(lost, V[5], W[5]), select(lost, V[6], W[6]), select(lost, V[7], W[7]),
+                select(lost, V[8], W[8]),
+            )  # fmt: skip
+    else:
+        psi, G_1 = taut_twist(y, H, gg), max(both_reach(y, H, D, gg, gg - 1.0), LEAST - 1.0)
+        R, W = (
+            under((level, level), y, G_1, psi, m, area, load.rubber, wall),
+            slopes(y, G_1, psi, area, load.rubber, wall),
+        )
+        dG, dpsi, alpha, beta = still, still, y == y, y == y
+    W_y, W_G, W_p, _, W_yG, W_yp, W_GG, W_Gp, _ = W
+    s = sqrt(max(1.0 + G_1, NO_ROOM))
+    i = 1.0 / s
+    a, b = multipliers(y, s, psi, alpha, beta, H, D, R, m, W_G, W_p)
+    ta, tb = H + D + psi, H - D + psi
+    turned, squared = a * ta + b * tb, a * ta * ta + b * tb * tb
+    # the changes that are not made yet do something where one family is taut, or none
+    t = select(alpha, ta, tb)
+    along, K_GG = select(alpha | beta, 2.0 * y * t * t, 0.0), -0.25 * R * i * i * i - W_GG
+    L_y = 2.0 * load.p * y * s - W_y - 2.0 * y * squared
+    L_y = L_y + (load.p * y * i - W_yG - along * K_GG) * dG + (along * W_Gp - W_yp - 4.0 * y * turned) * dpsi
+    more, both = K_GG * dG - W_Gp * dpsi, alpha & beta
+    G_1, psi = G_1 + dG, psi + dpsi
+    lack_a, lack_b = lacking(y, G_1, psi, H, D, gg, wall) if may_go_slack(wall) else (still, still)
+    a = select(alpha, a + select(both, 0.0, more), -max(lack_a, 0.0))
+    b = select(beta, b + select(both, 0.0, more), -max(lack_b, 0.0))
+    G = 1.0 + G_1
+    room = min(min(G - LEAST, y), min(least_square(y, max(G, NO_ROOM), wall), load.p * y * y + load.f))
+    return Level(room, R, -L_y / s, G_1, psi, kind_of(alpha, beta), a, b)
+
+
+@kernel
+def level_of(y, cell, load, near):
+    """``(level, G - 1, twist rate, energy W of the wall)`` where the meridian has no slope."""
+    T = load.p * y * y + load.f
+    _, G_1, psi, dG, dpsi, _, _, _ = place_beside(y, 0.0 * y, T, cell, load, near)
+    G_1, psi = G_1 + dG, psi + dpsi
+    level = (
+        T * sqrt(max(1.0 + G_1, NO_ROOM)) - stored(y, G_1, psi, load.e * cell[2], load.rubber, load.wall) + load.m * psi
+    )
+    return level, G_1, psi, stored(y, G_1, psi, cell[2], load.rubber, load.wall)
+
+
+@kernel
+def summed(at, y, cosine, cell, load):
+    """``(s, y^2 s, psi, W)`` of a place, whose meridian has that cosine."""
+    s = sqrt(max(1.0 + at.G_1, NO_ROOM)) * cosine
+    return s, y * y * s, at.psi, stored(y, at.G_1, at.psi, cell[2], load.rubber, load.wall)
