@@ -25,18 +25,20 @@ def as_model(problems, thick, threads) -> np.ndarray:
 
 
 def models(chosen, accuracy, cells, clocked) -> list:
-    """Seconds for each state of a sample by each model, times the source's, and the share of states that vectors solve;
-    ``clocked(run)`` gives seconds and what ``run`` returned.
+    """Seconds for each state of a sample by each model, along the pressures as in a sweep, times the source's, and the share
+    of states that vectors solve; ``clocked(run)`` gives seconds and what ``run`` returned.
     """
     from ..solver.batch import walk_by_vectors
 
-    designs, first, pressures = chosen.listed()
-    problems, found = np.repeat(designs, np.diff(first), axis=0), []
+    problems, first, pressures = chosen.listed()
+    found = []
     for name, (thick, threads) in MODELS.items():
         rows = problems if name == SOURCE else as_model(problems, thick, threads)
-        walk_by_vectors(rows[:1], pressures[:1], cells, accuracy)  # compiles, or loads what is compiled
-        seconds, walks = clocked(lambda rows=rows: walk_by_vectors(rows, pressures, cells, accuracy))
-        found.append({"model": name, "seconds": seconds / len(rows), "solved": float(np.mean(walks.status == OK))})
+        walk_by_vectors(
+            rows[:1], first[:2], pressures[: first[1]], cells, accuracy
+        )  # compiles, or loads what is compiled
+        seconds, walks = clocked(lambda rows=rows: walk_by_vectors(rows, first, pressures, cells, accuracy))
+        found.append({"model": name, "seconds": seconds / len(pressures), "solved": float(np.mean(walks.status == OK))})
     for row in found:
         row["times_source"] = row["seconds"] / found[0]["seconds"]
     return found

@@ -129,7 +129,8 @@ def _by_vectors(points, energy, model):
     design = dict(zip(COLUMNS, points.T))
     rows = problem_rows(design, energy, model.is_thick, model.is_loose)
     pressures = points[:, PRESSURE] / points[:, reference.C10]
-    found = walk_by_vectors(np.ascontiguousarray(rows), pressures, CELLS, ACCURACY[model.is_physical])
+    each = np.arange(len(rows) + 1)
+    found = walk_by_vectors(np.ascontiguousarray(rows), each, pressures, CELLS, ACCURACY[model.is_physical])
     there = np.isin(found.status, VALUED)
     return np.where(there, 2.0 * points[:, FIBERS] * found.values[:, 0], np.nan)
 

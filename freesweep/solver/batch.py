@@ -66,10 +66,9 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     return found
 
 
-def walk_by_vectors(problems, pressures, cells, accuracy) -> Walks:
-    """Each problem at its own pressure, of tubes that do not vary: what vectors find, PENDING where they leave it open."""
-    count = len(problems)
-    first, found = np.arange(count + 1), _nothing(problems, count, NOTHING)
+def walk_by_vectors(problems, first, pressures, cells, accuracy) -> Walks:
+    """:func:`walk_all` of tubes that do not vary: what vectors find, PENDING where they leave it open."""
+    found = _nothing(problems, len(pressures), NOTHING)
     pressures, _ = next_to_nothing(problems, first, pressures)
     _walk_lanes(problems, first, pressures, cells, accuracy, NOTHING, found)
     return found
@@ -111,17 +110,17 @@ def _nothing(problems, states, stations):
 
 def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, found):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
-    # what shares a vector should need much the same work: as many pressures, as steep ends
+    # what shares a vector should need much the same work: as many pressures, and likeness tells the rest
     steps = np.diff(first)
     owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
-    stretches, cosines = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
+    stretches, likeness = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
     drawn = (stations, found.profiles) if len(stations) else (None, None)
     for carry, solve, kind, some in _kinds(problems):
-        carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, cosines)
+        carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness)
         carried = some[owners] & asked & np.isfinite(stretches)
         for fineness in tries(problems, base):
             rows = np.flatnonzero(carried & (found.status == PENDING))
-            alike = np.argsort(_steepness(cosines[rows]), kind="stable")
+            alike = np.argsort(_in_order(likeness[rows]), kind="stable")
             solve(
                 problems, owners, pressures, stretches, rows[alike], *kind, fineness, accuracy, *found[:4],
                 *(drawn if len(kind) == 1 else ()),
@@ -163,6 +162,6 @@ def _kinds(problems):
             yield free.carry_physical, free.solve_physical, (constants, int(kind[1])), some
 
 
-def _steepness(cosines):
+def _in_order(likeness):
     """Short integers, which are sorted in no time; finer where the ends are steep."""
-    return (np.sqrt(np.fmin(np.fmax(cosines, 0.0), 1.0)) * np.iinfo(np.uint16).max).astype(np.uint16)
+    return (np.sqrt(np.fmin(np.fmax(likeness, 0.0), 1.0)) * np.iinfo(np.uint16).max).astype(np.uint16)

@@ -12,7 +12,7 @@ from ..load import Load
 from ..numerics.properties_along import Tube
 from ..physics import lagrangian
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
-from . import first_guess, layer, nested, quadrature, slack_ends
+from . import first_guess, layer, meridian, nested, quadrature, slack_ends
 from .pack import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
@@ -35,9 +35,17 @@ def locked(problem):
 
 
 @kernel
-def carry(problems, first, pressures, order, constants, walls, layers, values, bounds, status, stretches, cosines):
+def work_of(u, cell, load, half, walls):
+    """What tells states that are as much work: the steepness of the source's tubes at their ends."""
+    if len(walls) == 1:
+        return layer.end_cosine(u, cell, load)
+    return meridian.work_of(u, cell, load, half)
+
+
+@kernel
+def carry(problems, first, pressures, order, constants, walls, layers, values, bounds, status, stretches, likeness):
     """Uniform ``stretches`` (pressures,) of the problems, taken in the given ``order``, WIDTH at a time: NaN from where no
-    quick way leads on; and ``cosines`` (pressures,) of the meridian's angle at an end, which tell states that are alike.
+    quick way leads on; and ``likeness`` (pressures,), numbers from 0 to 1 that tell states that are as much work.
     What needs no solving at all is written to ``values``, ``bounds`` and ``status``. ``constants`` are the columns of the
     rubbers' constants, MOONEY_RIVLIN or YEOH, and ``walls`` those of the walls, SOURCE or PHYSICAL, whose ``layers`` and
     loose fibers are the same for all: each has machine code of its own.
@@ -66,7 +74,7 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
                     if settle(p, problems[k], clamped, row, values, bounds, status):
                         continue
                     if p == np.inf:
-                        stretches[row], cosines[row] = locked(problems[k])
+                        stretches[row], likeness[row] = locked(problems[k])
                     elif (going >> lane) & 1:
                         columns[PRESSURE, lane] = p
                         active |= 1 << lane
@@ -79,10 +87,10 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
             u = select(arrived, ahead, u)
             put(columns, BEFORE, select(arrived, now.p, get(columns, BEFORE)))
             put(found, 0, ahead)
-            put(found, 1, layer.end_cosine(ahead, cell, now))
+            put(found, 1, work_of(ahead, cell, now, get(columns, HALF), walls))
             for lane in range(count):
                 if (bits(arrived) >> lane) & 1:
-                    stretches[rows[lane]], cosines[rows[lane]] = found[0, lane], found[1, lane]
+                    stretches[rows[lane]], likeness[rows[lane]] = found[0, lane], found[1, lane]
             started |= bits(arrived)
             going &= ~(active & ~bits(arrived))
 
@@ -141,15 +149,15 @@ def solve(
 
 
 @entry_point
-def carry_lanes(problems, first, pressures, order, constants, values, bounds, status, stretches, cosines):
+def carry_lanes(problems, first, pressures, order, constants, values, bounds, status, stretches, likeness):
     """:func:`carry` the source's tubes."""
-    carry(problems, first, pressures, order, constants, SOURCE, 1, values, bounds, status, stretches, cosines)
+    carry(problems, first, pressures, order, constants, SOURCE, 1, values, bounds, status, stretches, likeness)
 
 
 @entry_point
-def carry_physical(problems, first, pressures, order, constants, layers, values, bounds, status, stretches, cosines):
+def carry_physical(problems, first, pressures, order, constants, layers, values, bounds, status, stretches, likeness):
     """:func:`carry` physical tubes."""
-    carry(problems, first, pressures, order, constants, PHYSICAL, layers, values, bounds, status, stretches, cosines)
+    carry(problems, first, pressures, order, constants, PHYSICAL, layers, values, bounds, status, stretches, likeness)
 
 
 @entry_point

@@ -20,6 +20,7 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..cells import nothing_yet
 from ..physics import lagrangian
+from ..physics.relaxed import is_taut
 from .vector import WIDTH, get, put, select, spread
 
 DEEPEST = 24.0  # where nothing is left of the layer
@@ -28,6 +29,7 @@ CERTAIN = 1e-8  # share of R from which R - T is more than rounding
 APART = 1e-6  # of 2 q |u - 1|: difference of two stretches that has digits
 MEETS = 1e-9  # of q: as near to the middle as counts as there
 LEAST_RATE = 1e-12
+ALMOST = 0.99  # of one
 
 
 class Middle(NamedTuple):
@@ -98,6 +100,21 @@ def middle(u, depth, cell, load, scratch):
         u, sqrt(max(L_yy / L_vv, LEAST_RATE)), depth, q, whole, y, level, sqrt(max(-T / (s * mean_yy), 0.0)), rise,
         -(own_yy + 2.0 * rise * s_y) / s, s, psi, energy,
     )  # fmt: skip
+
+
+@kernel
+def work_of(u, cell, load, half):
+    """What tells states that are as much work, from 0 to 1: how many families pull at the end and not in the middle, or the
+    other way round; of states that are alike in this, the depth of the middle.
+    """
+    zero, one = spread(0.0), spread(1.0)
+    (_, _, _, L_yy, _, L_vv), there = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
+    _, here = lagrangian.density_beside(one, zero, cell, load, nothing_yet(zero))
+    alpha, beta = is_taut(here[0])
+    own_alpha, own_beta = is_taut(there[0])
+    changes = select((alpha & ~own_alpha) | (own_alpha & ~alpha), one, zero)
+    changes = changes + select((beta & ~own_beta) | (own_beta & ~beta), one, zero)
+    return (changes + ALMOST * min(sqrt(L_yy / L_vv) * half / DEEPEST, 1.0)) / 3.0
 
 
 @kernel
