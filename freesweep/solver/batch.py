@@ -16,7 +16,7 @@ from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
 NOTHING = np.empty(0)
-PIECES = 1, 2, 4
+PIECES = 1, 2, 4, 16
 FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 

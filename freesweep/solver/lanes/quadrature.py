@@ -103,9 +103,9 @@ def summed(row):
 
 @kernel
 def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
-    """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) lengths in
-    doubt, lanes that may be)``. Brackets of the ends go to ``ends``, what may be handed on to them to ``starts``, (4, MOST,
-    WIDTH).
+    """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) limp in the
+    middle, (alpha, beta) lengths in doubt, lanes that may be)``. Brackets of the ends go to ``ends``, what may be handed on
+    to them to ``starts``, (4, MOST, WIDTH).
     """
     valid, near, total = mask_of(-1), nothing_yet(spread(0.0)), spread(0.0)
     limp_a, limp_b, doubt_a, doubt_b = mask_of(0), mask_of(0), spread(0.0), spread(0.0)
@@ -122,7 +122,8 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
             slack_ends.bracket(
                 left, right - left, PLACES, rows[ALPHA + family], family, LAST, rows[KIND:], ends, counts, starts
             )
-    return total, (limp_a, limp_b), (doubt_a, doubt_b), valid
+    middle_limp = get(rows[ALPHA], LAST) <= 0.0, get(rows[BETA], LAST) <= 0.0
+    return total, (limp_a, limp_b), middle_limp, (doubt_a, doubt_b), valid
 
 
 @kernel
@@ -172,6 +173,7 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
         left, width = get(edges, j), (get(edges, j + 1) - get(edges, j)) / pieces
         for i in range(pieces):
             near, fine = along(left + i * width, left + (i + 1) * width, mid, cell, load, near, True, rows, scratch)
+            own = width > 0.0  # others have more parts
             valid = valid & fine & ((width < NARROW) | ~(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
             dx, doubt = summed(rows[DX])
             add(numbers, DX, dx, doubt)
@@ -181,11 +183,10 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
                 slack = get(rows[ALPHA + family], LAST // 2) <= 0.0
                 add(numbers, SLACK + family, select(slack, dx, 0.0), select(slack, doubt, 0.0))
             for k in range(4):
-                most, missed = widest(
-                    rows[PUSH_ALPHA + k], LAST, get(numbers[0], WORST + k), get(numbers[1], WORST + k)
-                )
-                put(numbers[0], WORST + k, most)
-                put(numbers[1], WORST + k, missed)
+                before = get(numbers[0], WORST + k), get(numbers[1], WORST + k)
+                most, missed = widest(rows[PUSH_ALPHA + k], LAST, *before)
+                put(numbers[0], WORST + k, select(own, most, before[0]))
+                put(numbers[1], WORST + k, select(own, missed, before[1]))
     return valid
 
 
@@ -225,7 +226,7 @@ def let_go(mid, cell, load, half):
 
 
 @kernel
-def finish(mid, miss, cell, load, half, doubts, rows, numbers, out):
+def finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, out):
     """Write outputs, numbers and bounds; returns the largest scaled bound of the outputs, rounding left out."""
     sums, missed = numbers[0], numbers[1]
     wrong = get(missed, DX) + abs(miss) + FAINT / mid.rate  # of half the tube's length
@@ -247,8 +248,8 @@ def finish(mid, miss, cell, load, half, doubts, rows, numbers, out):
     )
     record(out, 0, outputs, errors, floor)
     size = load.p + abs(load.f)
-    share_a = (get(sums, SLACK) + select(get(rows[ALPHA], LAST) <= 0.0, miss, 0.0)) / half
-    share_b = (get(sums, SLACK + 1) + select(get(rows[BETA], LAST) <= 0.0, miss, 0.0)) / half
+    share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
+    share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half
     doubt = (get(missed, DX) + slack_ends.CLOSE * half) / half
     least_a, least_b = places.pulls(pulled(-get(sums, WORST), load), pulled(-get(sums, WORST + 1), load), cell, load)
     off_a, off_b = places.pulls(get(missed, WORST), get(missed, WORST + 1), cell, load)
@@ -289,10 +290,12 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     depth = min(mid.rate * half, DEEPEST)
     slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
     found, alpha, beta, long = mask_of(0), mask_of(0), mask_of(0), mask_of(0)
-    miss, doubts = spread(0.0), (spread(0.0), spread(0.0))
+    miss, doubts, middle_limp = spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
     for _ in range(FITS):
         mid = middle(u, depth, cell, load, scratch)
-        total, (alpha, beta), doubts, valid = scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch)
+        total, (alpha, beta), middle_limp, doubts, valid = scan(
+            pieces, mid, cell, load, rows, ends, counts, starts, scratch
+        )
         active = active & valid
         miss = half - total
         long = (depth >= DEEPEST) & (miss >= 0.0)
@@ -311,7 +314,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    largest = finish(mid, miss, cell, load, half, doubts, rows, numbers, out)
+    largest = finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, out)
     if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
     if not has_any_family(load.wall):
