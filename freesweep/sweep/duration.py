@@ -9,9 +9,10 @@ import numpy as np
 
 from .plan import FREE
 
-TYPICAL, HELD, VARYING = 5e-6, 3e-4, 1e-3  # [s] of a free state on one core; of a held one; of any where tubes vary
-PHYSICAL = 2e-3  # [s] of any of physical tubes
-BOTH = {FREE: 7e-3} | dict.fromkeys(("blocked_force", "blocked_torque"), 5e-2)  # [s] of physical tubes that vary
+VARYING = 1e-3  # [s] of a state, on one core, where tubes vary; where they do not, of each kind:
+TYPICAL = {FREE: 5e-6} | dict.fromkeys(("blocked_force", "blocked_torque"), 3e-4)
+PHYSICAL = {FREE: 2e-5} | dict.fromkeys(("blocked_force", "blocked_torque"), 2e-3)
+BOTH = {FREE: 7e-3} | dict.fromkeys(("blocked_force", "blocked_torque"), 5e-2)  # of physical tubes that vary
 COMPARED = 25.0  # [s] in which an atlas of bodies measures itself, each solved for it
 FOLLOWED = 6e-3  # [s] of each tube that varies: its course is made of splines
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
@@ -33,8 +34,8 @@ def time_of(sweep, tables, equilibria, sizes, threads, measured) -> str:
     """In words; ``equilibria`` of each kind, and their ``tables``, without any if they are too many to be compared;
     ``sizes``: designs of each; ``measured``: whether the atlas measures itself.
     """
-    alone = PHYSICAL if sweep.is_physical else VARYING if sweep.varies else None
-    each = {kind: alone or (TYPICAL if kind == FREE else HELD) for kind in equilibria}
+    own = PHYSICAL if sweep.is_physical else TYPICAL
+    each = {kind: VARYING if sweep.varies else own[kind] for kind in equilibria}
     if sweep.varies:
         bodies = {kind: tables[kind].count if tables else size for kind, size in sizes.items()}
         own = BOTH if sweep.is_physical else each

@@ -22,7 +22,7 @@ from ..physics.uniform_tube import FAR
 from ..physics.wall import has_any_family, has_two_families, may_go_slack
 from . import slack_ends
 from .extremes import widest
-from .meridian import DEEPEST, handed_on, look, middle
+from .meridian import DEEPEST, fallen, handed_on, look, middle
 from .vector import HUGE, WIDTH, get, mask_of, put, select, some, spread
 
 LAST = 16  # places 0 to LAST of the rule
@@ -226,21 +226,23 @@ def let_go(mid, cell, load, half):
 
 
 @kernel
-def finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, out):
+def finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, scratch, out):
     """Write outputs, numbers and bounds; returns the largest scaled bound of the outputs, rounding left out."""
     sums, missed = numbers[0], numbers[1]
     wrong = get(missed, DX) + abs(miss) + FAINT / mid.rate  # of half the tube's length
     moved = 2.0 * mid.q * mid.rate * wrong  # of the middle, as a share of the layer
+    rest = fallen(mid.rate * miss, scratch)  # how much of what is left of the layer is left in the middle itself
     outputs = (
         half * mid.s + get(sums, LENGTH), half * mid.y * mid.y * mid.s + get(sums, VOLUME),
-        half * mid.psi + get(sums, TWIST), half * mid.energy + get(sums, ENERGY), mid.y,
+        half * mid.psi + get(sums, TWIST), half * mid.energy + get(sums, ENERGY),
+        mid.u + (mid.y - mid.u) * rest,
     )  # fmt: skip
     by = min(moved, 2.0 * mid.q)
     middle_moved = abs(1.0 - mid.u) * by
     errors = (
         get(missed, LENGTH) + moved * abs(get(sums, LENGTH)), get(missed, VOLUME) + moved * abs(get(sums, VOLUME)),
         get(missed, TWIST) + moved * abs(get(sums, TWIST)), get(missed, ENERGY) + moved * abs(get(sums, ENERGY)),
-        middle_moved,
+        middle_moved * rest,
     )  # fmt: skip
     scale, floor = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
     largest = max(
@@ -314,7 +316,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    largest = finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, out)
+    largest = finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, scratch, out)
     if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
     if not has_any_family(load.wall):
