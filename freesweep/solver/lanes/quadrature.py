@@ -41,6 +41,7 @@ FITS, ROUGH, CLOSE = (
     1e-10,
 )  # for the depth of the middle: trials, and shares of the layer that may be wrong there
 SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
+STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
 NARROW = 1e-6  # of the depth: a part of no length
 FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
 SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
@@ -129,9 +130,9 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
 @kernel
 def find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch):
     """Write the shares of the depth between which no family goes slack to ``edges`` (> MOST + 1, WIDTH); returns how many
-    parts there are, and lanes in which an end was not found.
+    parts there are, and by how much an end may be off.
     """
-    most, lost, zero = 0, mask_of(0), spread(0.0)
+    most, zero, unsure = 0, spread(0.0), spread(0.0)
     for lane in range(WIDTH):
         most = max(most, counts[lane])
     put(edges, 0, zero)
@@ -142,12 +143,13 @@ def find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch):
         near = (
             get(starts[0], j), get(starts[1], j), zero, get(starts[2], j), zero, zero, get(starts[3], j), zero, zero
         )  # fmt: skip
-        t, missing = slack_ends.search(ends, j, mask_of(asked) & active, mid, cell, load, near, scratch)
+        own = mask_of(asked) & active
+        t, doubt = slack_ends.search(ends, j, own, mid, cell, load, near, scratch)
         put(edges, j + 1, t)
-        lost = lost | missing
+        unsure = unsure + select(own, doubt, zero)
     put(edges, most + 1, spread(1.0))
     slack_ends.sort(edges, counts)
-    return most + 1, lost
+    return most + 1, unsure
 
 
 @kernel
@@ -226,7 +228,7 @@ def let_go(mid, cell, load, half):
 
 
 @kernel
-def finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, scratch, out):
+def finish(mid, miss, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
     """Write outputs, numbers and bounds; returns the largest scaled bound of the outputs, rounding left out."""
     sums, missed = numbers[0], numbers[1]
     wrong = get(missed, DX) + abs(miss) + FAINT / mid.rate  # of half the tube's length
@@ -252,7 +254,7 @@ def finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, scratch, o
     size = load.p + abs(load.f)
     share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
     share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half
-    doubt = (get(missed, DX) + slack_ends.CLOSE * half) / half
+    doubt = (get(missed, DX) + STEEPEST * unsure * mid.depth / mid.rate) / half
     least_a, least_b = places.pulls(pulled(-get(sums, WORST), load), pulled(-get(sums, WORST + 1), load), cell, load)
     off_a, off_b = places.pulls(get(missed, WORST), get(missed, WORST + 1), cell, load)
     outer, strain = sqrt(get(sums, WORST + 2)), sqrt(get(sums, WORST + 3))
@@ -292,7 +294,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     depth = min(mid.rate * half, DEEPEST)
     slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
     found, alpha, beta, long = mask_of(0), mask_of(0), mask_of(0), mask_of(0)
-    miss, doubts, middle_limp = spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
+    unsure, miss, doubts, middle_limp = spread(0.0), spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
     for _ in range(FITS):
         mid = middle(u, depth, cell, load, scratch)
         total, (alpha, beta), middle_limp, doubts, valid = scan(
@@ -306,8 +308,8 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
         settled = settled | arrived
         before = select(arrived, depth, before[0]), before[1]
         if not some(wrong):
-            parts, lost = find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch)
-            active = active & ~lost
+            parts, unsure = find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch)
+            active = active & (unsure < slack_ends.ENOUGH)
             active = active & between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)
             miss = half - get(numbers[0], DX)
             long = (depth >= DEEPEST) & (miss >= 0.0)
@@ -316,7 +318,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    largest = finish(mid, miss, cell, load, half, middle_limp, doubts, numbers, scratch, out)
+    largest = finish(mid, miss, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
     if not has_any_family(load.wall):

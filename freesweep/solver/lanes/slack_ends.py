@@ -8,10 +8,11 @@ from ...jit import kernel
 from ..along.slack import NOTHING, TENSIONLESS
 from ..physics.wall import may_go_slack
 from .meridian import look
-from .vector import WIDTH, get, select, some, spread
+from .vector import WIDTH, get, mask_of, select, some, spread
 
 MOST = 8  # ends in half a tube; more are left to finer parts
-STEPS, CLOSE = 24, 1e-9  # of the search, and how exactly [of the depth] an end is found
+STEPS, CLOSE, SURE = 48, 1e-11, 1e-9  # of the search, its last step [of the depth], and how exactly an end is known
+HALVED, ENOUGH = 4, 1e-5  # each so manieth step halves the bracket; an end that is known so well is not lost
 ENDS = LEFT, RIGHT, BEFORE, BEHIND, FAMILY = range(5)  # what brackets an end
 
 
@@ -55,15 +56,16 @@ def passed_over(pull, lengths, last):
 
 @kernel
 def search(ends, j, going, mid, cell, load, near, scratch):
-    """``(t, lost)``: the share of the depth at which the end j of the lanes that are ``going`` lies, each within its
-    bracket, and where it was not found.
+    """``(t, doubt)``: the share of the depth at which the end j of the lanes that are ``going`` lies, each within its
+    bracket, and by how much it may be off.
     """
     left, right = get(ends[LEFT], j), get(ends[RIGHT], j)
     before, behind, of_alpha = get(ends[BEFORE], j), get(ends[BEHIND], j), get(ends[FAMILY], j) < 0.5
     t = select(going, right + 1.0, 1.0)
-    for _ in range(STEPS):
+    for i in range(STEPS):
         new = right - behind * (right - left) / select(going, behind - before, 1.0)
-        new = select((new > left) & (new < right), new, 0.5 * (left + right))
+        halved = mask_of(-1 if i % HALVED == HALVED - 1 else 0)  # where a pull ends without a slope
+        new = select((new > left) & (new < right) & ~halved, new, 0.5 * (left + right))
         moved = abs(new - t)
         t = select(going, new, t)
         going = going & (moved > CLOSE)
@@ -76,7 +78,7 @@ def search(ends, j, going, mid, cell, load, near, scratch):
         share = select(share > 0.0, share, 0.5)
         before, behind = select(same, before * share, pull), select(same, pull, behind * share)
         left, right = select(same, left, t), select(same, t, right)
-    return t, going
+    return t, select(going, right - left, SURE)
 
 
 @kernel
