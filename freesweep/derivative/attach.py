@@ -12,7 +12,7 @@ from .request import attributes
 from .rest import is_at_rest
 
 GUESS = 1e-6  # accuracy of shapes to begin from: with 1e-4 some that stretch twentyfold are lost
-SAME = 1e-7  # scaled, beside the bounds: by how much a state may differ from the one that was found
+SAME, BOUNDS = 1e-7, 4.0  # scaled, and in bounds: by how much a state may differ from the one that was found
 MANY = 64  # states for which it is worth to compile vectors
 LOST = "derivatives: {count} of {all} states were not met again on meshes of their own; theirs are NaN"
 
@@ -77,9 +77,11 @@ def _at(loads, i):
 
 
 def _are_same(found, known, near, units):
-    """Which states (n,) have the outputs that are ``known``, within both bounds."""
+    """Which states (n,) have the outputs that are ``known``, about within both bounds: where one of a thousand is too
+    small, that is no other state.
+    """
     values, bounds = found[0][:, 0], found[1][:, 0]
-    return np.all((np.abs(values - known) <= near + bounds + SAME * units) | np.isnan(known), axis=0)
+    return np.all((np.abs(values - known) <= BOUNDS * (near + bounds) + SAME * units) | np.isnan(known), axis=0)
 
 
 def _variables(asked, values, bounds, todo, dims, shape):
