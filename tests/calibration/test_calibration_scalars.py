@@ -142,6 +142,18 @@ def test_a_curve_without_pressure_counts():
     assert found.values == pytest.approx([0.2e6], rel=1e-4)
 
 
+def test_three_forces_that_are_met_exactly_do_not_count_as_exact():
+    """As many as parameters: their scatter tells nothing, intervals were a ninth of what they had to be."""
+    rng = np.random.default_rng(33)
+    truth, guess = muscle(rng)
+    curves = bench(truth, guess, rng, states=(10, 2))
+    assert np.count_nonzero(curves[1].force) == 3
+    found = calibrate(curves, FIT, ties=TIES)
+    assert found.sigma["force"] > 1e-3 * curves[1].force.max()
+    off = np.abs(found.values - values(truth)) / (0.5 * np.ptp(found.intervals, axis=1))
+    assert np.all(off < 1.5)
+
+
 def part(whole, seen):
     """Some points of a force-length bench."""
     return Measurement(
