@@ -6,6 +6,7 @@ import io
 
 import numpy as np
 
+from ..description.python_line import python_line
 from ..report import SHOWN
 from .branches import curves_of
 from .measured import COLUMNS
@@ -44,7 +45,7 @@ def _draw(found, k, name, top, bottom):
         rows = np.flatnonzero(curve == number)
         rows = rows[np.argsort(along[rows], kind="stable")]
         x = along[rows] * along_scale
-        (line,) = top.plot(x, predicted[rows] * scale, "-", linewidth=1.2, label=_label(measurement, swept, rows))
+        (line,) = top.plot(x, predicted[rows] * scale, "-", linewidth=1.2, label=_label(found, k, swept, rows))
         low, high = (predicted[rows] - half) * scale, (predicted[rows] + half) * scale
         top.fill_between(x, low, high, color=line.get_color(), alpha=0.15, linewidth=0)
         slack = measurement.slack[rows] & (name == "force")
@@ -54,15 +55,16 @@ def _draw(found, k, name, top, bottom):
         bottom.plot(x, off * scale, "o-", color=line.get_color(), markersize=3, linewidth=0.6)
     bottom.axhline(0.0, color="0.5", linewidth=0.8)
     top.set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
-    bottom.set_ylabel(f"measured - model [{unit}]")
+    bottom.set_ylabel(f"measured\n- model [{unit}]")
     bottom.set_xlabel(f"{swept.replace('_', ' ')} [{along_unit}]")
     top.legend(fontsize="small", frameon=False)
 
 
-def _label(measurement, swept, rows):
+def _label(found, k, swept, rows):
+    """What a curve is told from others by: of what was found, not of the first guess."""
     if swept == "pressure":
-        return f"alpha {measurement.tube.design()['alpha']:.3g} deg"
-    return f"{np.mean(measurement.pressure[rows]) * 1e-3:.4g} kPa"
+        return f"alpha {found.tubes[k].design()['alpha']:.3g} deg"
+    return f"{np.mean(found.measurements[k].pressure[rows]) * 1e-3:.4g} kPa"
 
 
 def page(found) -> str:
@@ -85,8 +87,7 @@ def page(found) -> str:
     ]  # fmt: skip
     for number, tube in enumerate(dict.fromkeys(found.tubes), 1):
         parts += [f"<h2>Actuator {number}</h2>", f"<pre>{html.escape(as_toml(found, tube))}</pre>"]
-        python = f"fs.{tube!r}".replace("material=", "material=fs.")
-        parts.append(f"<pre>{html.escape(python)}</pre>")
+        parts.append(f"<pre>{html.escape(python_line(tube))}</pre>")
     return "".join(parts) + "</body></html>\n"
 
 

@@ -1,5 +1,7 @@
 """Any scalar is fitted: angles, sizes, dead length, threshold; with priors, bounds, ties; from the shell and from TOML."""
 
+import html
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,9 +9,11 @@ import pytest
 from benches import FIT, TIES, bench, exact, muscle, values
 from commands import refused, run
 
+import freesweep
 from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, calibrate, inflate
 from freesweep.calibration.parameters import Setup
 from freesweep.calibration.predicted import Asked, Predictor, scalar
+from freesweep.calibration.report import table
 from freesweep.cli import DONE
 
 TRUTH = Actuator(
@@ -154,6 +158,16 @@ def test_three_forces_that_are_met_exactly_do_not_count_as_exact():
     assert np.all(off < 1.5)
 
 
+def test_intervals_that_only_rounding_parts_are_called_the_same():
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    rounded = replace(found, profile_intervals=found.intervals * (1.0 + 1e-12))
+    assert "by profile likelihood" not in table(rounded)
+    farther = replace(found, profile_intervals=np.add(found.intervals, [[1e4, 0.0], [0.0, 0.0], [0.0, 0.0]]))
+    rows = table(farther).splitlines()
+    assert "by profile likelihood" in rows[0]
+    assert [row.endswith("the same") for row in rows[1:4]] == [False, True, True]
+
+
 def part(whole, seen):
     """Some points of a force-length bench."""
     return Measurement(
@@ -248,6 +262,9 @@ def test_the_shell_and_toml_say_the_same(tmp_path, monkeypatch, capsys):
     assert "data:image/png;base64," in page
     assert "[actuator]" in page
     assert "://" not in page  # nothing is fetched
+    (line,) = re.findall(r"<pre>(fs.Actuator.*?)</pre>", html.unescape(page))
+    assert "None" not in line  # nor what is as usual
+    assert eval(line, {"fs": freesweep}).alpha == pytest.approx(25.0, abs=0.1)
     assert "--report: found" in refused(capsys, "calibrate", "case.toml", "--report", "page.pdf")
     (tmp_path / "case.toml").write_text("[data]\nfile = 1\n")
     assert "data.file: unknown; it has files, measured" in refused(capsys, "calibrate", "case.toml")
