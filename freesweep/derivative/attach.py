@@ -36,14 +36,18 @@ def attach(result, asked, loads, solve, target=None):
     target = None if target is None else np.ravel(target)[todo]
     known = np.array([np.ravel(result[name].values)[todo] for name in asked.outputs])
     near = np.array([np.ravel(result[f"{name}_error"].values)[todo] for name in asked.outputs])
-    values = np.full((len(asked.outputs), 1 + len(asked.parameters), len(todo)), np.nan)
-    bounds, units = values.copy(), asked.units(loads)
-    if asked.is_alike and len(todo) and is_worth_vectors(len(todo)):
-        found = asked.states(loads, target)
-        same = _are_same(found, known, near, units)
-        values[..., same], bounds[..., same] = found[0][..., same], found[1][..., same]
-    else:
-        same = np.zeros(len(todo), bool)
+    values, bounds = asked.cylinders(loads, target, known)
+    units = asked.units(loads)
+    same = _are_same((values, bounds), known, near, units)
+    values[..., ~same] = bounds[..., ~same] = np.nan
+    left = np.flatnonzero(~same)
+    if asked.is_alike and len(left) and is_worth_vectors(len(left)):
+        found = asked.states(
+            {name: value[left] for name, value in loads.items()}, None if target is None else target[left]
+        )
+        done = _are_same(found, known[:, left], near[:, left], units[:, left])
+        values[..., left[done]], bounds[..., left[done]] = (array[..., done] for array in found)
+        same[left[done]] = True
     shapes, lost = cache(lambda finer: shapes_of(asked, solve, finer)), 0
     for i in np.flatnonzero(~same):
         own, held = _at(loads, i), None if target is None else float(target[i])

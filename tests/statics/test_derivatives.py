@@ -328,6 +328,24 @@ def test_a_held_balloon_with_sharp_layers():
     assert by_force == pytest.approx(-np.degrees(by_rotation), rel=1e-6)
 
 
+@pytest.mark.parametrize("pressure", [3e4, 9e4])  # of which the second would buckle, were its rotation not held
+def test_a_tube_that_is_held_straight_has_derivatives_in_closed_form(pressure, monkeypatch):
+    """No mesh is asked, and meshes tell the same."""
+    state = {"alpha": 7, "beta": -45, "length": 0.1, "radius": 10e-3, "wall": 0.85e-3, "pressure": pressure}
+    state["rotation"] = 0.0
+    with monkeypatch.context() as without:
+        without.delattr(asked.Asked, "state")
+        found = solved("blocked_torque", state, derivatives="all")
+    assert int(found["stable"]) == (pressure < 5e4)
+    monkeypatch.setattr(asked, "UNSTRAINED", -1.0)
+    other = solved("blocked_torque", state, derivatives="all")
+    names = [name for name in found.data_vars if name.startswith("d_") and not name.endswith("_error")]
+    assert len(names) == 5 * 11
+    for name in names:
+        exact, bound = float(other[name]), float(other[f"{name}_error"]) + float(found[f"{name}_error"])
+        assert float(found[name]) == pytest.approx(exact, abs=bound, rel=0.0)
+
+
 def test_tolerances_of_manufacture_spread_the_outputs():
     """To first order: against a sample of tubes, each solved by itself, and shares that add up to one."""
     spread = {"alpha": 0.5, "wall": 2e-5, "pressure_tolerance": 300.0}
