@@ -94,7 +94,10 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
     result["status"].attrs = {
         "flag_values": [status.value for status in STATUSES], "flag_meanings": " ".join(s.meaning for s in STATUSES)
     }  # fmt: skip
-    result.attrs = {"title": f"designs from {space.template!r}", "summary": sentence(misfit, result, u, slopes)}
+    result.attrs = {
+        "title": f"designs from {space.template!r}",
+        "summary": sentence(misfit, result, residuals[0], u, slopes),
+    }
     return Found(result, tubes)
 
 

@@ -14,7 +14,7 @@ from ..description.quantities import Names
 from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import read_tolerances
-from .least import front, least, multipliers
+from .least import beaten, front, least, multipliers
 from .look import look, spread
 from .misfit import make
 from .polish import polish
@@ -152,6 +152,9 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
     slopes = whole.slopes(u, choice, found)
     missed = np.any(np.abs(residuals[:, :-number]) > MISSED, axis=1)
     order = np.lexsort((found.values[:, -number], missed))
+    if number == 2:
+        behind = beaten(np.where(missed[:, None], np.inf, found.values[:, -2:]), scale)
+        order = order[~behind[order]]
     best = spread(misfit.space, u, choice, order, count, DIFFERENT)
     made = gather(whole, u[best], choice[best], slopes[best], tolerances, number)
     result = made.data

@@ -15,6 +15,7 @@ from grids import CHILD_ENVIRONMENT, make
 import freesweep as fs
 from freesweep.cli import main
 from freesweep.inverse import look, wish_file
+from freesweep.inverse.least import beaten
 from freesweep.inverse.wishes import Wish
 from freesweep.sweep.spec import parse
 from freesweep.thesis.prototypes import found_rotator
@@ -134,6 +135,35 @@ def test_goals_that_fight_are_named():
     found = fs.design(tube(beta=-30.0), {"alpha": (20, 50), "beta": "-alpha"}, wish, count=2)
     assert not found["met"].values.any()
     assert re.search("fights with|bounds .* stop it", found.attrs["summary"])
+
+
+@pytest.mark.parametrize(
+    ("goal", "limits", "says"),
+    [
+        (
+            fs.Goal("force", 500, pressure=1e5, tolerance=1),
+            [fs.Limit("outer_radius", at_most=8e-3, pressure=1e5)],
+            "N instead of 500 N: it fights with outer_radius at pressure 100000 Pa",
+        ),
+        (
+            fs.Goal("stroke", 0.1, pressure=1e5),
+            [
+                fs.Limit("deformed_length", at_most=0.1, pressure=1e5),
+                fs.Limit("deformed_length", at_least=0.2, pressure=1e5),
+            ],
+            "m instead of at most 0.1 m: it fights with deformed_length at pressure 100000 Pa, at least 0.2 m",
+        ),
+    ],
+)
+def test_limits_that_fight_are_named(goal, limits, says):
+    found = fs.design(tube(alpha=30, beta=-30), {"alpha": (10, 80), "beta": "-alpha"}, goal, limits, count=2)
+    assert found.attrs["summary"].endswith(says)
+
+
+def test_what_is_beaten_in_both_is_on_no_front():
+    """The slimmest of all, and as slim with less of the other; nor counts what rounding parts."""
+    values = np.array([[3.0, 8.0], [3.0, 4.6], [5.0, 2.0], [5.0 + 1e-6, 2.0 + 1e-6], [6.0, 3.0], [np.inf, np.inf]])
+    assert beaten(values, np.array([6.0, 8.0])).tolist() == [True, False, False, False, True, True]
 
 
 def test_the_slimmest_muscle_and_the_price_of_its_force():
