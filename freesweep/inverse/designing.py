@@ -84,6 +84,10 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
     if space is not None:
         missing = [w.title for w in (*asked, *kept, *objectives) if _needs_pressure(w) and "pressure" not in free]
         faults += [f"{title}: give its pressure, or let 'pressure' be free" for title in missing]
+        if "pressure" not in free and any(wish.output == "pressure" for wish in (*asked, *kept, *objectives)):
+            faults.append(
+                "pressure: is wished for, but each state has its own; let 'pressure' be free, or leave that out"
+            )
     if faults:
         raise ActuatorError(faults)
     misfit = make(space, asked, kept)

@@ -271,6 +271,13 @@ def test_symmetric_copies_are_one_candidate():
         ({"material": ["rubber"]}, [fs.Goal("rotation", 90, pressure=1e5)], ["The library holds"]),
         ({"alpha": (0, 85)}, [fs.Goal("rotation", 90)], ["give its pressure, or let 'pressure' be free"]),
         ({"alpha": (0, 85)}, "rotation", ["give a list of freesweep.Goal"]),
+        (
+            {"alpha": (30, 30)},
+            [fs.Goal("rotation", 90, pressure=1e5)],
+            ["lowest, highest), the first below the second"],
+        ),
+        ({"pressure": (-1e5, 1e5)}, [fs.Goal("rotation", 90)], ["pressures are 0 or more"]),
+        ({"alpha": (0, 85)}, [fs.Goal("pressure", at_most=1e5)], ["each state has its own"]),
     ],
 )
 def test_every_fault_of_a_wish_is_listed(free, goals, words):
@@ -299,6 +306,7 @@ def test_what_a_template_has_not_is_not_free():
         (dict(output="rotation", value="ninety"), "rotation"),
         (dict(output="rotation", between=(5, 3)), "lower number first"),
         (dict(output="radius", value=5e-3, pressure=1e5), "no matter of a state"),
+        (dict(output="rotation", value=5, pressure=[1e5, -1e4]), "pressures are 0 or more"),
     ],
 )
 def test_a_wish_that_makes_no_sense_is_refused(wish, word):
