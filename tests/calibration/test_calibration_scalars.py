@@ -11,6 +11,7 @@ from commands import refused, run
 
 import freesweep
 from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, calibrate, inflate
+from freesweep.calibration.page import _axis, _label
 from freesweep.calibration.parameters import Setup
 from freesweep.calibration.predicted import Asked, Predictor, scalar
 from freesweep.calibration.report import table
@@ -156,6 +157,19 @@ def test_three_forces_that_are_met_exactly_do_not_count_as_exact():
     assert found.sigma["force"] > 1e-3 * curves[1].force.max()
     off = np.abs(found.values - values(truth)) / (0.5 * np.ptp(found.intervals, axis=1))
     assert np.all(off < 1.5)
+
+
+def test_pictures_show_lengths_as_they_were_given_and_what_was_found():
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    free, pulled = found.measurements
+    title, shown = _axis(pulled, "deformed_length")
+    assert title == "contraction [%]"
+    assert shown(pulled.deformed_length) == pytest.approx(np.tile(np.linspace(0.0, 25.0, 6), 2), abs=1e-12)
+    title, shown = _axis(replace(free, deformed_length=None, stroke=0.3 - free.deformed_length), "deformed_length")
+    assert title == "stroke [mm]"
+    assert shown(np.array([0.3, 0.29])) == pytest.approx([0.0, 10.0])
+    assert _axis(free, "deformed_length")[0] == "deformed length [mm]"
+    assert _label(found, 0, "pressure", [0]) == "alpha 25 deg"  # 26 was the guess
 
 
 def test_intervals_that_only_rounding_parts_are_called_the_same():
