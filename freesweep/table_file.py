@@ -30,9 +30,9 @@ _HEADS = [
     for pattern in (
         r"(.*?)\s*[\[{](.*)[\]}]",  # pressure [kPa(g)]
         r"(.*?)\s*\((.*)\)",  # pressure (kPa)
-        r"(.*?)\s*(?:/|,|\bin\b)\s*(.+)",  # pressure / kPa
-        r"(\S+)\s+(.+)",  # pressure kPa(g)
-        r"(.+)_(.+)",  # pressure_kPa
+        r"(.*?)\s*(?:/|,|\bin\b)\s*([^[{]+)",  # pressure / kPa
+        r"(\S+)\s+([^[{]+)",  # pressure kPa(g)
+        r"(.+)_([^[{]+)",  # pressure_kPa; "force_temperature [C]" is no force
     )
 ]
 _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")

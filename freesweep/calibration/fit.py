@@ -187,11 +187,12 @@ def _fitted(asked):
         raise ActuatorError([f"measurements: {counts}; give more, or fit fewer"])
     quantities = dict.fromkeys(problem.quantity.tolist())
     unknown = [name for name in quantities if np.any(np.isnan(problem.sigma[problem.quantity == name]))]
-    sigma = problem.sigma.copy()
+    sigma, spans = (
+        problem.sigma.copy(),
+        {name: _span(problem.measured[problem.quantity == name]) for name in quantities},
+    )
     for name in unknown:
-        here = problem.quantity == name
-        span = max(np.ptp(problem.measured[here]), FIRST_SIGMA * np.max(np.abs(problem.measured[here])), 1e-12)
-        sigma[here] = FIRST_SIGMA * span
+        sigma[problem.quantity == name] = FIRST_SIGMA * spans[name]
     theta = home = problem.start(sigma)
     rows = np.full(len(problem.measured), True)
     for _ in range(ROUNDS):
@@ -204,7 +205,9 @@ def _fitted(asked):
         settled = not changed
         for name in unknown:
             here = rows & (problem.quantity == name)
-            scatter = scatter_of(problem.residuals(model, there), slopes, rows, here, 1.0 / parameters.sigma)
+            others = [sigma[problem.quantity == other] / spans[other] for other in quantities if other != name]
+            elsewhere = spans[name] * np.sqrt(np.mean(np.concatenate(others) ** 2)) if others else 0.0
+            scatter = scatter_of(problem.residuals(model, there), slopes, rows, here, 1.0 / parameters.sigma, elsewhere)
             least = LEAST_SCATTER * np.max(np.abs(problem.measured[problem.quantity == name]), initial=1e-9)
             scatter = max(scatter, least)
             settled &= abs(scatter / sigma[problem.quantity == name][0] - 1.0) < SETTLED
@@ -212,6 +215,11 @@ def _fitted(asked):
         if settled:
             break
     return _result(problem, theta, sigma, rows, unknown, asked.notes)
+
+
+def _span(measured):
+    """Range of what was measured."""
+    return max(np.ptp(measured), FIRST_SIGMA * np.max(np.abs(measured)), 1e-12)
 
 
 def _checked(measurements, fit, own_extension, bounds, priors, ties, known):

@@ -6,6 +6,7 @@ import io
 
 import numpy as np
 
+from ..description.python_line import python_line
 from ..report import SHOWN
 from .branches import curves_of
 from .measured import COLUMNS
@@ -34,35 +35,45 @@ def _draw(found, k, name, top, bottom):
     """One quantity of one measurement, curve by curve."""
     measurement = found.measurements[k]
     curve, swept = curves_of(measurement)
-    along = measurement.pressure if swept == "pressure" else measurement.imposed(swept)
-    unit, scale = SHOWN[COLUMNS[name]]
-    along_unit, along_scale = SHOWN["Pa" if swept == "pressure" else COLUMNS[swept]]
-    value = getattr(measurement, name)
-    predicted = found.predicted[k][:, measurement.measured.index(name)]
+    axis, place = _axis(measurement, swept)
+    label, shown = _axis(measurement, name)
+    along = place(measurement.pressure if swept == "pressure" else measurement.imposed(swept))
+    value, predicted = getattr(measurement, name), found.predicted[k][:, measurement.measured.index(name)]
     half = found.quantile * found.sigma[name] + found.hysteresis.get(name, 0.0)
     for number in np.unique(curve):
         rows = np.flatnonzero(curve == number)
         rows = rows[np.argsort(along[rows], kind="stable")]
-        x = along[rows] * along_scale
-        (line,) = top.plot(x, predicted[rows] * scale, "-", linewidth=1.2, label=_label(measurement, swept, rows))
-        low, high = (predicted[rows] - half) * scale, (predicted[rows] + half) * scale
-        top.fill_between(x, low, high, color=line.get_color(), alpha=0.15, linewidth=0)
+        x, y, model = along[rows], shown(value[rows]), shown(predicted[rows])
+        (line,) = top.plot(x, model, "-", linewidth=1.2, label=_label(found, k, swept, rows))
+        ends = shown(predicted[rows] - half), shown(predicted[rows] + half)
+        top.fill_between(x, *ends, color=line.get_color(), alpha=0.15, linewidth=0)
         slack = measurement.slack[rows] & (name == "force")
-        top.plot(x[~slack], value[rows][~slack] * scale, "o", color=line.get_color(), markersize=3.5)
-        top.plot(x[slack], value[rows][slack] * scale, "o", color=line.get_color(), markersize=3.5, fillstyle="none")
-        off = np.where(slack, np.nan, (value - predicted)[rows])
-        bottom.plot(x, off * scale, "o-", color=line.get_color(), markersize=3, linewidth=0.6)
+        top.plot(x[~slack], y[~slack], "o", color=line.get_color(), markersize=3.5)
+        top.plot(x[slack], y[slack], "o", color=line.get_color(), markersize=3.5, fillstyle="none")
+        bottom.plot(x, np.where(slack, np.nan, y - model), "o-", color=line.get_color(), markersize=3, linewidth=0.6)
     bottom.axhline(0.0, color="0.5", linewidth=0.8)
-    top.set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
-    bottom.set_ylabel(f"measured - model [{unit}]")
-    bottom.set_xlabel(f"{swept.replace('_', ' ')} [{along_unit}]")
+    top.set_ylabel(label)
+    bottom.set_ylabel(f"measured\n- model {label[label.index('[') :]}")
+    bottom.set_xlabel(axis)
     top.legend(fontsize="small", frameon=False)
 
 
-def _label(measurement, swept, rows):
+def _axis(measurement, name):
+    """What is written at an axis, and how numbers are shown there: lengths as they were given."""
+    length = measurement.tube.length
+    if name == "deformed_length" and measurement.length_as == "contraction":
+        return "contraction [%]", lambda array: 100.0 * (1.0 - array / length)
+    unit, scale = SHOWN["Pa" if name == "pressure" else COLUMNS[name]]
+    if name == "deformed_length" and measurement.length_as == "stroke":
+        return f"stroke [{unit}]", lambda array: (length - array) * scale
+    return f"{name.replace('_', ' ')} [{unit}]", lambda array: array * scale
+
+
+def _label(found, k, swept, rows):
+    """What a curve is told from others by: of what was found, not of the first guess."""
     if swept == "pressure":
-        return f"alpha {measurement.tube.design()['alpha']:.3g} deg"
-    return f"{np.mean(measurement.pressure[rows]) * 1e-3:.4g} kPa"
+        return f"alpha {found.tubes[k].design()['alpha']:.3g} deg"
+    return f"{np.mean(found.measurements[k].pressure[rows]) * 1e-3:.4g} kPa"
 
 
 def page(found) -> str:
@@ -85,8 +96,7 @@ def page(found) -> str:
     ]  # fmt: skip
     for number, tube in enumerate(dict.fromkeys(found.tubes), 1):
         parts += [f"<h2>Actuator {number}</h2>", f"<pre>{html.escape(as_toml(found, tube))}</pre>"]
-        python = f"fs.{tube!r}".replace("material=", "material=fs.")
-        parts.append(f"<pre>{html.escape(python)}</pre>")
+        parts.append(f"<pre>{html.escape(python_line(tube))}</pre>")
     return "".join(parts) + "</body></html>\n"
 
 

@@ -7,6 +7,7 @@ from .measured import COLUMNS
 
 UNITS = {"alpha": ("deg", 1.0), "beta": ("deg", 1.0), "threshold_pressure": ("kPa", 1e-3)}
 UNITS |= dict.fromkeys(("length", "radius", "wall", "fiber_radius", "dead_length"), ("mm", 1e3))
+SAME = 1e-3  # of an interval's width: ends that differ by less are the same
 
 
 def table(found) -> str:
@@ -25,7 +26,9 @@ def unit_of(name) -> tuple:
 def rows_of(found) -> list:
     """Parameters, with a profile interval where it differs from the linearised one."""
     profiled = found.profile_intervals
-    apart = np.isfinite(found.intervals).all(axis=1) & np.any(profiled != found.intervals, axis=1)
+    with np.errstate(invalid="ignore"):  # of what data do not tell
+        moved = np.max(np.abs(profiled - found.intervals), axis=1)
+        apart = moved > SAME * np.ptp(found.intervals, axis=1)
     heads = ["parameter", "value", "standard error", "95 % interval"]
     rows = [[*heads, "by profile likelihood"] if apart.any() else heads]
     for k, (name, value, error) in enumerate(zip(found.names, found.values, found.standard_errors)):

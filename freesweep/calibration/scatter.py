@@ -13,20 +13,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-LEAST_LEFT = 0.5  # degrees of freedom
+LEAST_LEFT, ENOUGH_LEFT = 0.5, 3.0  # degrees of freedom: that are divided by; from which on scatter speaks for itself
 FEWEST = 2.0  # of a parameter
 
 
-def scatter_of(residuals, slopes, rows, here, pull):
-    """Standard uncertainty from residuals: the parameters take their share of the degrees of freedom."""
+def scatter_of(residuals, slopes, rows, here, pull, elsewhere=0.0):
+    """Standard uncertainty from residuals: the parameters take their share of the degrees of freedom. Where they take nearly
+    all, residuals vanish and tell nothing: what scatters ``elsewhere``, in the same unit, counts for what is missing.
+    """
     active = here & np.any(slopes != 0.0, axis=1) if np.any(slopes[here]) else here  # not what hangs slack, and is met
     if not active.any():
         return 0.0
     left, values, _ = np.linalg.svd(np.vstack([slopes[rows], np.diag(pull)]), full_matrices=False)
     leverage = np.zeros(len(rows))
     leverage[rows] = np.sum(left[: rows.sum(), values > 1e-8 * max(values[0], 1e-300)] ** 2, axis=1)
-    freedom = max(active.sum() - leverage[active].sum(), LEAST_LEFT)
-    return np.sqrt(np.sum(residuals[active] ** 2) / freedom)
+    freedom = max(active.sum() - leverage[active].sum(), 0.0)
+    missing = max(ENOUGH_LEFT - freedom, 0.0) if elsewhere > 0.0 else 0.0
+    squares = np.sum(residuals[active] ** 2) + missing * elsewhere**2
+    return np.sqrt(squares / max(freedom + missing, LEAST_LEFT))
 
 
 class Estimated(NamedTuple):

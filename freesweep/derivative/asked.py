@@ -4,17 +4,19 @@ import numpy as np
 
 from . import grid
 from .along import Course
+from .cylinder import at_cylinder
 from .equilibrium import Hold
-from .nested import solve
+from .nested import ROUNDING, solve
 from .physical import PhysicalTube
 from .physics import Physics
-from .request import SHAPE, measures, sizes
+from .request import ANGLE, SHAPE, measures, sizes
 from .rest import at_rest
 from .table import Held, rows_of
 from .vectors import differentiated
 
 SHARE = 0.01  # of the accuracy asked for: what a derivative's bound has to meet, scaled
 TURNS, SETTLED = 4, 1e-10  # of finding the load that holds in vectors, relative
+UNSTRAINED = 1e-9  # of sizes: what a cylinder may differ by from itself
 
 
 class Asked:
@@ -70,6 +72,33 @@ class Asked:
             if not np.any(np.abs(loads[self.unknown] - before) > SETTLED * np.abs(before)):
                 break
         return self.holding.table(loads[self.unknown], *under(loads, self.seeds))
+
+    def cylinders(self, loads, target, known):
+        """As :meth:`states`, of those that stay undeformed, by their ``known`` outputs (outputs, n); NaN of the others."""
+        n = known.shape[1]
+        natural = {"deformed_length": self.tube.length, "rotation": 0.0, "mid_radius": self.tube.fiber_surface}
+        units = natural | {"rotation": ANGLE}
+        rows = [(name, row) for name, row in zip(self.outputs, known) if name in natural]
+        still = np.all([np.abs(row - natural[name]) <= UNSTRAINED * units[name] for name, row in rows], axis=0)
+        found = np.full((2, len(self.outputs), 1 + len(self.parameters), n), np.nan)
+        some = np.flatnonzero(still & np.any([loads[name] != 0.0 for name in loads], axis=0))
+        if not self.is_alike or len(some) == 0:
+            return found
+        loads = {name: value[some] for name, value in loads.items()}
+
+        def made(seeds):
+            outputs, there = at_cylinder(self._physics(loads, seeds), len(some))
+            return np.where(there, rows_of(outputs, SHAPE, len(seeds)), np.nan)
+
+        if self.unknown is not None:
+            value, slope = self.holding.at(made(self.seeds[:1]))
+            loads = loads | {self.unknown: loads[self.unknown] + (target[some] - value) / slope}
+        rows = made(self.seeds)
+        if self.unknown is not None:
+            rows, _ = self.holding.table(loads[self.unknown], rows, 0.0 * rows)
+        units = sizes(self.tube, loads, self.outputs, self.parameters, rows[:, 0])
+        found[0][..., some], found[1][..., some] = rows, ROUNDING * (units + np.abs(rows))
+        return found
 
     def state(self, loads, target, stretches):
         """Values and bounds (outputs, 1 + parameters) of one state whose stretches at :meth:`places` ``stretches(finer)``

@@ -12,7 +12,7 @@ from .request import attributes
 from .rest import is_at_rest
 
 GUESS = 1e-6  # accuracy of shapes to begin from: with 1e-4 some that stretch twentyfold are lost
-SAME = 1e-7  # scaled, beside the bounds: by how much a state may differ from the one that was found
+SAME, BOUNDS = 1e-7, 4.0  # scaled, and in bounds: by how much a state may differ from the one that was found
 MANY = 64  # states for which it is worth to compile vectors
 LOST = "derivatives: {count} of {all} states were not met again on meshes of their own; theirs are NaN"
 
@@ -36,14 +36,18 @@ def attach(result, asked, loads, solve, target=None):
     target = None if target is None else np.ravel(target)[todo]
     known = np.array([np.ravel(result[name].values)[todo] for name in asked.outputs])
     near = np.array([np.ravel(result[f"{name}_error"].values)[todo] for name in asked.outputs])
-    values = np.full((len(asked.outputs), 1 + len(asked.parameters), len(todo)), np.nan)
-    bounds, units = values.copy(), asked.units(loads)
-    if asked.is_alike and len(todo) and is_worth_vectors(len(todo)):
-        found = asked.states(loads, target)
-        same = _are_same(found, known, near, units)
-        values[..., same], bounds[..., same] = found[0][..., same], found[1][..., same]
-    else:
-        same = np.zeros(len(todo), bool)
+    values, bounds = asked.cylinders(loads, target, known)
+    units = asked.units(loads)
+    same = _are_same((values, bounds), known, near, units)
+    values[..., ~same] = bounds[..., ~same] = np.nan
+    left = np.flatnonzero(~same)
+    if asked.is_alike and len(left) and is_worth_vectors(len(left)):
+        found = asked.states(
+            {name: value[left] for name, value in loads.items()}, None if target is None else target[left]
+        )
+        done = _are_same(found, known[:, left], near[:, left], units[:, left])
+        values[..., left[done]], bounds[..., left[done]] = (array[..., done] for array in found)
+        same[left[done]] = True
     shapes, lost = cache(lambda finer: shapes_of(asked, solve, finer)), 0
     for i in np.flatnonzero(~same):
         own, held = _at(loads, i), None if target is None else float(target[i])
@@ -77,9 +81,11 @@ def _at(loads, i):
 
 
 def _are_same(found, known, near, units):
-    """Which states (n,) have the outputs that are ``known``, within both bounds."""
+    """Which states (n,) have the outputs that are ``known``, about within both bounds: where one of a thousand is too
+    small, that is no other state.
+    """
     values, bounds = found[0][:, 0], found[1][:, 0]
-    return np.all((np.abs(values - known) <= near + bounds + SAME * units) | np.isnan(known), axis=0)
+    return np.all((np.abs(values - known) <= BOUNDS * (near + bounds) + SAME * units) | np.isnan(known), axis=0)
 
 
 def _variables(asked, values, bounds, todo, dims, shape):

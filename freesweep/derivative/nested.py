@@ -101,8 +101,9 @@ def solve(known, wanted, shape, free, segments, hold, finish, accuracy) -> Found
 
 
 def on_first(known, shape, free, segments, hold):
-    """``(physics, x, y, hold, least)`` of the state on the mesh of its guess, and how fine meshes begin. Where that has
-    none, the waves of a long tube lie between its places: a fine mesh follows a shape of more of them.
+    """``(physics, x, y, hold, least)``: ``known`` with what it settles at on the mesh of the guess, the guess itself, and
+    how fine meshes begin. Where that mesh has no state, the waves of a long tube lie between its places: a fine mesh
+    follows a shape of more of them. Its state is no better guess: where layers are sharp it is that of a coarse mesh.
     """
     for finer in range(FINER + 1):
         places, y = shape(finer)
@@ -113,7 +114,11 @@ def on_first(known, shape, free, segments, hold):
             y = guess.stretch(places)
         mesh = Meshes([places], free)
         try:
-            return physics, places, *equilibrium(physics, mesh, shrunk(physics, mesh, y), hold), least
+            y = shrunk(physics, mesh, y)
+            equilibrium(physics, mesh, y, hold)
+            if hold is not None:
+                physics.bear(hold.unknown, hold.load)
+            return physics, places, y, hold, least
         except NotFound:
             if finer == FINER:
                 raise

@@ -99,8 +99,10 @@ def measures(tube, loads) -> dict:
 
 
 def sizes(tube, loads, outputs, parameters, values):
-    """What each output, and each of its derivatives, is measured by: (outputs, 1 + parameters); ``values`` (outputs,)."""
-    natural = measures(tube, loads)
-    above = [max(natural[name], abs(value)) for name, value in zip(outputs, values)]
-    below = [1.0, *(natural[name] for name in parameters)]
-    return np.array(above)[:, None] / np.array(below)
+    """What each output, and each of its derivatives, is measured by: (outputs, 1 + parameters); ``values`` (outputs,); of
+    many states (..., n).
+    """
+    natural, values = measures(tube, loads), np.abs(values)
+    above = np.array([np.maximum(natural[name], value) for name, value in zip(outputs, values)])
+    below = [np.broadcast_to(one, values.shape[1:]) for one in (1.0, *(natural[name] for name in parameters))]
+    return above[:, None] / np.array(below)

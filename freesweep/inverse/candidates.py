@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from ..description.python_line import python_line
 from ..status import STATUSES, VALUED
 from .deviation import deviations
 from .misfit import Misfit
@@ -57,7 +58,7 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
         "status": (("candidate",), _worst(found.status[:, :last])),
         "met": (("candidate",), np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)),
         "misfit": (("candidate",), np.sqrt(np.sum(residuals[:, :last] ** 2, axis=1))),
-        "python": (("candidate",), [_line(tube) for tube in tubes]),
+        "python": (("candidate",), [python_line(tube) for tube in tubes]),
     }
     if last > asked:
         data |= {
@@ -93,13 +94,11 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
     result["status"].attrs = {
         "flag_values": [status.value for status in STATUSES], "flag_meanings": " ".join(s.meaning for s in STATUSES)
     }  # fmt: skip
-    result.attrs = {"title": f"designs from {space.template!r}", "summary": sentence(misfit, result, u, slopes)}
+    result.attrs = {
+        "title": f"designs from {space.template!r}",
+        "summary": sentence(misfit, result, residuals[0], u, slopes),
+    }
     return Found(result, tubes)
-
-
-def _line(tube):
-    """The line of Python that makes a tube."""
-    return f"fs.{tube!r}".replace("material=", "material=fs.").replace("=Profile(", "=fs.Profile(")
 
 
 def _worst(status):

@@ -14,7 +14,7 @@ from ..description.quantities import Names
 from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import read_tolerances
-from .least import front, least, multipliers
+from .least import beaten, front, least, multipliers
 from .look import look, spread
 from .misfit import make
 from .polish import polish
@@ -84,6 +84,10 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
     if space is not None:
         missing = [w.title for w in (*asked, *kept, *objectives) if _needs_pressure(w) and "pressure" not in free]
         faults += [f"{title}: give its pressure, or let 'pressure' be free" for title in missing]
+        if "pressure" not in free and any(wish.output == "pressure" for wish in (*asked, *kept, *objectives)):
+            faults.append(
+                "pressure: is wished for, but each state has its own; let 'pressure' be free, or leave that out"
+            )
     if faults:
         raise ActuatorError(faults)
     misfit = make(space, asked, kept)
@@ -152,6 +156,9 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
     slopes = whole.slopes(u, choice, found)
     missed = np.any(np.abs(residuals[:, :-number]) > MISSED, axis=1)
     order = np.lexsort((found.values[:, -number], missed))
+    if number == 2:
+        behind = beaten(np.where(missed[:, None], np.inf, found.values[:, -2:]), scale)
+        order = order[~behind[order]]
     best = spread(misfit.space, u, choice, order, count, DIFFERENT)
     made = gather(whole, u[best], choice[best], slopes[best], tolerances, number)
     result = made.data

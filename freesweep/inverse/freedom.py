@@ -176,9 +176,12 @@ def _read_range(key, given, faults):
         return None
     if pair is None or pair.shape != (2,) or not np.all(np.isfinite(pair)) or not pair[0] < pair[1]:
         faults.append(
-            f"free[{key!r}]: found {described(given)}; give (lowest, highest), a list of what can be bought,"
-            " or a tie such as '-alpha'"
+            f"free[{key!r}]: found {described(given)}; give (lowest, highest), the first below the second, a list of what"
+            " can be bought, or a tie such as '-alpha'"
         )
+        return None
+    if key == "pressure" and pair[0] < 0.0:
+        faults.append(f"free['pressure']: found {described(given)}; pressures are 0 or more")
         return None
     return pair.tolist()
 

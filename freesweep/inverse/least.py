@@ -7,6 +7,7 @@ from .misfit import FAR, Misfit
 ROUNDS = 60
 ENOUGH = 1e-8  # of the objective, relative
 INSIDE = 0.5  # of a goal's tolerance that the search may use
+ALIKE = 1e-5  # of the objectives: as little of one as another point has
 ACTIVE = 1e-3  # of the unit box, or tolerances: a bound or a limit that stops the search
 
 
@@ -77,7 +78,7 @@ def least(misfit: Misfit, u, choice, objectives, scale):
 
 def front(misfit: Misfit, u, choice, count, scale):
     """``count`` points, and their choices, along the front of two objectives, from the starts that have the least of each:
-    the second one's least while the first is held at levels in between.
+    the second one's least while the first is held at its own least and at levels from there on.
     """
     ends = []
     for k in range(2):
@@ -90,15 +91,21 @@ def front(misfit: Misfit, u, choice, count, scale):
     place = len(misfit.wishes) - 2
     (first, one), (last, other) = ends
     levels = [Least(misfit, c, 2, scale).known(end)[0][place] for end, c in ends]
-    points, choices = [first], [one]
-    for share in np.linspace(0.0, 1.0, count)[1:-1]:
+    points, choices = [], []
+    for share in np.linspace(0.0, 1.0, max(count, 2))[:-1]:
         level = levels[0] + share * (levels[1] - levels[0])
-        starts = [(points[-1], choices[-1]), (last, other)]
-        starts += [(first + share * (last - first), one)] if one == other else []
+        starts = [(points[-1], choices[-1]), (last, other)] if points else [(first, one)]
+        starts += [(first + share * (last - first), one)] if points and one == other else []
         point, own = _best(misfit, scale, starts, level)
         points.append(point)
         choices.append(own)
     return np.array([*points, last]), np.array([*choices, other])
+
+
+def beaten(values, scale):
+    """Which points (n,) have no less of either objective (n, 2), and more of one, than some other point."""
+    own, others, alike = values[:, None], values[None], ALIKE * scale
+    return np.any(np.all(own >= others - alike, axis=2) & np.any(own > others + alike, axis=2), axis=1)
 
 
 def _best(misfit, scale, starts, level):

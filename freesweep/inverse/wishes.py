@@ -178,6 +178,8 @@ class _Asked:
         allowed = self._conditions()
         if self.output in STIFF and HELD[STIFF[self.output]][0] in given:
             allowed = ("pressure", *HELD[STIFF[self.output]])
+        if np.any(given.get("pressure", np.zeros(1)) < 0.0):
+            faults.append(f"{where}: pressure: found {described(self.pressure)}; pressures are 0 or more")
         held = self.output in (*HELD, *STIFF)
         for name in given:
             if name not in allowed:

@@ -10,30 +10,36 @@ NOTHING = 1e-6  # tolerances that a goal changes over all that is free, or a sha
 SHARE = 0.1  # of a range or a level: what is offered to be given up
 
 
-def sentence(misfit, result, u, slopes) -> str:
-    """How many candidates do it; if none: what the nearest one misses, and which goals fight."""
+def sentence(misfit, result, residuals, u, slopes) -> str:
+    """How many candidates do it; if none: what the nearest one misses, and which goals and limits fight. ``residuals``
+    (wishes,): by how many tolerances the nearest one misses each, with a sign.
+    """
     count = int(np.sum(result["met"].values))
     if count:
         return f"{count} of {len(u)} candidates meet every goal and keep every limit"
-    missed = np.abs(result["goal_missed"].values[0])
-    worst = int(np.argmax(np.nan_to_num(missed, nan=np.inf)))
-    wish, value = misfit.wishes[worst], result["goal_value"].values[0, worst]
-    wanted = _range(wish)
-    unit = unit_of(wish.output)
-    said = (
-        f"no design that is allowed does it; the nearest one has {wish.title} of {value:.6g} {unit} instead of {wanted}"
-    )
-    if not np.any(missed > 1.0):
+    missed, wishes = np.nan_to_num(np.abs(residuals), nan=np.inf), misfit.wishes
+    if not np.any(missed[: misfit.goals] > 1.0):
         broken = [str(name) for name, kept in zip(result["limit"].values, result["limit_kept"].values[0]) if not kept]
         return f"no design that is allowed meets the goals and keeps the limits: {', '.join(broken)}"
+    groups = [name for name in ("goal_value", "limit_value") if name in result]
+    values = np.concatenate([result[name].values[0] for name in groups])
+    worst = int(np.argmax(missed[: len(values)]))
+    wish = wishes[worst]
+    said = (
+        f"no design that is allowed does it; the nearest one has {wish.title} of {values[worst]:.6g}"
+        f" {unit_of(wish.output)} instead of {_range(wish)}"
+    )
+    if np.isnan(values[worst]):
+        return f"no design that is allowed does it; the nearest one has no state in which {wish.title} counts"
     if np.all(np.abs(slopes[0][worst]) < NOTHING * max(missed[worst], 1.0)):
         return f"{said}: nothing that is free changes it"
-    pulls = slopes[0] * result_signs(misfit, result)[:, None]
+    pulls = slopes[0] * np.sign(np.nan_to_num(residuals))[:, None]
     for other in np.argsort(-missed):
         a, b = pulls[worst], pulls[other]
         size = np.linalg.norm(a) * np.linalg.norm(b)
         if other != worst and missed[other] > 0.0 and size > 0.0 and a @ b < FIGHT * size:
-            return f"{said}: it fights with {misfit.wishes[other].title}"
+            same = f", {_range(wishes[other])}" if wishes[other].title == wish.title else ""
+            return f"{said}: it fights with {wishes[other].title}{same}"
     held = [f"{name} at {end:g} {unit_of(name)}" for name, end, _ in _stopping(misfit, u[0], pulls[worst])]
     if not held:
         return said
@@ -104,13 +110,6 @@ def round_amount(size):
 def unit_of(name) -> str:
     """Unit of an output or a parameter; of a profile's knot, too."""
     return UNITS.get(name) or PARAMETERS[name.partition("[")[0]].units
-
-
-def result_signs(misfit, result):
-    """The sense in which each wish is missed (w,): 1 where the value is too large."""
-    signs = np.zeros(len(misfit.wishes))
-    signs[: misfit.goals] = np.sign(np.nan_to_num(result["goal_missed"].values[0]))
-    return signs
 
 
 def _range(wish):

@@ -40,8 +40,8 @@ def test_spellings_of_the_same_bench(tmp_path, text, encoding):
 
 def test_what_is_passed_over_is_counted(tmp_path):
     lines = [
-        "rig 4, operator N", "# zero before the run", "", "pressure [kPa],force [N],time [s],pump", "10,1,0,a", "20,NaN,1,a",
-        "30,,2,b", ",,,", "40,4,3,", "#N/A,5,4,c",
+        "rig 4, operator N", "# zero before the run", "", "pressure [kPa],force [N],force_zero [V],pump", "10,1,0,a",
+        "20,NaN,1,a", "30,,2,b", ",,,", "40,4,3,", "#N/A,5,4,c",
     ]  # fmt: skip
     found = read(tmp_path, "\n".join(lines))
     assert found.force.tolist() == [1.0, 4.0]
@@ -50,7 +50,7 @@ def test_what_is_passed_over_is_counted(tmp_path):
         "bench.csv: 2 comment lines passed over",
         "bench.csv: 1 line above the names passed over",
         "bench.csv: 1 row of empty cells passed over (line 8)",
-        "bench.csv: 2 columns not needed and passed over: 'time [s]' (column 3), 'pump' (column 4)",
+        "bench.csv: 2 columns not needed and passed over: 'force_zero [V]' (column 3), 'pump' (column 4)",
         "bench.csv: 2 rows without a number skipped (force: lines 6, 7)",
     )
 

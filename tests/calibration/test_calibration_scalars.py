@@ -1,5 +1,7 @@
 """Any scalar is fitted: angles, sizes, dead length, threshold; with priors, bounds, ties; from the shell and from TOML."""
 
+import html
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,9 +9,12 @@ import pytest
 from benches import FIT, TIES, bench, exact, muscle, values
 from commands import refused, run
 
+import freesweep
 from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, calibrate, inflate
+from freesweep.calibration.page import _axis, _label
 from freesweep.calibration.parameters import Setup
 from freesweep.calibration.predicted import Asked, Predictor, scalar
+from freesweep.calibration.report import table
 from freesweep.cli import DONE
 
 TRUTH = Actuator(
@@ -142,6 +147,41 @@ def test_a_curve_without_pressure_counts():
     assert found.values == pytest.approx([0.2e6], rel=1e-4)
 
 
+def test_three_forces_that_are_met_exactly_do_not_count_as_exact():
+    """As many as parameters: their scatter tells nothing, intervals were a ninth of what they had to be."""
+    rng = np.random.default_rng(33)
+    truth, guess = muscle(rng)
+    curves = bench(truth, guess, rng, states=(10, 2))
+    assert np.count_nonzero(curves[1].force) == 3
+    found = calibrate(curves, FIT, ties=TIES)
+    assert found.sigma["force"] > 1e-3 * curves[1].force.max()
+    off = np.abs(found.values - values(truth)) / (0.5 * np.ptp(found.intervals, axis=1))
+    assert np.all(off < 1.5)
+
+
+def test_pictures_show_lengths_as_they_were_given_and_what_was_found():
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    free, pulled = found.measurements
+    title, shown = _axis(pulled, "deformed_length")
+    assert title == "contraction [%]"
+    assert shown(pulled.deformed_length) == pytest.approx(np.tile(np.linspace(0.0, 25.0, 6), 2), abs=1e-12)
+    title, shown = _axis(replace(free, deformed_length=None, stroke=0.3 - free.deformed_length), "deformed_length")
+    assert title == "stroke [mm]"
+    assert shown(np.array([0.3, 0.29])) == pytest.approx([0.0, 10.0])
+    assert _axis(free, "deformed_length")[0] == "deformed length [mm]"
+    assert _label(found, 0, "pressure", [0]) == "alpha 25 deg"  # 26 was the guess
+
+
+def test_intervals_that_only_rounding_parts_are_called_the_same():
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    rounded = replace(found, profile_intervals=found.intervals * (1.0 + 1e-12))
+    assert "by profile likelihood" not in table(rounded)
+    farther = replace(found, profile_intervals=np.add(found.intervals, [[1e4, 0.0], [0.0, 0.0], [0.0, 0.0]]))
+    rows = table(farther).splitlines()
+    assert "by profile likelihood" in rows[0]
+    assert [row.endswith("the same") for row in rows[1:4]] == [False, True, True]
+
+
 def part(whole, seen):
     """Some points of a force-length bench."""
     return Measurement(
@@ -236,6 +276,9 @@ def test_the_shell_and_toml_say_the_same(tmp_path, monkeypatch, capsys):
     assert "data:image/png;base64," in page
     assert "[actuator]" in page
     assert "://" not in page  # nothing is fetched
+    (line,) = re.findall(r"<pre>(fs.Actuator.*?)</pre>", html.unescape(page))
+    assert "None" not in line  # nor what is as usual
+    assert eval(line, {"fs": freesweep}).alpha == pytest.approx(25.0, abs=0.1)
     assert "--report: found" in refused(capsys, "calibrate", "case.toml", "--report", "page.pdf")
     (tmp_path / "case.toml").write_text("[data]\nfile = 1\n")
     assert "data.file: unknown; it has files, measured" in refused(capsys, "calibrate", "case.toml")

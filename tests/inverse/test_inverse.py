@@ -15,6 +15,7 @@ from grids import CHILD_ENVIRONMENT, make
 import freesweep as fs
 from freesweep.cli import main
 from freesweep.inverse import look, wish_file
+from freesweep.inverse.least import beaten
 from freesweep.inverse.wishes import Wish
 from freesweep.sweep.spec import parse
 from freesweep.thesis.prototypes import found_rotator
@@ -136,6 +137,35 @@ def test_goals_that_fight_are_named():
     assert re.search("fights with|bounds .* stop it", found.attrs["summary"])
 
 
+@pytest.mark.parametrize(
+    ("goal", "limits", "says"),
+    [
+        (
+            fs.Goal("force", 500, pressure=1e5, tolerance=1),
+            [fs.Limit("outer_radius", at_most=8e-3, pressure=1e5)],
+            "N instead of 500 N: it fights with outer_radius at pressure 100000 Pa",
+        ),
+        (
+            fs.Goal("stroke", 0.1, pressure=1e5),
+            [
+                fs.Limit("deformed_length", at_most=0.1, pressure=1e5),
+                fs.Limit("deformed_length", at_least=0.2, pressure=1e5),
+            ],
+            "m instead of at most 0.1 m: it fights with deformed_length at pressure 100000 Pa, at least 0.2 m",
+        ),
+    ],
+)
+def test_limits_that_fight_are_named(goal, limits, says):
+    found = fs.design(tube(alpha=30, beta=-30), {"alpha": (10, 80), "beta": "-alpha"}, goal, limits, count=2)
+    assert found.attrs["summary"].endswith(says)
+
+
+def test_what_is_beaten_in_both_is_on_no_front():
+    """The slimmest of all, and as slim with less of the other; nor counts what rounding parts."""
+    values = np.array([[3.0, 8.0], [3.0, 4.6], [5.0, 2.0], [5.0 + 1e-6, 2.0 + 1e-6], [6.0, 3.0], [np.inf, np.inf]])
+    assert beaten(values, np.array([6.0, 8.0])).tolist() == [True, False, False, False, True, True]
+
+
 def test_the_slimmest_muscle_and_the_price_of_its_force():
     """A blocked force grows with r^2: one newton more costs dr/dF = r/(2 F) where only the radius is left."""
     free, state = {"radius": ("2 mm", "15 mm")}, {"pressure": 2e5}
@@ -241,6 +271,13 @@ def test_symmetric_copies_are_one_candidate():
         ({"material": ["rubber"]}, [fs.Goal("rotation", 90, pressure=1e5)], ["The library holds"]),
         ({"alpha": (0, 85)}, [fs.Goal("rotation", 90)], ["give its pressure, or let 'pressure' be free"]),
         ({"alpha": (0, 85)}, "rotation", ["give a list of freesweep.Goal"]),
+        (
+            {"alpha": (30, 30)},
+            [fs.Goal("rotation", 90, pressure=1e5)],
+            ["lowest, highest), the first below the second"],
+        ),
+        ({"pressure": (-1e5, 1e5)}, [fs.Goal("rotation", 90)], ["pressures are 0 or more"]),
+        ({"alpha": (0, 85)}, [fs.Goal("pressure", at_most=1e5)], ["each state has its own"]),
     ],
 )
 def test_every_fault_of_a_wish_is_listed(free, goals, words):
@@ -269,6 +306,7 @@ def test_what_a_template_has_not_is_not_free():
         (dict(output="rotation", value="ninety"), "rotation"),
         (dict(output="rotation", between=(5, 3)), "lower number first"),
         (dict(output="radius", value=5e-3, pressure=1e5), "no matter of a state"),
+        (dict(output="rotation", value=5, pressure=[1e5, -1e4]), "pressures are 0 or more"),
     ],
 )
 def test_a_wish_that_makes_no_sense_is_refused(wish, word):
