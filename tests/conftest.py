@@ -33,6 +33,7 @@ interpret.FEW = interpret.FEWER = -1
 sections = dict(length=0.1, radius=5e-3, wall=1.5e-3, material=fs.MooneyRivlin(1e5, 5e4))
 alike, varying = fs.Actuator(alpha=40, beta=-20, **sections), fs.Actuator(alpha=[(0, 40), (1, 41)], beta=-20, **sections)
 physical = fs.Actuator(alpha=30, beta=-30, model="physical", **sections)
+body = fs.Actuator(alpha=40, beta=-20, taper=0.2, **sections)
 """
 TAUT = """
 fs.blocked_force(alike, 1e4)
@@ -42,6 +43,7 @@ kernels.compile_idle(["Mooney-Rivlin", "seek_lanes"])
 """
 PHYSICAL = """
 fs.inflate(physical, 1e4)
+fs.inflate(body, 1e4)
 names = "carry_lanes", "solve_lanes", "carry_physical", "solve_physical", "query", "physical_states"
 kernels.compile_idle(["Mooney-Rivlin", *names])
 """

@@ -26,16 +26,18 @@ def calibrate(error, estimate, bound, size, beside, allowed) -> calibration.Fact
     """The least factors with which stated errors hold, with a margin: (n,) errors and what they are told from.
 
     Of the shares of stored bounds that one is taken with which stated errors up to what is ``allowed`` are nearest to the
-    true ones.
+    true ones. Where nothing is told of an error, as between nodes whose fibers are taut all along, no factor makes a number
+    of it: there it has to be none.
     """
     best, least = calibration.cautious(0), np.inf
     for share in SHARES if np.isfinite(error).sum() >= LEAST else ():
         total = estimate + share * bound
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = _by_class(error / total, errors.classes(total, size), beside)
+        told = total > 0.0
+        needed = np.divide(error, total, out=np.full(len(error), np.nan), where=told)
+        found = _by_class(needed, errors.classes(total, size), beside)
         factors = calibration.Factors(found, share, best.scales)
         stated = errors.stated(factors, estimate, bound, size, beside)
-        given = np.isfinite(error) & (stated <= allowed) & (error > 0.0)
+        given = np.isfinite(error) & (stated <= allowed) & (error > 0.0) & told
         excess = np.median(np.log(stated[given] / error[given])) if given.any() else np.inf
         if excess < least or not np.isfinite(least):
             best, least = factors, excess
@@ -61,6 +63,8 @@ def _by_class(needed, classes, beside):
 
 def _high(numbers):
     """The largest but a few in ten thousand, and more where few numbers (n,) cannot have met the worst."""
+    if not len(numbers):
+        return calibration.UNMEASURED
     few = max(1.0 + FEW / len(numbers), (BEYOND * len(numbers)) ** -TAIL)
     return few * np.quantile(numbers, 1.0 - BEYOND)
 

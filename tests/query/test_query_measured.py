@@ -133,6 +133,24 @@ def test_factors_are_the_least_that_hold():
     assert few.bound * calibration.UNMEASURED == pytest.approx(1.0)
 
 
+def test_designs_of_which_no_error_is_told_change_no_factor():
+    """Between nodes whose fibers are taut all along shares of slack are 0, and nothing is told of them. Alone they were a
+    division by zero, beside others one in a logarithm where they were wrong by rounding.
+    """
+    draw, count, silent = np.random.default_rng(0), 4000, 500
+    estimate, nothing = 10.0 ** draw.uniform(-9, -3, count), np.zeros(silent)
+    told = estimate * draw.uniform(0.0, 3.0, count), estimate, np.full(count, 1e-8), np.ones(count)
+    wrong = np.where(np.arange(silent) % 2, 1e-17, 0.0), nothing, nothing, np.ones(silent)
+    with np.errstate(all="raise"):
+        both, one, none = (
+            calibrate(*rest, np.zeros(len(rest[0]), bool), np.full(len(rest[0]), 1e-2))
+            for rest in (list(map(np.concatenate, zip(told, wrong))), told, wrong)
+        )
+    np.testing.assert_array_equal(both.classes, one.classes)
+    assert both.bound == one.bound
+    assert (none.classes == calibration.UNMEASURED).all()
+
+
 def test_what_was_stored_wrongly_does_not_pass_for_roughness():
     draw, count = np.random.default_rng(0), 8000
     pieces = np.repeat([[0, 2], [2, 2]], count // 2, axis=0)

@@ -4,6 +4,7 @@ symmetries of Maxwell's.
 
 import numpy as np
 import pytest
+from plain import by_what_there_is
 
 from freesweep import Actuator, MooneyRivlin, Profile, blocked_force, blocked_torque, inflate, interpret, lock
 from freesweep.derivative import attach
@@ -33,11 +34,11 @@ lagrangian = interpret._Twins(kernels)
 
 @pytest.fixture(autouse=True)
 def plain(monkeypatch):
-    """States without the compiler: there is no machine code of bodies for all tests."""
+    """States without the compiler, but for what it has made already: free states of bodies, before the whole suite."""
     monkeypatch.setattr(interpret, "_clock", interpret._Clock())
 
     def at_once(_, __, entry, *arguments):
-        return interpret._is_done(entry, arguments, [0, 0.0], 3000.0)
+        return by_what_there_is(entry, arguments)
 
     for states in (batch, hold_batch, interpret):
         monkeypatch.setattr(states, "at_once", at_once)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import freesweep as fs
-from freesweep.status import COMPRESSED, FLAGS, OK
+from freesweep.status import BEYOND_LIMIT, COMPRESSED, FLAGS, OK
 
 R, C = 5e-3, 1e5
 
@@ -44,6 +44,20 @@ def test_region_one_with_fiber_extension_is_held_by_the_force_that_inflates_to_i
     assert held["force"].item() == pytest.approx(force, rel=1e-7)
     assert held["slack_fiber"] == free["slack_fiber"] == 3
     assert held["rotation"].item() == pytest.approx(free["rotation"].item(), rel=1e-6)
+
+
+@pytest.mark.parametrize(("design", "pressure", "force"), [
+    ((-66.8912696, -45.1002328, 23.0719, 0.2309529, 0.0492472), 2.38363832, 0.83931614),
+    ((-17.6597879, -79.7083356, 7.0955225, 0.3249329, 0.4535539), 1.03957916, 0.22655272),
+])  # fmt: skip
+def test_a_tube_that_snaps_where_nothing_holds_it_is_held_from_where_it_was_pulled(design, pressure, force):
+    """Neither from rest nor from the free state, which is beyond its limit, but under a force that is released again."""
+    tube, unit = actuator(*design, energy="principal"), np.pi * R**2 * C
+    assert fs.inflate(tube, pressure * C, x=0.0)["status"] == BEYOND_LIMIT
+    pulled = fs.inflate(tube, pressure * C, force=force * unit, x=0.0)
+    held = fs.blocked_force(tube, pressure * C, pulled["deformed_length"].item(), x=0.0)
+    assert (held["status"], held["stable"]) == (OK, 1)
+    assert held["force"].item() / unit == pytest.approx(force, rel=1e-6)
 
 
 MUSCLE = {
@@ -130,4 +144,4 @@ def test_what_inflates_to_a_length_or_rotation_holds_it(count):
         size = np.pi * R**2 * pressure * (1.0 if by_force else R)
         if held["status"] != OK or abs(held[name].item() - load) > 1e-4 * max(size, abs(load)):
             lost.append((tube, pressure, name, load, held["status"].item(), held[name].item()))
-    assert len(lost) <= 0.005 * count, lost
+    assert len(lost) <= 0.003 * count, lost

@@ -23,10 +23,11 @@ from ..stability import unstable_directions
 from ..status import HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 from . import ways
 from .near_turn import pin
-from .sought import FROM_REST, HELD_ROTATION, Found, failed, load_of
+from .sought import FROM_REST, HELD_ROTATION, Found, failed, load_of, unsure
 from .ways import EVERY, cylinder_multiplier, even_mesh, held_at
 
-AMPLITUDES = (0.003, 0.01, 0.03, 0.1)  # of the sine, tried in turn: with fiber extension no cylinder is straight
+# of the sine, tried in turn: with fiber extension no cylinder is straight; steep fibers soon leave the sine
+AMPLITUDES = (0.003, 0.01, 0.03, 0.1, 3e-4, 3e-5)
 STEPS, TOLERANCE = 600, 1e-10
 FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
 DIRECTION = Load(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -66,7 +67,7 @@ def on_meshes(room, tube, path, pressure, accuracy, out):
     )  # fmt: skip
     good = status == newton.CONVERGED or status == nested.UNREACHED
     if not good or unstable > 0 or not is_buckled(space.y) or not space.y[n // 4] > 1.0:
-        return failed(NOT_CONVERGED, load)
+        return unsure(NOT_CONVERGED, load)
     now = loaded(load, unit, out[0, nested.MULTIPLIER])
     _, rounding = unstable_directions(
         space.fine[0], space.fine[1], n << doublings, n, tube, now, unit, abs(wanted), space.work
@@ -126,11 +127,13 @@ def leave_cylinder(room, tube, path, critical_pressure, multiplier):
 def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
     """Along the branch from the state in the track, at ``first`` = (pressure, the tangent's), until it has a stable state at
     the ``pressure``, which a mesh moved to the branch may step over, too. ``least`` takes the lowest at which it turned, and
-    its bound.
+    its bound. Where it came by without one, that is not certain: a front between the swollen part and the thin one feels the
+    cells of a coarse mesh, which can keep it where nothing does.
     """
     track, space, here = room.track, room.space, first
     course, edges, cells, _, _, _ = tube
     n, step, lowest, nothing, before = len(track.x) - 1, FIRST_STEP * CHANGE, first[0], path.origin, first[0]
+    came_by = False
     for _ in range(STEPS):
         own = fill(course, edges, track.x, n, n, cells)
         status, _, mu, tangent_mu, made, step = advance(
@@ -138,7 +141,7 @@ def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
         )
         if status != FOLLOWED:  # a front that is too steep for steps along the branch
             came = here[0] < pressure and by_pressure(room, tube, path, here[0], pressure)
-            return on_meshes(room, tube, path, pressure, accuracy, out) if came else failed(NOT_CONVERGED, nothing)
+            return on_meshes(room, tube, path, pressure, accuracy, out) if came else unsure(NOT_CONVERGED, nothing)
         if not 0.0 < mu < farthest:
             break
         if here[1] < 0.0 and not is_stable(0, tangent_mu, -1.0):  # the least pressure of this branch
@@ -151,6 +154,7 @@ def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
             own = fill(course, edges, track.x, n, n, cells)
             advance(lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], made, space.work)
         if min(before, min(here[0], mu)) <= pressure <= max(before, max(here[0], mu)):
+            came_by = True
             x, y, tangent = track.x.copy(), track.y.copy(), track.tangent.copy()
             end = ways.land(room, tube, path, here, (mu, tangent_mu, made), pressure)
             if end.status == OK:
@@ -162,7 +166,7 @@ def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
             for i in range(n + 1):
                 track.x[i] = x[i]
         before, here = mu, take(track, tube, path, mu, tangent_mu, space.work)
-    return failed(HELD_IMPOSSIBLE, nothing)
+    return unsure(HELD_IMPOSSIBLE, nothing) if came_by else failed(HELD_IMPOSSIBLE, nothing)
 
 
 @kernel
@@ -190,6 +194,6 @@ def _find_buckled(course, problem, walls, p, force, target, tube, accuracy, room
     path = Path(nothing, pressure, 0.0, False, held_at(unit, target * scale, target * scale, EVERY))
     status, mu, tangent_mu = leave_cylinder(room, tube, path, p_c, at_critical / scale)
     if status != FOLLOWED:
-        return failed(NOT_CONVERGED, load)
+        return unsure(NOT_CONVERGED, load)
     least[0], least[1] = min(mu, p_c), abs(mu - p_c)  # a branch that rises begins at the critical pressure
     return follow(room, tube, path, (mu, tangent_mu), p, FARTHEST * max(p, mu), accuracy, out, least)

@@ -6,7 +6,8 @@ y = 1 of a tube that is the same all along is an equilibrium on this way under t
 may begin there at once, as long as no state on it is unstable. Else all of it is gone, as by a tube that varies.
 
 Where the wall would have to be pushed on that way, or another length or rotation than the undeformed one is not come to,
-the other is gone: the loads rise with nothing held, then what is held changes from what was found. Without pressure neither
+the other is gone: the loads rise with nothing held, then what is held changes from what was found. A tube that snaps on
+that way may not do so where the load that will hold it, as large as all others, rises as well. Without pressure neither
 way begins; they go to a pressure like the wall's stiffness, which is lowered at the end.
 
 A tube that is the same all along, or its own mirror image, keeps a symmetric state. Beyond a critical pressure of blocked
@@ -16,7 +17,7 @@ branch turns back, at most designs for good: BEYOND_LIMIT.
 
 from ...jit import kernel
 from ..physics import lagrangian
-from ..status import COMPRESSED, NOT_CONVERGED, OK, PENDING
+from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from . import ways
 from .settle import finish, lower, settle, with_neck
 from .sought import (  # noqa: F401
@@ -33,6 +34,8 @@ from .sought import (  # noqa: F401
     valued,
 )
 from .ways import EVERY, cylinder_multiplier, held_at
+
+PULLS = (0.0, 1.0, -1.0, 4.0, -4.0)  # of the load that will hold, as the others rise: a tube may snap without it
 
 
 @kernel
@@ -56,9 +59,14 @@ def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
                 return necked
     lost = sought.wanted != sought.natural and not (came_to and found.status == NOT_CONVERGED)
     if found.status == COMPRESSED or (lost and not valued(found.status)):
-        end = ways.from_free(room, tube, sought.with_pressure, sought.unit, sought.wanted)
-        again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy, out)
-        found = again if valued(again.status) else found
+        snaps = True
+        for pull in PULLS:
+            if snaps:
+                end = ways.from_free(room, tube, sought.with_pressure, sought.unit, pull, sought.wanted)
+                again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy, out)
+                done = valued(again.status)
+                found = again if done else found
+                snaps = not done and (pull != 0.0 or (end.status == BEYOND_LIMIT and not end.path.held.any))
     return finish(room, tube, sought, found, out) if valued(found.status) else found
 
 

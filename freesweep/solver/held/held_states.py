@@ -125,6 +125,21 @@ def find_on_some_mesh(problem, walls, p, other, target, kind, tube, accuracy, ro
 
 
 @kernel
+def find_buckled_on_some_mesh(problem, walls, p, other, target, tube, accuracy, room, out, least):
+    """As :func:`.buckled.find_buckled`, on finer base meshes where it is not certain that there is none; returns also the
+    tube and the room that were used.
+    """
+    base, half, varies = tube.edges[len(tube.edges) - 1], tube.half, len(tube.cells) > 1
+    own, own_room, finer = tube, room, 1
+    while True:
+        found = find_buckled(problem, walls, p, other, target, own, accuracy, own_room, out, least)
+        finer *= FINER
+        if valued(found.status) or found.sure or finer * base > FINEST:
+            return found, own, own_room
+        own, own_room = made_finer(tube, finer), make_room(finer * base, half, varies)
+
+
+@kernel
 def as_limit(found):
     """The same, whose end is a limit."""
     status = BEYOND_LIMIT if found.status == NOT_CONVERGED else found.status
@@ -224,7 +239,9 @@ def hold(states, i, problem, walls, p, other, target, kind, buckled, tube, accur
     else:
         own_target = 0.5 * target if tube.half else target
         if buckled:
-            found = find_buckled(problem, walls, p, other, own_target, tube, accuracy, room, out, states.least[i])
+            found, tube, room = find_buckled_on_some_mesh(
+                problem, walls, p, other, own_target, tube, accuracy, room, out, states.least[i]
+            )
         else:
             found, tube, room = find_on_some_mesh(problem, walls, p, other, own_target, kind, tube, accuracy, room, out)
         record(states, i, found, tube, room.space, accuracy, out)

@@ -76,6 +76,12 @@ def failed(status, load):
 
 
 @kernel
+def unsure(status, load):
+    """No state on this mesh."""
+    return Found(status, 0, 0, load, 0.0, False, FROM_REST)
+
+
+@kernel
 def refused(load, target, kind, tube):
     """COMPRESSED or HELD_IMPOSSIBLE where nothing has to be solved to know it, else PENDING."""
     cell, course, places = guide.cell_along(tube, 0.5), tube.course, tube.places

@@ -202,11 +202,11 @@ def is_stiff(tube, path, mu):
 
 
 @kernel
-def from_free(room, tube, load, unit, target):
-    """The state at ``load`` on the branch that begins with nothing held: the loads rise, then the length or rotation found
-    is changed to the ``target``.
+def from_free(room, tube, load, unit, pull, target):
+    """The state at ``load`` on the branch that begins with nothing held: the loads rise, and with them so much of the
+    ``unit`` that holds, then the length or rotation found is changed to the ``target``.
     """
-    track, path = room.track, rising(load, NOTHING)
+    track, path = room.track, rising(loaded(load, unit, pull), NOTHING)
     n = len(track.x) - 1
     course, edges, cells, _, _, _ = tube
     track.y[n + 1] = track.next_y[n + 1] = 0.0
@@ -217,6 +217,7 @@ def from_free(room, tube, load, unit, target):
         end = follow(room, tube, path, mu, tangent_mu, 1.0)
         if end.status != OK:
             return end
-    own = fill(course, edges, track.x, n, n, cells)
-    first, _ = held.hold(lagrangian.conjugate, track.x, track.y, n, own, load, unit, room.space.work[8])
+    track.y[n + 1] = pull
+    own, now = fill(course, edges, track.x, n, n, cells), loaded(load, unit, pull)
+    first, _ = held.hold(lagrangian.conjugate, track.x, track.y, n, own, now, unit, room.space.work[8])
     return go(room, tube, moving(load, held_at(unit, first, target, EVERY)))
