@@ -62,9 +62,7 @@ def _map():
     thin = {"line_width": 1.0, "line_color": "ink", "line_alpha": 0.75}
     made.multi_line("xs", "ys", source=_source("map_lines", columns="xs ys ink dash"), line_dash="dash", **thin)
     made.line("x", "y", source=_source("map_manifold"), line_color="white", line_width=4, line_alpha=0.6)
-    made.line(
-        "x", "y", source=_source("map_manifold_line"), line_color=style.LOCKED, line_width=2, name="map_manifold_glyph"
-    )
+    made.line("x", "y", source=_source("map_manifold_line"), line_color=style.LOCKED, line_width=2)
     made.text(
         "x", "y", "text", source=_source("map_labels", columns="x y text ink"), text_align="center",
         text_baseline="middle", text_font=value(FONT), text_font_size=NORMAL, text_color="ink", text_outline_color=None,
@@ -74,7 +72,7 @@ def _map():
         "x", "y", source=_source("map_pins", columns="x y colour edge size"), size="size", fill_color="colour",
         line_color="edge", line_width=2,
     )  # fmt: skip
-    made.scatter("x", "y", source=_source("map_cross"), marker="cross", size=16, line_width=1.2, line_color=style.INK)
+    made.scatter("x", "y", source=_source("map_cross"), marker="cross", size=16, line_width=1.2, name="map_cross_glyph")
     mapper = LinearColorMapper(palette=["#ffffff", "#000000"], low=0, high=1, name="map_colours")
     bar = ColorBar(
         color_mapper=mapper, name="map_bar", width=10, padding=6, margin=0, bar_line_color=None, background_fill_color=None,
@@ -133,8 +131,7 @@ def _curve():
 
 def _front():
     made = _figure("front", "box_select", ("tap", "selectiongeometry"), x_range=Range1d(0, 1), y_range=Range1d(0, 1))
-    made.scatter("x", "y", source=_source("front_dim"), size=3, fill_color="#8d949d", fill_alpha=0.35, line_color=None,
-                 name="front_dim_glyph")  # fmt: skip
+    made.scatter("x", "y", source=_source("front_dim"), size=3, fill_color="#8d949d", fill_alpha=0.35, line_color=None)
     made.scatter("x", "y", source=_source("front_lit"), size=4, fill_color=style.SERIES[0], fill_alpha=0.75,
                  line_color=None, name="front_lit_glyph")  # fmt: skip
     made.line("x", "y", source=_source("front_line"), line_color=style.SERIES[1], line_width=2, name="front_line_glyph")

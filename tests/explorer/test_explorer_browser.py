@@ -194,6 +194,15 @@ def test_pinned_designs_leave_as_python_shell_toml_and_csv(page, capsys):
         assert len(content) > 5000
 
 
+def test_what_leaves_is_the_design_that_is_shown_to_the_last_digit(page):
+    change(page, "{pins: [{alpha: 100 / 3, beta: -50 - 1e-14, radius: 0.001 * Math.sqrt(20)}]}")
+    names = {}
+    exec(page.execute_script("return freesweep.exports.python[0]()").replace("states =", "later = lambda:"), names)
+    (pin,) = page.execute_script("return freesweep.state.pins")
+    assert {name: getattr(names["tubes"][0], name) for name in pin} == pin
+    assert pin["beta"] == -50.0
+
+
 def test_keys_units_and_a_link_that_restores_the_view(page, explorer):
     place = page.find_element(By.ID, "map_place")
     place.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_DOWN, Keys.ENTER)
