@@ -239,9 +239,9 @@ def test_one_file_shows_the_same_without_a_server(driver, atlas, tmp_path, monke
     monkeypatch.setattr(table, "SAMPLE", 4000)
     path = fs.explore(atlas, html=tmp_path / "page.html")
     driver.get("about:blank")
-    driver.get(path.as_uri() + "#u=1&at=pressure:71000,radius:0.0046")
-    at_rest(driver)
-    put_pin(driver)
+    driver.get(path.as_uri() + "#u=1&at=pressure:71000,radius:0.0046&pins=alpha:30,beta:-50,radius:0.0046")
+    at_rest(driver)  # questions that came while the table was unpacked waited for it
+    assert driver.find_element(By.ID, "said").text == ""
     told = driver.execute_script("return freesweep.pinned.pins[0].measures.rotation")
     true = float(atlas.query(["rotation"], **(PIN | {"radius": 4.6e-3}), pressure=7.1e4)["rotation"])
     assert abs(told["value"] - true) <= max(told["error"], 0.01 * abs(true))
