@@ -23,7 +23,7 @@ FEW, SECONDS = 32, 15.0  # states, and [s] of processor time, in one process: fr
 FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
 _spent = {}  # (awaited entry point, kinds of arguments) -> [states, seconds] in plain Python
-_twins = {}
+_twins, _foretold = {}, set()
 _making = threading.RLock()  # of twins: one that is found knows all its names
 
 
@@ -104,6 +104,13 @@ def _is_kept(entry, kinds):
 def is_at_hand(entry) -> bool:
     """Whether an entry point's machine code is there, or need only be loaded."""
     return isinstance(entry, Dispatcher) and bool(entry.signatures or stem(entry.py_func) in compiled(_folder(entry)))
+
+
+def foretell(entry):
+    """Tell, once, that an entry point about to be called has to be compiled, if it has."""
+    if isinstance(entry, Dispatcher) and entry not in _foretold and not is_at_hand(entry):
+        _foretold.add(entry)
+        _tell(_folder(entry))
 
 
 def _folder(entry):
