@@ -36,8 +36,8 @@ def upright(cell):
 
 @kernel
 def follow(tube, u, before, load, ahead):
-    """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached. A place like
-    the one before it does as that did: of a tube that is the same all along one is followed.
+    """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached. A place
+    like the one before it does as that did: of a tube that is the same all along one is followed.
     """
     places, last = tube.places, cell_along(tube, 0.0)
     reached, half = 1.0, (1.0 if tube.half else 0.5) * places[len(places) - 1]
