@@ -1,7 +1,7 @@
 """What a person describes: the actuator, checked, in SI units and degrees."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -227,6 +227,12 @@ class Actuator:
         profiles = [self.profile(name) for name in VARYING if getattr(self, name) is not None]
         varying = (given_by(self), *(tuple(profile.at(HASHED).tolist()) for profile in profiles))
         return hash((*fields, varying))
+
+    def __repr__(self):
+        """What makes it: what is not usual, and the model, whose default may change."""
+        usual = {one.name: repr(one.default) for one in fields(self) if one.name != "model"}
+        told = [one for one in fields(self) if repr(getattr(self, one.name)) != usual.get(one.name)]
+        return f"Actuator({', '.join(f'{one.name}={getattr(self, one.name)!r}' for one in told)})"
 
     def _repr_html_(self):
         from ..notebook import of_actuator
