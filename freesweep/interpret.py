@@ -1,8 +1,9 @@
 """Kernels in plain Python, for the first few states of a process.
 
 The compiler takes twenty seconds, for physical tubes forty to eighty; a state in plain Python takes two, of a physical tube
-six: who asks for one state need not wait. Every kernel has its twin: the same code object, with the twins of all that it calls. Same formulas in the same order; as
-multiplications and additions are not fused, numbers differ by rounding, far within their bounds. Sweeps never do this.
+six: who asks for one state need not wait. Every kernel has its twin: the same code object, with the twins of all that it
+calls. Same formulas in the same order; as multiplications and additions are not fused, numbers differ by rounding, far
+within their bounds. Sweeps never do this.
 
 Some states take plain Python minutes: each twin looks at the clock when it is called, and gives up in time.
 """

@@ -36,6 +36,7 @@ def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
             own |= stiffness(asked[state], kind, own, part, energy)
             answers[state] = {name: output(name, kind, own, part) for name in asked[state]}
             limit = np.where(own["status"] == INVALID, INVALID, OK)
+            answers[state]["slack"] = np.where(kind == "limit", 0, own["slack_fiber"]).astype(np.int8)
             answers[state]["status"] = limit if kind == "limit" else own["status"]
     return answers
 

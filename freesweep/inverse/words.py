@@ -14,7 +14,13 @@ def sentence(misfit, result, u, slopes) -> str:
     """How many candidates do it; if none: what the nearest one misses, and which goals fight."""
     count = int(np.sum(result["met"].values))
     if count:
-        return f"{count} of {len(u)} candidates meet every goal and keep every limit"
+        said = f"{count} of {len(u)} candidates meet every goal and keep every limit"
+        pushing = int(np.sum(result["met"].values & (result["slack_fiber"].values > 0)))
+        if (
+            pushing == 0 or misfit.space.template.is_loose
+        ):  # real threads do not push, and loose ones are none the worse
+            return said
+        return f"{said}; in {pushing} of them threads would have to push (slack_fiber)"
     missed = np.abs(result["goal_missed"].values[0])
     worst = int(np.argmax(np.nan_to_num(missed, nan=np.inf)))
     wish, value = misfit.wishes[worst], result["goal_value"].values[0, worst]
