@@ -191,6 +191,14 @@ def test_cords_that_make_no_muscle(changes, says):
         Actuator.from_cord(**given)
 
 
+def test_a_rubber_may_be_given_by_its_name():
+    given = {"alpha": 30, "beta": -30, "length": 0.1, "radius": 5e-3, "wall": 1e-3}
+    named = Actuator(**given, material="Dragon Skin 30")
+    assert named == Actuator(**given, material=freesweep.material("dragon-skin-30"))
+    with pytest.raises(ActuatorError, match="'latx'; did you mean 'natural-latex'"):
+        Actuator(**given, material="latx")
+
+
 def test_what_is_written_of_an_actuator_makes_it_and_is_short():
     plain = Actuator(alpha=30, beta=None, length=0.1, radius=5e-3, wall=1e-3, material=NeoHookean(1e5))
     text = "Actuator(alpha=30.0, beta=None, length=0.1, radius=0.005, wall=0.001, material=NeoHookean(c10=100000.0), "
