@@ -10,6 +10,7 @@ from .measures import COARSE_STATUS
 
 FONT = "system-ui, -apple-system, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif"
 SMALL, NORMAL = "11px", "12px"
+BAR = 60  # [px]: the colour bar and numbers of five letters
 DIAGONAL, BACK, CROSSED = "right_diagonal_line", "left_diagonal_line", "diagonal_cross"
 SLACK_KIND = 100  # and the slack families
 HATCHES = {  # by status of what failed, of COARSE_STATUS, and by slack families: pattern
@@ -79,6 +80,7 @@ def _map():
         major_label_text_font=FONT, major_label_text_font_size=SMALL, major_tick_line_color=None, label_standoff=5,
     )  # fmt: skip
     made.add_layout(bar, "right")
+    made.min_border_right = BAR  # ticks come later than the layout
     return made
 
 
