@@ -23,7 +23,7 @@ autodoc_typehints = "none"  # docstrings say it in words, with units
 autodoc_member_order = "bysource"
 autoclass_content = "class"
 html_theme = "alabaster"
-html_theme_options = {"description": "Statics of fiber-reinforced soft actuators", "page_width": "1100px"}
+html_theme_options = {"description": "Statics of fiber-reinforced soft actuators", "page_width": "1260px"}
 html_title = f"freesweep {release}"
 
 

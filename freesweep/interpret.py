@@ -1,9 +1,9 @@
 """Kernels in plain Python, for the first few states of a process.
 
 The compiler takes twenty seconds, for physical tubes forty to eighty; a state in plain Python takes two, of a physical tube
-ten: who asks for one state need not wait. Every
-kernel has its twin: the same code object, with the twins of all that it calls. Same formulas in the same order; as
-multiplications and additions are not fused, numbers differ by rounding, far within their bounds. Sweeps never do this.
+six: who asks for one state need not wait. Every kernel has its twin: the same code object, with the twins of all that it
+calls. Same formulas in the same order; as multiplications and additions are not fused, numbers differ by rounding, far
+within their bounds. Sweeps never do this.
 
 Some states take plain Python minutes: each twin looks at the clock when it is called, and gives up in time.
 """
@@ -23,7 +23,7 @@ FEW, SECONDS = 32, 15.0  # states, and [s] of processor time, in one process: fr
 FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
 _spent = {}  # (awaited entry point, kinds of arguments) -> [states, seconds] in plain Python
-_twins = {}
+_twins, _foretold = {}, set()
 _making = threading.RLock()  # of twins: one that is found knows all its names
 
 
@@ -104,6 +104,13 @@ def _is_kept(entry, kinds):
 def is_at_hand(entry) -> bool:
     """Whether an entry point's machine code is there, or need only be loaded."""
     return isinstance(entry, Dispatcher) and bool(entry.signatures or stem(entry.py_func) in compiled(_folder(entry)))
+
+
+def foretell(entry):
+    """Tell, once, that an entry point about to be called has to be compiled, if it has."""
+    if isinstance(entry, Dispatcher) and entry not in _foretold and not is_at_hand(entry):
+        _foretold.add(entry)
+        _tell(_folder(entry))
 
 
 def _folder(entry):

@@ -1,7 +1,7 @@
 """What a person describes: the actuator, checked, in SI units and degrees."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
 from .families import FAMILIES, followed, given_by, is_none, is_one, threads
 from .faults import ActuatorError
 from .given import numbers, read_number
+from .material_library import material as named_rubber
 from .options import read_choice
 from .profiles import Along as AlongTube
 from .profiles import ProfileError, as_profile, is_profile, together
@@ -78,7 +79,7 @@ class Actuator:
         share by which the far end is slimmer than the near one (-10 to 1; negative: wider), and that by which the middle is
         wider than without (-1 to 10), smoothly
     wall : wall thickness [m], number or profile; of a body also "constant volume 1.5 mm": the section stays that at x = 0
-    material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or a rubber of the library,
+    material : :class:`MooneyRivlin`, :class:`NeoHookean`, :class:`Yeoh`, or the name of a rubber of the library, as of
         :func:`freesweep.material`
     fiber_extension : stretch gamma >= 1 of the fibers at any pressure (Eqs. 2.3, 2.17); 1 is inextensible
     model : "source": the membrane with bonded fibers at the inner radius that the source computes; "physical": a thick wall
@@ -119,7 +120,7 @@ class Actuator:
             length: Quantity,
             radius: Along,
             wall: Along,
-            material: MooneyRivlin | Yeoh,
+            material: MooneyRivlin | Yeoh | str,
             taper: Quantity = 0.0,
             bulge: Quantity = 0.0,
             fiber_extension: Quantity = 1.0,
@@ -153,10 +154,15 @@ class Actuator:
             unread = []
             read["fiber_radius"] = read_number("fiber_radius", self.fiber_radius, "m", unread, positive=True)
             faults += [f"{fault}, or one of {', '.join(map(repr, FIBER_PLACES))}" for fault in unread]
-        if not isinstance(self.material, ELASTOMERS):
+        if isinstance(self.material, str):
+            try:
+                read["material"] = named_rubber(self.material)
+            except ActuatorError as error:
+                faults += error.faults
+        elif not isinstance(self.material, ELASTOMERS):
             faults.append(
                 f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01), NeoHookean(c10) or"
-                " Yeoh(c1, c2, c3), in [Pa], or material(name)"
+                " Yeoh(c1, c2, c3), in [Pa], or the name of a rubber in freesweep.materials"
             )
         faults += word_faults(self.model, self.wall_model, self.fibers, self.energy, ENERGIES)
         for name, value in read.items():
@@ -227,6 +233,12 @@ class Actuator:
         profiles = [self.profile(name) for name in VARYING if getattr(self, name) is not None]
         varying = (given_by(self), *(tuple(profile.at(HASHED).tolist()) for profile in profiles))
         return hash((*fields, varying))
+
+    def __repr__(self):
+        """What makes it: what is not usual, and the model, whose default may change."""
+        usual = {one.name: repr(one.default) for one in fields(self) if one.name != "model"}
+        told = [one for one in fields(self) if repr(getattr(self, one.name)) != usual.get(one.name)]
+        return f"Actuator({', '.join(f'{one.name}={getattr(self, one.name)!r}' for one in told)})"
 
     def _repr_html_(self):
         from ..notebook import of_actuator

@@ -10,6 +10,7 @@ from .measures import COARSE_STATUS
 
 FONT = "system-ui, -apple-system, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif"
 SMALL, NORMAL = "11px", "12px"
+BAR = 60  # [px]: the colour bar and numbers of five letters
 DIAGONAL, BACK, CROSSED = "right_diagonal_line", "left_diagonal_line", "diagonal_cross"
 SLACK_KIND = 100  # and the slack families
 HATCHES = {  # by status of what failed, of COARSE_STATUS, and by slack families: pattern
@@ -62,9 +63,7 @@ def _map():
     thin = {"line_width": 1.0, "line_color": "ink", "line_alpha": 0.75}
     made.multi_line("xs", "ys", source=_source("map_lines", columns="xs ys ink dash"), line_dash="dash", **thin)
     made.line("x", "y", source=_source("map_manifold"), line_color="white", line_width=4, line_alpha=0.6)
-    made.line(
-        "x", "y", source=_source("map_manifold_line"), line_color=style.LOCKED, line_width=2, name="map_manifold_glyph"
-    )
+    made.line("x", "y", source=_source("map_manifold_line"), line_color=style.LOCKED, line_width=2)
     made.text(
         "x", "y", "text", source=_source("map_labels", columns="x y text ink"), text_align="center",
         text_baseline="middle", text_font=value(FONT), text_font_size=NORMAL, text_color="ink", text_outline_color=None,
@@ -74,13 +73,14 @@ def _map():
         "x", "y", source=_source("map_pins", columns="x y colour edge size"), size="size", fill_color="colour",
         line_color="edge", line_width=2,
     )  # fmt: skip
-    made.scatter("x", "y", source=_source("map_cross"), marker="cross", size=16, line_width=1.2, line_color=style.INK)
+    made.scatter("x", "y", source=_source("map_cross"), marker="cross", size=16, line_width=1.2, name="map_cross_glyph")
     mapper = LinearColorMapper(palette=["#ffffff", "#000000"], low=0, high=1, name="map_colours")
     bar = ColorBar(
         color_mapper=mapper, name="map_bar", width=10, padding=6, margin=0, bar_line_color=None, background_fill_color=None,
         major_label_text_font=FONT, major_label_text_font_size=SMALL, major_tick_line_color=None, label_standoff=5,
     )  # fmt: skip
     made.add_layout(bar, "right")
+    made.min_border_right = BAR  # ticks come later than the layout
     return made
 
 
@@ -133,8 +133,7 @@ def _curve():
 
 def _front():
     made = _figure("front", "box_select", ("tap", "selectiongeometry"), x_range=Range1d(0, 1), y_range=Range1d(0, 1))
-    made.scatter("x", "y", source=_source("front_dim"), size=3, fill_color="#8d949d", fill_alpha=0.35, line_color=None,
-                 name="front_dim_glyph")  # fmt: skip
+    made.scatter("x", "y", source=_source("front_dim"), size=3, fill_color="#8d949d", fill_alpha=0.35, line_color=None)
     made.scatter("x", "y", source=_source("front_lit"), size=4, fill_color=style.SERIES[0], fill_alpha=0.75,
                  line_color=None, name="front_lit_glyph")  # fmt: skip
     made.line("x", "y", source=_source("front_line"), line_color=style.SERIES[1], line_width=2, name="front_line_glyph")

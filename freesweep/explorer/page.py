@@ -84,6 +84,7 @@ def facts(desk) -> dict:
         "floors": FLOORS,
         "colours": {
             "diverging": _shades(style.DIVERGING), "sequential": _shades(style.SEQUENTIAL), "series": style.SERIES[:5],
+            "on_dark": style.ON_DARK,
             "families": style.FAMILIES, "before": style.BEFORE, "after": style.AFTER, "locked": style.LOCKED,
             "ink": style.INK, "quiet": style.QUIET, "blank": style.BLANK,
         },

@@ -49,7 +49,7 @@ def as_c(grid: Grid, name: str) -> bytes:
         f"/* {_comment(grid.attrs.get('title', ''))}",
         f" * {_comment(grid.attrs.get('source', 'freesweep'))}",
         " * Arrays are row-major over " + ", ".join(f"{axis} [{grid.units[axis]}]" for axis in grid.axes) + ".",
-        *(f" * {each} = {value!r} {grid.units[each]}" for each, value in grid.fixed.items()),
+        *(f" * {each} = {value!r} {grid.units[each]}".removesuffix(" 1") for each, value in grid.fixed.items()),
         " * Statuses: " + ", ".join(f"{value} {meaning}" for value, meaning in meanings().items()) + ". */",
         f"#ifndef {name.upper()}_H",
         f"#define {name.upper()}_H",

@@ -12,7 +12,7 @@ def as_simulink(grid: Grid, name: str) -> bytes:
     lines = [
         f"% {_line(grid.attrs.get('title', ''))}",
         f"% {_line(grid.attrs.get('source', 'freesweep'))}",
-        *(f"% {each} = {value!r} {grid.units[each]}" for each, value in grid.fixed.items()),
+        *(f"% {each} = {value!r} {grid.units[each]}".removesuffix(" 1") for each, value in grid.fixed.items()),
         "% statuses: " + ", ".join(f"{value} {meaning}" for value, meaning in meanings().items()),
         "% NaN stands where there is no number: see the status beside it",
     ]

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from ..atlas.schema import attributes as variable_attributes
 from ..description.python_line import python_line
 from ..status import STATUSES, VALUED
 from .deviation import deviations
@@ -56,6 +57,7 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
         "goal_tolerance": ("goal", misfit.tolerances[:asked]),
         "slope": (("candidate", "goal", "parameter"), _slopes(misfit, slopes)[:, :asked]),
         "status": (("candidate",), _worst(found.status[:, :last])),
+        "slack_fiber": (("candidate",), found.slack, variable_attributes("slack_fiber")),
         "met": (("candidate",), np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)),
         "misfit": (("candidate",), np.sqrt(np.sum(residuals[:, :last] ** 2, axis=1))),
         "python": (("candidate",), [python_line(tube) for tube in tubes]),

@@ -14,15 +14,18 @@ from .freedom import Space
 
 
 class Predicted(NamedTuple):
-    """Values (n, wishes) in SI units and degrees, NaN where there is no state; bounds of their errors; status."""
+    """Values (n, wishes) in SI units and degrees, NaN where there is no state; bounds of their errors; status; and which
+    fiber families are slack in some state, or would have to push (n,).
+    """
 
     values: np.ndarray
     bounds: np.ndarray
     status: np.ndarray
+    slack: np.ndarray
 
     def part(self, where):
         """Some of the designs."""
-        return Predicted(self.values[where], self.bounds[where], self.status[where])
+        return Predicted(self.values[where], self.bounds[where], self.status[where], self.slack[where])
 
 
 class State(NamedTuple):
@@ -54,7 +57,9 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True) -> Predict
     from .vectors import TOLD, solve_vectors
 
     shape, accuracy = (len(u), len(wishes)), space.accuracy(accuracy)
-    found = Predicted(np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, INVALID))
+    found = Predicted(
+        np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, INVALID), np.zeros(len(u), np.int8)
+    )
     columns, states = space.columns(u, choice), [state_of(wish) for wish in wishes]
     for k, wish in enumerate(wishes):
         if wish.kind == "design":
@@ -74,4 +79,5 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True) -> Predict
         if state in answers:
             found.values[:, k], found.bounds[:, k] = answers[state][wish.output]
             found.status[:, k] = answers[state]["status"]
+            found.slack[:] |= answers[state]["slack"]
     return found

@@ -26,12 +26,13 @@ def solve_singles(tubes, asked, columns, accuracy) -> dict:
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         rows = list(pool.map(one, range(len(tubes))))
-    none = {"status": INVALID}
+    none = {"status": INVALID, "slack": 0}
     answers = {}
     for state, names in asked.items():
         own = [none | dict.fromkeys(names, (np.nan, np.nan)) if row is None else row[state] for row in rows]
         answers[state] = {name: tuple(np.array([each[name] for each in own], float).T) for name in names}
-        answers[state]["status"] = np.array([each["status"] for each in own])
+        for name in ("status", "slack"):
+            answers[state][name] = np.array([each[name] for each in own], np.int8)
     return answers
 
 
@@ -63,6 +64,7 @@ def solve_single(tube, asked, design, accuracy) -> dict:
                     answers.setdefault(state, {})[name] = float(value[place]), float(bound[place])
         for state, place in zip(states, places):
             answers[state]["status"] = OK if kind == "limit" else int(numbers["status"][place])
+            answers[state]["slack"] = int(numbers["slack_fiber"][place]) if "slack_fiber" in numbers else 0
     return answers
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..derivative.request import SHAPE
+from ..interpret import foretell
 from ..query.exact import solve
 from ..query.reference import COLUMNS, LENGTH_HELD, LOADED, LOCKED, ROTATION_HELD
 from ..status import INVALID, OK
@@ -19,6 +20,9 @@ def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
     """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound).
     Not ``thorough``: what vectors cannot do has no value.
     """
+    from ..solver.lanes.free import solve_lanes
+
+    foretell(solve_lanes)
     answers, count = {}, len(columns["radius"])
     none = np.zeros(count)  # of what makes bodies
     for kind in dict.fromkeys(state.kind for state in asked):
@@ -32,6 +36,7 @@ def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
             own |= stiffness(asked[state], kind, own, part, energy)
             answers[state] = {name: output(name, kind, own, part) for name in asked[state]}
             limit = np.where(own["status"] == INVALID, INVALID, OK)
+            answers[state]["slack"] = np.where(kind == "limit", 0, own["slack_fiber"]).astype(np.int8)
             answers[state]["status"] = limit if kind == "limit" else own["status"]
     return answers
 

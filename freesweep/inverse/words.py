@@ -16,7 +16,13 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
     """
     count = int(np.sum(result["met"].values))
     if count:
-        return f"{count} of {len(u)} candidates meet every goal and keep every limit"
+        said = f"{count} of {len(u)} candidates meet every goal and keep every limit"
+        pushing = int(np.sum(result["met"].values & (result["slack_fiber"].values > 0)))
+        if (
+            pushing == 0 or misfit.space.template.is_loose
+        ):  # real threads do not push, and loose ones are none the worse
+            return said
+        return f"{said}; in {pushing} of them threads would have to push (slack_fiber)"
     missed, wishes = np.nan_to_num(np.abs(residuals), nan=np.inf), misfit.wishes
     if not np.any(missed[: misfit.goals] > 1.0):
         broken = [str(name) for name, kept in zip(result["limit"].values, result["limit_kept"].values[0]) if not kept]

@@ -163,7 +163,9 @@ def _nodes(size):
 
 
 def _texts(values, each):
-    return [str(value) if each == DESIGN else f"{shown_units(each)[1] * float(value):.4g}" for value in values]
+    if each == DESIGN:
+        return [str(value) for value in values]
+    return [f"{shown_units(each)[1] * float(value):.4g}".replace("-", "\N{MINUS SIGN}") for value in values]
 
 
 def _draw(ax, one, variable, along, shown, colour):

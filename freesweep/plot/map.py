@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 SIZE = (style.PAGE, 165.0)  # of a figure of its own [mm]
 LEGEND_COLUMN = 43.0  # [mm]
 LETTER = 1.3  # of the line below the title [mm]
-COARSE = 6.0  # [degree]: wider grids are drawn node by node, without contours between them
+COARSE = 12.0  # [degree]: wider grids are drawn node by node, without contours between them
 
 
 def design_map(

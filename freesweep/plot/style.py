@@ -34,6 +34,7 @@ FAMILIES = ("#c2187f", "#1d2b3a")  # the alpha and the beta family of fibers
 BEFORE = ("#0b3c7d", "#5590cf")  # alpha and beta family of the undeformed tube: blue, as in Figures 2-2 and 2-3
 AFTER = ("#8f1513", "#e0746a")  # and of the deformed one: red
 SERIES = ("#10664a", "#e09a1a", "#7c4fb0", "#5b2a12", "#3fb3cf", "#e07a5f")  # told apart by colour-blind eyes
+ON_DARK = ("#2fae86", "#e6a52e", "#a37fdb", "#ecd9c6", "#56c5de")  # the first of them on dark paper
 ENERGY = {"principal": "solid", "full": (0, (4.5, 1.8))}  # lines of the two strain energies
 EXTENDED = (0, (1.0, 1.3))  # the line of fibers that extend: dotted, as in Figure 2-8
 BAND = 0.25  # opacity of an error band

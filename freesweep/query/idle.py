@@ -34,7 +34,7 @@ def compile_physical(constants):
     points, numbers = np.empty((0, len(COLUMNS))), np.empty(0)
     physical_states(LOADED, points, 1.0, 1.0, columns, np.empty((0, UNIFORM)))
     slack_somewhere(points, numbers, 1.0, 1.0, columns, np.empty(0, np.uint8))
-    worst_places(points, numbers, 1.0, 1.0, columns, np.empty((0, TOLD)), np.empty((0, TOLD)))
+    worst_places(points, numbers, np.empty((0, 2)), 1.0, 1.0, columns, np.empty((0, 3, TOLD)), np.empty((0, TOLD)))
 
 
 def _read(array):

@@ -288,23 +288,49 @@ def worst_at(y, constant, cell, load, outside, out):
     out[0], out[1], out[2], out[3] = y * y + outside / s, strain_square(y, G_1, psi, cell, load.wall), -alpha, -beta
 
 
-@functools.partial(entry_point, others=("solver",))
-def worst_places(points, mid_radius, thick, loose, columns, out, missed):
-    """The largest outer radius [m] and stretch, and the least tension of both families [N], (n, TOLD), along tubes with
-    these radii in the middle (n,) [m], from the clamped ends on, and what they may miss between the places looked at.
+@kernel
+def seen_again(y_middle, at, cell, load, outside, seen, most):
+    """The worst of a tube whose middle is a little off, into ``most`` (TOLD,): at both ends, and where it was worst, ``at``
+    (TOLD,).
     """
-    seen, most, doubt = np.empty((3, TOLD)), np.empty(TOLD), np.empty(TOLD)
+    constant = uniform_tube(y_middle, cell, load)[2]
+    for n in range(-2, TOLD):
+        j = at[n] if n >= 0 else (n + 2) * PLACES
+        new = n < 0 or 0 < j < PLACES
+        for i in range(n):
+            new = new and at[i] != j
+        if new:
+            worst_at(1.0 + (y_middle - 1.0) * j / PLACES, constant, cell, load, outside, seen)
+            for i in range(TOLD):
+                most[i] = max(most[i], seen[i]) if n > -2 else seen[i]
+
+
+@kernel
+def write_told(most, r, tension, out):
+    """What was seen of a tube, (TOLD,), in the units that are told."""
+    out[0], out[1] = r * math.sqrt(most[0]), math.sqrt(most[1])
+    out[2], out[3] = -tension * most[2] + 0.0, -tension * most[3] + 0.0
+
+
+@functools.partial(entry_point, others=("solver",))
+def worst_places(points, mid_radius, beside, thick, loose, columns, out, missed):
+    """The largest outer radius [m] and stretch, and the least tension of both families [N], along tubes with these radii in
+    the middle (n,) [m], from the clamped ends on, and of those ``beside`` (n, 2): (n, 3, TOLD); and what the first may miss
+    between the places looked at, (n, TOLD).
+    """
+    seen, most, doubt, at = np.empty((3, TOLD)), np.empty(TOLD), np.empty(TOLD), np.empty(TOLD, np.int64)
     for k in range(len(points)):
         point, r = points[k], points[k, FIBERS]
         cell, load = problem(point, thick, loose, columns)
         y_middle, outside = mid_radius[k] / r, ((point[RADIUS] + point[WALL]) / r) ** 2 - 1.0
         tension = 2.0 * math.pi * r * r * point[C10]
         for i in range(TOLD):
-            out[k, i], missed[k, i] = math.nan, 0.0
+            out[k, 0, i], out[k, 1, i], out[k, 2, i], missed[k, i] = math.nan, math.nan, math.nan, 0.0
         if not y_middle > 0.0:
             continue
         if load.p == 0.0 and load.f == 0.0 and load.m == 0.0:
-            out[k, 0], out[k, 1], out[k, 2], out[k, 3] = r * math.sqrt(1.0 + outside), 1.0, 0.0, 0.0
+            for n in range(3):
+                out[k, n, 0], out[k, n, 1], out[k, n, 2], out[k, n, 3] = r * math.sqrt(1.0 + outside), 1.0, 0.0, 0.0
             continue
         constant = uniform_tube(y_middle, cell, load)[2]
         for j in range(PLACES + 1):
@@ -313,15 +339,19 @@ def worst_places(points, mid_radius, thick, loose, columns, out, missed):
             for i in range(TOLD):
                 here, last, before = seen[now, i], seen[now - 1, i], seen[now - 2, i]
                 doubt[i] = max(doubt[i], 0.125 * abs(here - 2.0 * last + before)) if j > 1 else 0.0
-                most[i] = max(most[i], here) if j > 0 else here
+                if j == 0 or here > most[i]:
+                    most[i], at[i] = here, j
+        write_told(most, r, tension, out[k, 0])
         for i in range(TOLD):
             inside = most[i] > seen[PLACES % 3, i] and (loose == 0.0 or i < 2 or most[i] < 0.0)
-            missed[k, i] = doubt[i] if inside else 0.0
-        for i in range(2):
-            size = r if i == 0 else 1.0
-            out[k, i] = size * math.sqrt(most[i])
-            missed[k, i] *= 0.5 * size / math.sqrt(most[i])
-            out[k, 2 + i] = -tension * most[2 + i] + 0.0
-            missed[k, 2 + i] *= tension
-        if abs(outside) < LEAST:  # the fibers are the outermost
-            out[k, 0], missed[k, 0] = r * math.sqrt(max(1.0, y_middle) ** 2 + outside), 0.0
+            unit = tension if i > 1 else 0.5 * (r if i == 0 else 1.0) / math.sqrt(most[i])
+            missed[k, i] = doubt[i] * unit if inside else 0.0
+        for n in range(2):
+            y_beside = beside[k, n] / r
+            if y_beside > 0.0:
+                seen_again(y_beside, at, cell, load, outside, seen[0], most)
+                write_told(most, r, tension, out[k, n + 1])
+            if abs(outside) < LEAST:  # the fibers are the outermost
+                out[k, n + 1, 0] = r * math.sqrt(max(1.0, y_beside) ** 2 + outside)
+        if abs(outside) < LEAST:
+            out[k, 0, 0], missed[k, 0] = r * math.sqrt(max(1.0, y_middle) ** 2 + outside), 0.0

@@ -11,12 +11,12 @@ from . import bodies, reference, slack
 
 
 def tell_families(told, families):
-    """Put the tension of the line that was followed, the last but one of what is ``told`` (n, TOLD), in the places of the
+    """Put the tension of the line that was followed, the last but one of what is ``told`` (..., TOLD), in the places of the
     ``families``.
     """
-    line = told[:, -2].copy()
+    line = told[..., -2].copy()
     for k, name in enumerate(FAMILIES, -2):
-        told[:, k] = line * (1.0 / len(families) if name in families else 0.0)
+        told[..., k] = line * (1.0 / len(families) if name in families else 0.0)
 
 
 class Predictor(NamedTuple):
@@ -108,19 +108,19 @@ class Predictor(NamedTuple):
         """
         from .physical_tube import TOLD, worst_places
 
-        found, missed = np.empty((2, 3, len(points), TOLD))
+        found, missed = np.empty((len(points), 3, TOLD)), np.empty((len(points), TOLD))
+        beside = mid_radius[:, None] + np.stack([estimate, bound], axis=1)
         for some, own, what, few in self._kinds(points):
-            for k, middle in enumerate((mid_radius, mid_radius + estimate, mid_radius + bound)):
-                part, lacks = np.empty((2, len(own), TOLD))
-                worst_places(own, middle[some], *what, part, lacks)
-                if few:
-                    tell_families(part, self.families), tell_families(lacks, self.families)
-                found[k, some], missed[k, some] = part, lacks
-        found, missed = found.swapaxes(1, 2), missed.swapaxes(1, 2)
+            part, lacks = np.empty((len(own), 3, TOLD)), np.empty((len(own), TOLD))
+            worst_places(own, mid_radius[some], beside[some], *what, part, lacks)
+            if few:
+                tell_families(part, self.families), tell_families(lacks, self.families)
+            found[some], missed[some] = part, lacks
+        found, missed = np.moveaxis(found, 0, -1), missed.T
         # of what lies at a clamped end, and is known but for it, or is 0
         size = np.pi * points[:, reference.FIBERS] ** 2 * points[:, reference.PRESSURE]
         rounding = np.finfo(float).eps * np.maximum(np.abs(found[0]), (np.arange(TOLD) > 1)[:, None] * size)
-        return found[0], np.abs(found[1] - found[0]) + missed[0], np.abs(found[2] - found[0]) + rounding
+        return found[0], np.abs(found[1] - found[0]) + missed, np.abs(found[2] - found[0]) + rounding
 
     def slack_families(self, points, states, mid_radius) -> np.ndarray:
         """Flags (n,) of :func:`slack.slack_families` at points (n, 17), from the radius in the middle (n,) [m]."""

@@ -129,14 +129,14 @@ class Reader:
         for name in names:
             value, error = inquiry.answer(name, self.factors)
             exceeds = inquiry.exceeds(name, value, error, tolerance)
+            if table.family.status is None:  # that there is no limit pressure is an answer, too
+                exceeds &= inquiry.codes != 0
             if coarse is not None:
                 inquiry.blame(name, exceeds & ~too_large & inquiry.valued, self.factors(name).scales, coarse)
             too_large |= exceeds
             found[name], found[f"{name}_error"] = value, error
         status = inquiry.status.astype(np.int8)
         valued = inquiry.valued
-        if table.family.status is None:  # that there is no limit pressure is an answer, too
-            too_large &= inquiry.codes != 0
         status[valued & too_large] = NOT_INTERPOLABLE
         valued &= ~too_large
         for name in found:

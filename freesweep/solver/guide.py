@@ -36,11 +36,17 @@ def upright(cell):
 
 @kernel
 def follow(tube, u, before, load, ahead):
-    """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached."""
-    places = tube.places
+    """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached. A place
+    like the one before it does as that did: of a tube that is the same all along one is followed.
+    """
+    places, last = tube.places, cell_along(tube, 0.0)
     reached, half = 1.0, (1.0 if tube.half else 0.5) * places[len(places) - 1]
     for k in range(len(u)):
         cell = cell_along(tube, k / max(len(u) - 1, 1))
+        if k > 0 and cell == last and u[k] == u[k - 1]:
+            ahead[k] = ahead[k - 1]
+            continue
+        last = cell
         drawn = lagrangian.drawn_in(cell, load)
         ahead[k], part = uniform_tube.follow(lagrangian.density, u[k], cell, before, load, half, drawn)
         reached = min(reached, part)

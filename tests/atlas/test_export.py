@@ -84,6 +84,8 @@ def test_the_simulink_script_holds_the_table_column_by_column(page):
     table = np.reshape(np.array(values.split(), float), [int(one) for one in sizes.split()], order="F")
     assert np.array_equal(table, page["atlas"].data[FORCE])
     assert f"muscle_{FORCE}.Breakpoints(2).Unit = 'Pa';" in text
+    for told in (text, (page["folder"] / "muscle.h").read_text()):
+        assert re.search(r"^\W*fiber_extension = 1\.005$", told, re.MULTILINE)
 
 
 @pytest.mark.skipif(importlib.util.find_spec("mujoco") is None, reason="MuJoCo's Python package is not installed")

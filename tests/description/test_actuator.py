@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+import freesweep
 from freesweep import Actuator, ActuatorError, MooneyRivlin, NeoHookean
 
 RUBBER = MooneyRivlin(c10=0.11e6, c01=0.06e6)
@@ -188,3 +189,21 @@ def test_cords_that_make_no_muscle(changes, says):
     given = {"cord": 0.25, "turns": 1.5, "length": 0.2, "wall": 2e-3, "material": MooneyRivlin(0.2e6)} | changes
     with pytest.raises(ActuatorError, match=says):
         Actuator.from_cord(**given)
+
+
+def test_a_rubber_may_be_given_by_its_name():
+    given = {"alpha": 30, "beta": -30, "length": 0.1, "radius": 5e-3, "wall": 1e-3}
+    named = Actuator(**given, material="Dragon Skin 30")
+    assert named == Actuator(**given, material=freesweep.material("dragon-skin-30"))
+    with pytest.raises(ActuatorError, match="'latx'; did you mean 'natural-latex'"):
+        Actuator(**given, material="latx")
+
+
+def test_what_is_written_of_an_actuator_makes_it_and_is_short():
+    plain = Actuator(alpha=30, beta=None, length=0.1, radius=5e-3, wall=1e-3, material=NeoHookean(1e5))
+    text = "Actuator(alpha=30.0, beta=None, length=0.1, radius=0.005, wall=0.001, material=NeoHookean(c10=100000.0), "
+    assert repr(plain) == text + "model='source')"
+    varied = Actuator(alpha=[(0, 20), (1, 40)], beta=-40, length=0.1, radius=5e-3, wall=1e-3, taper=0.2,
+                      material=freesweep.Yeoh(1e5, 0.0, 1e3), model="physical", fiber_radius="middle")  # fmt: skip
+    names = {name: getattr(freesweep, name) for name in ("Actuator", "NeoHookean", "Yeoh", "Profile")}
+    assert all(eval(repr(tube), names) == tube for tube in (plain, varied))

@@ -16,6 +16,8 @@ import freesweep as fs
 from freesweep.cli import main
 from freesweep.inverse import look, wish_file
 from freesweep.inverse.least import beaten
+from freesweep.inverse.predict import State
+from freesweep.inverse.singles import solve_single
 from freesweep.inverse.wishes import Wish
 from freesweep.sweep.spec import parse
 from freesweep.thesis.prototypes import found_rotator
@@ -426,6 +428,20 @@ def test_what_a_bound_or_a_limit_costs_is_said():
 def test_a_limit_is_a_range():
     with pytest.raises(fs.ActuatorError, match="at_least, at_most or between"):
         fs.Limit("rotation", 3, pressure=1e5)
+
+
+def test_a_candidate_whose_threads_would_have_to_push_says_so():
+    rubber = fs.MooneyRivlin(0.17e6, 0.08e6)
+    tube = fs.Actuator(alpha=0, beta=30, length=0.131, radius=4.76e-3, wall=1.59e-3, material=rubber)
+    turn = fs.inflate(tube, 3e4, x=0.0)
+    assert int(turn.slack_fiber) == 1
+    wish = fs.Goal("rotation", turn.rotation.item(), pressure=3e4, tolerance=1)
+    found = fs.design(tube, {"length": (0.13, 0.132)}, wish, count=1)
+    assert found.slack_fiber.values.tolist() == [1]
+    assert found.attrs["summary"].endswith("in 1 of them threads would have to push (slack_fiber)")
+    state, loads = State("free", (("pressure", 3e4),), None), {"pressure": 3e4, "force": 0.0, "torque": 0.0}
+    alone = solve_single(tube, {state: ["rotation"]}, loads, 1e-6)  # as tubes that vectors cannot solve
+    assert alone[state]["slack"] == 1
 
 
 @pytest.mark.parametrize("name", ["rotator", "muscle", "bought", "pure-rotator"])

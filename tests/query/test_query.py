@@ -278,6 +278,13 @@ def test_named_designs_are_asked_by_name(tmp_path):
             named.query(design="A", alpha=10, pressure=1e4)
 
 
+def test_that_there_is_no_limit_pressure_is_an_answer_and_blames_no_axis(atlas):
+    found = atlas.query("limit_pressure", **{name: value for name, value in POINT.items() if name != "pressure"})
+    assert np.isnan(found["limit_pressure"])
+    assert int(found["limit_pressure_status"]) == status.OK
+    assert "too_coarse" not in found.attrs
+
+
 def test_limit_pressures_are_told_only_within_their_region(tmp_path):
     axes = {"alpha": [58.0, 59.0, 60.0, 61.0], "beta": [53.0, 54.0, 55.0], "pressure": [0.0, 1e5, 2e5, 2.5e5]}
     with swept(tmp_path, axes, energy="principal", fixed={"length": 0.1904, "c01": 0.085e6}) as folded:

@@ -25,7 +25,7 @@ async function savePanel(panel, kind) {
 
 // All parameters of a pinned design, kept units.
 const whole = (design) => ({ fiber_extension: 1, c01: 0, c20: 0, c30: 0, ...facts.fixed, ...at(design) });
-const plainNumber = (value) => String(Number(Number(value).toPrecision(12)));
+const plainNumber = (value) => String(Number(Number(value).toPrecision(DIGITS)));
 const LOADS = ["pressure", "force", "torque"];
 const SIZES = ["alpha", "beta", "length", "radius", "wall"];
 const SOURCE = { energy: "full", wall_model: "membrane", fibers: "bonded", fiber_radius: "inner" };

@@ -30,7 +30,7 @@ function drawFront() {
   put("front_dim", dim); put("front_lit", lit);
   const best = paretoOf(all);
   put("front_line", { x: best.map((one) => one[0]), y: best.map((one) => one[1]) });
-  const pins = state.pins.map((_, k) => [valueOf(k, fx)?.value, valueOf(k, fy)?.value, facts.colours.series[k]]).filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
+  const pins = state.pins.map((_, k) => [valueOf(k, fx)?.value, valueOf(k, fy)?.value, colourOf(k)]).filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
   put("front_pins", { x: pins.map((one) => shown(fx, one[0])), y: pins.map((one) => shown(fy, one[1])), colour: pins.map((one) => one[2]), edge: pins.map(() => "#ffffff") });
   for (const [axis, values, name] of [["x_range", [...dim.x, ...lit.x], fx], ["y_range", [...dim.y, ...lit.y], fy]]) {
     const sorted = Float64Array.from(values).sort(), end = (share) => sorted[Math.round(share * (sorted.length - 1))];

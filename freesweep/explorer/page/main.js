@@ -16,7 +16,8 @@ function dress() {
     });
   }
   models.map_bar.setv({ major_label_text_color: quiet });
-  models.map_cross_glyph?.setv({ line_color: ink });
+  models.front_lit_glyph.glyph.setv({ fill_color: { value: colourOf(0) } });
+  models.front_line_glyph.glyph.setv({ line_color: { value: colourOf(1) } });
 }
 
 hearers.push((keys, drag) => {

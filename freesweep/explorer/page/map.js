@@ -141,15 +141,16 @@ function drawMarks() {
   put("map_manifold_line", { x: mx, y: my });
   const lines = plane ? [both([0, 90], [0, -90]), both([0, 90], [0, 90])] : [];
   // over the colours of the map, which are those of light paper until they are turned down
-  const on = state.dark && (state.wishes.length || state.taut) ? "#dfe3e8" : facts.colours.ink;
+  const isDim = state.dark && (state.wishes.length > 0 || state.taut), on = isDim ? "#dfe3e8" : facts.colours.ink;
   put("map_lines", { xs: lines.map((one) => one[0]), ys: lines.map((one) => one[1]), ink: lines.map(() => on), dash: [[6, 3], [6, 3, 1, 3]].slice(0, lines.length) });
   const texts = plane ? facts.regions.map(([text, a, b]) => [text, ...both(a, b)]) : [];
   put("map_labels", { text: texts.map((one) => one[0]), x: texts.map((one) => one[1]), y: texts.map((one) => one[2]), ink: texts.map(() => on) });
   const pins = state.pins.map((pin, k) => ({ k, x: shown(state.x, at(pin)[state.x]), y: shown(state.y, at(pin)[state.y]) }));
   put("map_pins", {
-    x: pins.map((one) => one.x), y: pins.map((one) => one.y), colour: pins.map((one) => facts.colours.series[one.k]),
-    edge: pins.map(() => "#ffffff"), size: pins.map((one) => (one.k === state.active ? 15 : 11)),
+    x: pins.map((one) => one.x), y: pins.map((one) => one.y), colour: pins.map((one) => colourOf(one.k)),
+    edge: pins.map(() => (state.dark && !isDim ? on : "#ffffff")), size: pins.map((one) => (one.k === state.active ? 15 : 11)),
   });
+  models.map_cross_glyph.glyph.setv({ line_color: { value: on } });
   put("map_cross", cross ? { x: [shown(state.x, cross[0])], y: [shown(state.y, cross[1])] } : { x: [], y: [] });
 }
 

@@ -7,7 +7,7 @@ function drawCurve() {
   const xs = [...nodes].map((value) => shown(facts.along, value)), [x0, x1] = spanOf(facts.along);
   curves.forEach((curve, k) => {
     if (!curve[name]) return;
-    const colour = facts.colours.series[k], { value, error, slack } = curve[name];
+    const colour = colourOf(k), { value, error, slack } = curve[name];
     const ys = [...value].map((one) => factor * one), room = [...error].map((one) => factor * one);
     for (const y of ys) if (Number.isFinite(y)) { low = Math.min(low, y); high = Math.max(high, y); }
     for (const [from, to] of runsOf(ys.map((y) => Number.isFinite(y)))) {

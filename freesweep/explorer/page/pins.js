@@ -74,7 +74,7 @@ function drawTable() {
       cells.push(`<td class="${name === state.m ? "shown" : ""} ${one?.isExact ? "exact" : ""}" data-measure="${name}" title="${words ? words.sentence.replaceAll('"', "'") : one?.isExact ? "solved exactly" : "from the atlas"}">${number}</td>`);
     }
     const solve = isLocal ? "" : `<button data-solve="${k}" title="solve exactly (e)">${exact.has(keyOf(design)) ? "solved" : "solve exactly"}</button>`;
-    return `<tr data-pin="${k}" class="${k === state.active ? "active" : ""}"><td><span class="dot" style="background:${facts.colours.series[k]}"></span> <button data-unpin="${k}" title="unpin (Delete)">×</button> ${solve}</td>${cells.join("")}</tr>`;
+    return `<tr data-pin="${k}" class="${k === state.active ? "active" : ""}"><td><span class="dot" style="background:${colourOf(k)}"></span> <button data-unpin="${k}" title="unpin (Delete)">×</button> ${solve}</td>${cells.join("")}</tr>`;
   });
   byId("pins").innerHTML = rows.length ? `<table><thead><tr><th></th>${heads.join("")}</tr></thead><tbody>${rows.join("")}</tbody></table>` : HINT;
 }

@@ -62,7 +62,7 @@ function drawSection() {
     const outline = ({ position, radius }) => [[...position, ...[...position].reverse(), position[0]].map(inUnits), [...[...radius].map((r) => middle + r), ...[...radius].reverse().map((r) => middle - r), middle + radius[0]].map(inUnits)];
     if (one.state) {
       const [xs, ys] = outline(one.state);
-      wall.xs.push(xs); wall.ys.push(ys); wall.colour.push(facts.colours.series[k]); wall.alpha.push(k === state.active ? 0.42 : 0.22);
+      wall.xs.push(xs); wall.ys.push(ys); wall.colour.push(colourOf(k)); wall.alpha.push(k === state.active ? 0.42 : 0.22);
     }
     const [xs, ys] = outline(one.rest);
     rest.xs.push(xs); rest.ys.push(ys); rest.ink.push(css("--quiet"));

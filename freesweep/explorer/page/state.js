@@ -22,11 +22,23 @@ function initial() {
 }
 
 const state = initial();
+const colourOf = (k) => (state.dark ? facts.colours.on_dark : facts.colours.series)[k]; // of a pinned design
 const hearers = [];
+
+// Numbers of a design in as many digits as leave the page: what is exported is what is shown.
+const DIGITS = 12;
+function tidy(values) {
+  return Object.fromEntries(Object.entries(values).map(([name, value]) => {
+    const axis = facts.axes[name], short = Number(Number(value).toPrecision(DIGITS));
+    return [name, axis ? Math.min(Math.max(short, axis.low), axis.high) : value];
+  }));
+}
 
 // Change the view; `drag`: more of the same will follow at once.
 function change(patch, drag = false) {
   Object.assign(state, patch);
+  if ("at" in patch) state.at = tidy(state.at);
+  if ("pins" in patch) state.pins = state.pins.map(tidy);
   for (const hear of hearers) hear(Object.keys(patch), drag);
   if (!drag) history.replaceState(null, "", "#" + link());
 }

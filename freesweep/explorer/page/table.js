@@ -185,8 +185,10 @@ function localCloud({ n, at: fixed, measures: wanted }) {
   return { designs, values, slack };
 }
 
+let opened = null; // questions that come meanwhile wait for the same
+
 async function answerLocally(question) {
-  if (!Object.keys(small).length) await openTable();
+  await (opened ??= openTable());
   const point = ({ at: values, measures: wanted }) =>
     ({ measures: Object.fromEntries(wanted.map((one) => [one, told(one, values)])), slack: slackAt(values) });
   const ways = { grid: localGrid, point, pins: localPins, cloud: localCloud };
