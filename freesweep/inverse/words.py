@@ -18,9 +18,7 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
     if count:
         said = f"{count} of {len(u)} candidates meet every goal and keep every limit"
         pushing = int(np.sum(result["met"].values & (result["slack_fiber"].values > 0)))
-        if (
-            pushing == 0 or misfit.space.template.is_loose
-        ):  # real threads do not push, and loose ones are none the worse
+        if pushing == 0 or misfit.space.template.is_loose:  # slack threads are none the worse
             return said
         return f"{said}; in {pushing} of them threads would have to push (slack_fiber)"
     missed, wishes = np.nan_to_num(np.abs(residuals), nan=np.inf), misfit.wishes
