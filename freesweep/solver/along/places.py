@@ -3,7 +3,7 @@ hard, how wide it gets, and how far its wall is stretched.
 
 Looked at are places along the deformed shape: its ends, and the middles of its cells. Where a family pulls at one place and
 not at the next, its pull ends where it meets zero: on the line between both if fibers may push; if not, on the line through
-the two nearest places at which it pulls. One body for floats and for vectors of designs.
+the two nearest places at which it pulls. What is told of one place is told of vectors of designs, too.
 """
 
 from math import sqrt

@@ -6,7 +6,6 @@ others need.
 """
 
 from ...jit import kernel
-from ..cells import behind, nothing_yet
 from ..numerics.newton import SMALL_STEP
 from .vector import HUGE, get, mask_of, put, select, some, spread
 
@@ -30,7 +29,7 @@ def eliminate(density, x, y, step, fraction, convex, n, free, cell, load, ratio,
     below, carried, along, decline = zero, zero, zero, zero
     g_left, d_left = zero, zero
     fits, definite = fraction == fraction, fraction == fraction
-    x_left, y_left, step_left, near = get(x, 0), get(y, 0), zero, nothing_yet(zero)
+    x_left, y_left, step_left = get(x, 0), get(y, 0), zero
     for j in range(n):
         x_right, step_right = get(x, j + 1), get(step, j + 1)
         y_right = get(y, j + 1) + fraction * step_right
@@ -38,7 +37,7 @@ def eliminate(density, x, y, step, fraction, convex, n, free, cell, load, ratio,
         per_h = 1.0 / h
         v = (y_right - y_left) * per_h
         middle = 0.5 * (y_left + y_right)
-        room, L_y, L_v, L_yy, L_yv, L_vv, near = density(middle, v, behind(cell, h, near), load)
+        room, L_y, L_v, L_yy, L_yv, L_vv = density(middle, v, cell, load)
         fits = fits & (min(room, middle) > 0.0)  # a NaN counts as no room
         put(steepness, j, 2.0 * v * per_h / room)
         if bent:
