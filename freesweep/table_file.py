@@ -84,12 +84,13 @@ def read_columns(path, known: Known, plain=False) -> Columns:
         notes.append(f"{_count(at, 'line')} above the names passed over")
     rows = [(number, _parted(text, parting, number)) for number, text in lines[at:]]
     (line, heads), rows = rows[0], rows[1:]
-    heads = [_head(text, place, known) for place, text in enumerate(heads, 1)]
+    named = max((place for place, text in enumerate(heads, 1) if text.strip()), default=0)
+    heads = [_head(text, place, known) for place, text in enumerate(_ended(heads, named), 1)]
     heads, rows = _units_below(heads, rows, known)
     if not rows:
         raise ActuatorError([f"found {len(lines)} lines; give a line of names and units, then the states"])
     empty = [number for number, row in rows if not any(row)]
-    rows = [(number, row) for number, row in rows if any(row)]
+    rows = [(number, _ended(row, len(heads))) for number, row in rows if any(row)]
     if empty:
         notes.append(f"{_count(len(empty), 'row')} of empty cells passed over ({_which(empty)})")
     for number, row in rows:
@@ -151,6 +152,11 @@ def _parted(text, parting, number):
         raise ActuatorError([f"line {number}: {error}; no table has such a cell"]) from None
 
 
+def _ended(row, names):
+    """A row without the empty cells that separators at its end leave behind the last name."""
+    return row[:names] if not any(row[names:]) else row
+
+
 def _where_names_are(lines, known):
     """By what columns are parted, and which of the lines names them: the first with a known name."""
     for at, (_, text) in enumerate(lines[:MOST_ABOVE]):
@@ -204,8 +210,6 @@ def _uneven(row, count):
     """What may have made a row longer or shorter than the ``count`` of names."""
     if len(row) < count:
         return f"cells are missing at its end (from column {len(row) + 1})"
-    if not any(row[count:]):
-        return "it ends with a separator too many; remove that"
     return f"a separator too many, or a decimal comma where a point belongs (from column {count + 1})"
 
 

@@ -93,6 +93,13 @@ def test_a_wrong_file_gets_one_clear_line(tmp_path, text, says):
     assert fault.startswith("bench.csv: ")
 
 
+@pytest.mark.parametrize("end", [("", ","), (",", ","), (",", ""), (",,", ",")])
+def test_separators_at_the_ends_of_lines_say_nothing(tmp_path, end):
+    """As spreadsheets leave them, in the line of names or below."""
+    found = read(tmp_path, f"pressure [kPa],force [N]{end[0]}\n5,1{end[1]}\n6,2\n")
+    assert (found.pressure.tolist(), found.force.tolist()) == ([5e3, 6e3], [1.0, 2.0])
+
+
 def test_points_and_commas_are_told_apart(tmp_path):
     """A comma that can only be a decimal one makes all of them such."""
     found = read(tmp_path, 'pressure [Pa],force [N]\n"50,000",1\n"60,5",2\n')

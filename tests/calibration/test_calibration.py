@@ -282,12 +282,8 @@ def test_every_fault_of_a_calibration_is_named(arguments, faults):
 @pytest.mark.parametrize(
     ("text", "says", "never"),
     [
-        (
-            "pressure [kPa],force [N]\n10,1,\n20,2,\n",
-            "line 2: 3 cells under 2 names; it ends with a separator",
-            "point",
-        ),
-        ("pressure [kPa],force [N],\n10,1,\n20,2,\n", "column 3: has no name; name it or remove it", "did you mean"),
+        ("pressure [kPa],,force [N]\n10,,1\n20,,2\n", "column 2: has no name; name it or remove it", "did you mean"),
+        ("pressure [kPa],force [N],\n10,1,7\n", "line 2: 3 cells under 2 names; a separator too many", "missing"),
         (
             "pressure [kPa],force [N]\n1,0,1\n",
             "a separator too many, or a decimal comma where a point belongs",
