@@ -19,8 +19,7 @@ from typing import NamedTuple
 
 from ...jit import kernel
 from ..cells import nothing_yet
-from ..physics import lagrangian
-from ..physics.relaxed import is_taut
+from ..physics import lagrangian, physical
 from .vector import WIDTH, get, put, select, spread
 
 DEEPEST = 24.0  # where nothing is left of the layer
@@ -108,12 +107,11 @@ def work_of(u, cell, load, half):
     other way round; of states that are alike in this, the depth of the middle.
     """
     zero, one = spread(0.0), spread(1.0)
-    (_, _, _, L_yy, _, L_vv), there = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
-    _, here = lagrangian.density_beside(one, zero, cell, load, nothing_yet(zero))
-    alpha, beta = is_taut(here[0])
-    own_alpha, own_beta = is_taut(there[0])
-    changes = select((alpha & ~own_alpha) | (own_alpha & ~alpha), one, zero)
-    changes = changes + select((beta & ~own_beta) | (own_beta & ~beta), one, zero)
+    (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
+    pull_alpha, pull_beta, near = physical.tensions(u, zero, cell, load, near)
+    end_alpha, end_beta, _ = physical.tensions(one, zero, cell, load, nothing_yet(zero))
+    changes = select((pull_alpha > 0.0) & (end_alpha > 0.0) | (pull_alpha <= 0.0) & (end_alpha <= 0.0), zero, one)
+    changes = changes + select((pull_beta > 0.0) & (end_beta > 0.0) | (pull_beta <= 0.0) & (end_beta <= 0.0), zero, one)
     return (changes + ALMOST * min(sqrt(L_yy / L_vv) * half / DEEPEST, 1.0)) / 3.0
 
 

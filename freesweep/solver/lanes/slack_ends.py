@@ -11,8 +11,8 @@ from .meridian import look
 from .vector import WIDTH, get, mask_of, select, some, spread
 
 MOST = 8  # ends in half a tube; more are left to finer parts
-STEPS, CLOSE, SURE = 48, 1e-11, 1e-9  # of the search, its last step [of the depth], and how exactly an end is known
-HALVED, ENOUGH = 4, 1e-5  # each so manieth step halves the bracket; an end that is known so well is not lost
+STEPS, CLOSE, SURE = 48, 1e-9, 3e-8  # of the search, its last step [of the depth], and how exactly an end is known
+PATIENT, ENOUGH = 10, 1e-5  # steps, from which on each other one halves the bracket; an end known so well is not lost
 ENDS = LEFT, RIGHT, BEFORE, BEHIND, FAMILY = range(5)  # what brackets an end
 
 
@@ -64,7 +64,7 @@ def search(ends, j, going, mid, cell, load, near, scratch):
     t = select(going, right + 1.0, 1.0)
     for i in range(STEPS):
         new = right - behind * (right - left) / select(going, behind - before, 1.0)
-        halved = mask_of(-1 if i % HALVED == HALVED - 1 else 0)  # where a pull ends without a slope
+        halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)  # where a pull ends without a slope
         new = select((new > left) & (new < right) & ~halved, new, 0.5 * (left + right))
         moved = abs(new - t)
         t = select(going, new, t)
