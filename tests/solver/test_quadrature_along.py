@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 from freesweep import interpret
 from freesweep.solver.cells import nothing_yet
-from freesweep.solver.lanes import extremes, quadrature, slack_ends
+from freesweep.solver.lanes import extremes, rule, slack_ends
 from freesweep.solver.load import Load
 from freesweep.solver.physics import first_integral, physical, wall
 
@@ -59,12 +59,12 @@ def test_what_the_rule_misses_is_less_than_its_bound():
         def curve(x, a=a, b=b, kind=kind):
             return (1.0 / (1.0 + a - x), np.sqrt(1.0 + a - x), 1.0 / np.hypot(x - 0.4, a))[kind] * (1.0 + b * x)
 
-        at = curve(quadrature.PLACES)
-        bound = quadrature.MISSED * np.abs(quadrature.TAIL @ at).max()
+        at = curve(rule.PLACES)
+        bound = rule.MISSED * np.abs(rule.TAIL @ at).max()
         if bound > 1e-4:
             continue
         exact = quad(curve, 0.0, 1.0, points=[0.4], epsabs=1e-13, epsrel=1e-13)[0]
-        missed = abs(quadrature.WEIGHTS @ at - exact)
+        missed = abs(rule.WEIGHTS @ at - exact)
         assert missed <= bound + 1e-13
         used.append(missed / (bound + 1e-13))
     assert len(used) > 150
@@ -72,18 +72,16 @@ def test_what_the_rule_misses_is_less_than_its_bound():
 
 
 def test_weights_are_exact_for_polynomials():
-    for power in range(quadrature.LAST + 1):
-        assert quadrature.WEIGHTS @ quadrature.PLACES**power == pytest.approx(1.0 / (power + 1), abs=1e-13)
+    for power in range(rule.LAST + 1):
+        assert rule.WEIGHTS @ rule.PLACES**power == pytest.approx(1.0 / (power + 1), abs=1e-13)
 
 
 @pytest.mark.parametrize("at", [0.03, 0.29, 0.48, 0.77])
 def test_a_peak_between_places_is_told_within_what_may_be_wrong(at):
-    row = np.exp(-3.0 * (quadrature.PLACES - at) ** 2)
+    row = np.exp(-3.0 * (rule.PLACES - at) ** 2)
     rises, most, wrong = interpret._twin(extremes.rises.py_func), -1.0, 0.0
-    for k in range(quadrature.LAST + 1):
-        first, before, here, after, second = (
-            row[quadrature.LAST - abs(quadrature.LAST - abs(k + i))] for i in (-2, -1, 0, 1, 2)
-        )
+    for k in range(rule.LAST + 1):
+        first, before, here, after, second = (row[rule.LAST - abs(rule.LAST - abs(k + i))] for i in (-2, -1, 0, 1, 2))
         lift, missed = rises(
             before, here, after, (8.0 * (after - before) - second + first) / 12.0,
             (16.0 * (after + before) - 30.0 * here - second - first) / 12.0,

@@ -15,6 +15,7 @@ from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
 from . import first_guess, layer, meridian, nested, quadrature, slack_ends
 from .pack import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
+from .rule import LAST
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
 
@@ -177,7 +178,7 @@ def solve_physical(
     problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack,
 ):  # fmt: skip
     """Solve rows of physical tubes as :func:`solve` does the source's, by :mod:`quadrature`, in so many ``pieces``."""
-    room, ends, numbers = aligned(15, quadrature.LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
+    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
     edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
     columns, start, scratch = small[0], small[1], small[2]
     rows, counts = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)

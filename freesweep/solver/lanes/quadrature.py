@@ -3,47 +3,28 @@ but that for what the fibers leave the wall at one place.
 
 A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant finds
 it, first by one rule along the whole depth, then part by part between the places where families go slack
-(:mod:`slack_ends`). Each part is summed by the rule of Clenshaw and Curtis. What is summed is what an output differs by from
-that of the middle; the last coefficients of its expansion in Chebyshev polynomials tell how much the rule may miss: of
-600 functions with poles and roots beside the interval none missed more than a hundredth of the largest of four.
+(:mod:`slack_ends`). What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs` makes
+of the sums what is told.
 """
-
-from math import sqrt
-
-import numpy as np
 
 from ...jit import kernel
 from ..along import places
 from ..cells import nothing_yet
 from ..guide import FAR_FROM
-from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
 from ..physics.uniform_tube import FAR
-from ..physics.wall import has_any_family, has_two_families, may_go_slack
+from ..physics.wall import has_any_family, has_two_families
 from . import slack_ends
 from .extremes import widest
-from .meridian import DEEPEST, fallen, handed_on, look, middle
+from .meridian import DEEPEST, handed_on, look, middle
+from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WORST, finish, pulled
+from .rule import LAST, PLACES, summed
 from .vector import HUGE, WIDTH, get, mask_of, put, select, some, spread
 
-LAST = 16  # places 0 to LAST of the rule
-_ANGLES = np.pi * np.arange(LAST + 1) / LAST
-_BASIS = np.polynomial.chebyshev.chebvander(-np.cos(_ANGLES), LAST)
-PLACES = 0.5 - 0.5 * np.cos(_ANGLES)
-WEIGHTS = np.linalg.solve(_BASIS.T, [0.0 if k % 2 else 1.0 / (1.0 - k * k) for k in range(LAST + 1)])
-TAILS = 4
-TAIL = np.ascontiguousarray(np.linalg.inv(_BASIS)[-TAILS:])
-MISSED = 0.02  # of the largest of the last coefficients
-SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
 ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5, 15)
-FITS, ROUGH, CLOSE = (
-    16,
-    1e-3,
-    1e-10,
-)  # for the depth of the middle: trials, and shares of the layer that may be wrong there
-SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
-STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
+FITS = 16  # trials for the depth of the middle
+ROUGH, CLOSE = 1e-3, 1e-10  # shares of the layer that may be wrong there
 NARROW = 1e-6  # of the depth: a part of no length
-FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
 SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
 
 
@@ -80,26 +61,6 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
         put(rows[SQUARE], k, places.outer_square(y, at.G_1, cell, load.wall))
         put(rows[STRAIN], k, places.strain_square(y, at.G_1, at.psi, cell, load.wall))
     return near, valid
-
-
-@kernel
-def pulled(multiplier, load):
-    """What a family pulls by: one that cannot push not less than 0."""
-    return max(multiplier, 0.0) if may_go_slack(load.wall) else multiplier
-
-
-@kernel
-def summed(row):
-    """Sum of a row by the rule, and what it may miss."""
-    total, missed = spread(0.0), spread(0.0)
-    for k in range(LAST + 1):
-        total = total + WEIGHTS[k] * get(row, k)
-    for i in range(TAILS):
-        tail = spread(0.0)
-        for k in range(LAST + 1):
-            tail = tail + TAIL[i, k] * get(row, k)
-        missed = max(missed, abs(tail))
-    return total, MISSED * missed
 
 
 @kernel
@@ -228,60 +189,6 @@ def let_go(mid, cell, load, half):
 
 
 @kernel
-def finish(mid, miss, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
-    """Write outputs, numbers and bounds; returns the largest scaled bound of the outputs, rounding left out."""
-    sums, missed = numbers[0], numbers[1]
-    wrong = get(missed, DX) + abs(miss) + FAINT / mid.rate  # of half the tube's length
-    moved = 2.0 * mid.q * mid.rate * wrong  # of the middle, as a share of the layer
-    rest = fallen(mid.rate * miss, scratch)  # how much of what is left of the layer is left in the middle itself
-    outputs = (
-        half * mid.s + get(sums, LENGTH), half * mid.y * mid.y * mid.s + get(sums, VOLUME),
-        half * mid.psi + get(sums, TWIST), half * mid.energy + get(sums, ENERGY),
-        mid.u + (mid.y - mid.u) * rest,
-    )  # fmt: skip
-    by = min(moved, 2.0 * mid.q)
-    middle_moved = abs(1.0 - mid.u) * by
-    errors = (
-        get(missed, LENGTH) + moved * abs(get(sums, LENGTH)), get(missed, VOLUME) + moved * abs(get(sums, VOLUME)),
-        get(missed, TWIST) + moved * abs(get(sums, TWIST)), get(missed, ENERGY) + moved * abs(get(sums, ENERGY)),
-        middle_moved * rest,
-    )  # fmt: skip
-    scale, floor = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
-    largest = max(
-        max(max(errors[0] / scale[0], errors[1] / scale[1]), max(errors[2] / scale[2], errors[3] / scale[3])), errors[4]
-    )
-    record(out, 0, outputs, errors, floor)
-    size = load.p + abs(load.f)
-    share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
-    share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half
-    doubt = (get(missed, DX) + STEEPEST * unsure * mid.depth / mid.rate) / half
-    least_a, least_b = places.pulls(pulled(-get(sums, WORST), load), pulled(-get(sums, WORST + 1), load), cell, load)
-    off_a, off_b = places.pulls(get(missed, WORST), get(missed, WORST + 1), cell, load)
-    outer, strain = sqrt(get(sums, WORST + 2)), sqrt(get(sums, WORST + 3))
-    faint, least, none = (places.ROUNDING + moved) * size, spread(places.ROUNDING), spread(0.0)
-    record(
-        out, len(outputs),
-        (share_a, share_b, least_a, least_b, outer, strain),
-        (
-            doubt + doubts[0] / half, doubt + doubts[1] / half,
-            off_a + faint + moved * abs(least_a), off_b + faint + moved * abs(least_b),
-            0.5 * get(missed, WORST + 2) / outer + 3.0 * middle_moved,
-            0.5 * get(missed, WORST + 3) / strain + 3.0 * by * (strain - 1.0),
-        ),
-        (least, least, none, none, places.ROUNDING * outer, places.ROUNDING * strain),
-    )  # fmt: skip
-    return largest
-
-
-@kernel
-def record(out, first, numbers, errors, floors):
-    """Numbers and bounds, from a row on."""
-    for k in range(len(numbers)):
-        put(out[0], first + k, numbers[k])
-        put(out[1], first + k, errors[k] + floors[k])
-
-
-@kernel
 def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
     """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out`` (2, >
     11, WIDTH) takes the outputs, the numbers of :mod:`..along.places`, and their bounds. Returns masks: ``(met, alpha slack
@@ -293,7 +200,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     mid = middle(u, spread(DEEPEST), cell, load, scratch)
     depth = min(mid.rate * half, DEEPEST)
     slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
-    found, alpha, beta, long = mask_of(0), mask_of(0), mask_of(0), mask_of(0)
+    found, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
     unsure, miss, doubts, middle_limp = spread(0.0), spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
     for _ in range(FITS):
         mid = middle(u, depth, cell, load, scratch)
@@ -302,7 +209,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
         )
         active = active & valid
         miss = half - total
-        long = (depth >= DEEPEST) & (miss >= 0.0)
+        long = (depth >= DEEPEST) & (miss >= 0.0)  # the middle is the uniform tube
         wrong = active & ~settled & ~long & (abs(miss) * mid.rate * mid.q > ROUGH)
         arrived = active & ~wrong & ~settled
         settled = settled | arrived

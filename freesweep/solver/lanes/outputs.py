@@ -1,0 +1,78 @@
+"""What is told of a state of a physical tube, for a vector of designs: outputs, the numbers of :mod:`..along.places`, and
+their bounds, from the sums along half of it (:mod:`quadrature`).
+"""
+
+from math import sqrt
+
+from ...jit import kernel
+from ..along import places
+from ..numerics.nested import SMALLEST_TOLERANCE
+from ..physics import lagrangian
+from ..physics.wall import may_go_slack
+from .meridian import fallen
+from .vector import get, put, select, spread
+
+SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
+SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
+STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
+FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
+
+
+@kernel
+def pulled(multiplier, load):
+    """What a family pulls by: one that cannot push not less than 0."""
+    return max(multiplier, 0.0) if may_go_slack(load.wall) else multiplier
+
+
+@kernel
+def finish(mid, miss, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
+    """Write outputs, numbers and bounds; returns the largest scaled bound of the outputs, rounding left out."""
+    sums, missed = numbers[0], numbers[1]
+    wrong = get(missed, DX) + abs(miss) + FAINT / mid.rate  # of half the tube's length
+    moved = 2.0 * mid.q * mid.rate * wrong  # of the middle, as a share of the layer
+    rest = fallen(mid.rate * miss, scratch)  # how much of what is left of the layer is left in the middle itself
+    outputs = (
+        half * mid.s + get(sums, LENGTH), half * mid.y * mid.y * mid.s + get(sums, VOLUME),
+        half * mid.psi + get(sums, TWIST), half * mid.energy + get(sums, ENERGY),
+        mid.u + (mid.y - mid.u) * rest,
+    )  # fmt: skip
+    by = min(moved, 2.0 * mid.q)
+    middle_moved = abs(1.0 - mid.u) * by
+    errors = (
+        get(missed, LENGTH) + moved * abs(get(sums, LENGTH)), get(missed, VOLUME) + moved * abs(get(sums, VOLUME)),
+        get(missed, TWIST) + moved * abs(get(sums, TWIST)), get(missed, ENERGY) + moved * abs(get(sums, ENERGY)),
+        middle_moved * rest,
+    )  # fmt: skip
+    scale, floor = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
+    largest = max(
+        max(max(errors[0] / scale[0], errors[1] / scale[1]), max(errors[2] / scale[2], errors[3] / scale[3])), errors[4]
+    )
+    record(out, 0, outputs, errors, floor)
+    size = load.p + abs(load.f)
+    share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
+    share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half
+    doubt = (get(missed, DX) + STEEPEST * unsure * mid.depth / mid.rate) / half
+    least_a, least_b = places.pulls(pulled(-get(sums, WORST), load), pulled(-get(sums, WORST + 1), load), cell, load)
+    off_a, off_b = places.pulls(get(missed, WORST), get(missed, WORST + 1), cell, load)
+    outer, strain = sqrt(get(sums, WORST + 2)), sqrt(get(sums, WORST + 3))
+    faint, least, none = (places.ROUNDING + moved) * size, spread(places.ROUNDING), spread(0.0)
+    record(
+        out, len(outputs),
+        (share_a, share_b, least_a, least_b, outer, strain),
+        (
+            doubt + doubts[0] / half, doubt + doubts[1] / half,
+            off_a + faint + moved * abs(least_a), off_b + faint + moved * abs(least_b),
+            0.5 * get(missed, WORST + 2) / outer + 3.0 * middle_moved,
+            0.5 * get(missed, WORST + 3) / strain + 3.0 * by * (strain - 1.0),
+        ),
+        (least, least, none, none, places.ROUNDING * outer, places.ROUNDING * strain),
+    )  # fmt: skip
+    return largest
+
+
+@kernel
+def record(out, first, numbers, errors, floors):
+    """Numbers and bounds, from a row on."""
+    for k in range(len(numbers)):
+        put(out[0], first + k, numbers[k])
+        put(out[1], first + k, errors[k] + floors[k])
