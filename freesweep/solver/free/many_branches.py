@@ -89,9 +89,8 @@ def walk(problem, settled, rows, accuracy):
     for sense in (1.0, -1.0):
         own = [i for i in asked if (rows.pressures[i] - settled) * sense >= 0.0 and rows.status[i] == PENDING]
         if own:
-            start = yield from on(pressure, turned_to(point, pressure.share_of(settled), sense))
-            if start is not None:
-                yield from on(pressure, follow(pressure, start, sense, own, rows, accuracy))
+            start = turned_to(point, pressure.share_of(settled), sense)
+            yield from on(pressure, follow(pressure, start, sense, own, rows, accuracy))
 
 
 def on(way, questions):
@@ -106,23 +105,9 @@ def on(way, questions):
 
 
 def turned_to(point, share, sense):
-    """The same state as a :class:`two_numbers.Point` of the way of pressure, along which it leads in this ``sense``."""
-    here = yield from two_numbers.ask(point.middle, share)
-    other = yield from two_numbers.ask(point.middle + NUDGE, share)
-    later = yield from two_numbers.ask(point.middle, share + NUDGE * (1.0 if share < 0.5 else -1.0))
-    by_middle = (other.miss - here.miss) / NUDGE
-    by_share = (later.miss - here.miss) / (NUDGE * (1.0 if share < 0.5 else -1.0))
-    size = np.hypot(by_middle, by_share)
-    if not size > 0.0:
-        return None
-    along = -by_share / size, by_middle / size
-    if along[1] * sense < 0.0:
-        along = -along[0], -along[1]
-    slope = -along[1] * by_middle + along[0] * by_share
-    return two_numbers.Point(point.middle, share, along, slope)
-
-
-NUDGE = 1e-9
+    """The same state as a point of the way of pressure, along which it leads in this ``sense``."""
+    upward = two_numbers.Point(point.middle, share, 0.5 * sense * np.pi, two_numbers.FIRST_STEP, 0.0, sense)
+    return upward
 
 
 def settle(way, point, accuracy):
@@ -142,7 +127,7 @@ def settle(way, point, accuracy):
     found = yield from two_numbers.state_at(1.0, points[-2], points[-1], accuracy)
     if found is None:
         return PENDING, None
-    return OK, two_numbers.Point(found[0].values[4], 1.0, points[-1].along, points[-1].slope)
+    return OK, points[-1]._replace(middle=float(found[0].values[4]), share=1.0)
 
 
 def lost(way, point):
@@ -273,7 +258,7 @@ def measured(problems, kinds, asked, columns):
             for n, row in enumerate(rows.tolist()):
                 scales = np.append(told[n, by_middle.SCALES :], 1.0)
                 answers[int(owners[row])] = two_numbers.Answer(
-                    told[n, by_middle.MISS], told[n, by_middle.DOUBT], values[n], bounds[n], scales,
+                    float(told[n, by_middle.MISS]), float(told[n, by_middle.DOUBT]), values[n], bounds[n], scales,
                     int(told[n, by_middle.SLACK]),
                 )
     return answers

@@ -1,27 +1,33 @@
 """A branch in two numbers: the stretch in the middle, and the share of a way along which loads change.
 
-What a state is comes from whoever is asked: these functions are generators that yield a :class:`Question` and are sent a
+What a state is comes from whoever is asked: these functions are generators that yield a :class:`Question` and are sent an
 :class:`Answer`, so that many branches are followed side by side, their questions answered together (:mod:`many_branches`).
-To each pair of numbers belongs by how much it misses being a state; a branch is where that is 0. Along it the gradient of
-the miss stays on one side: of two close branches the other has it on the other side, so that no step lands there unseen.
+
+To each pair of numbers belongs by how much it misses being a state, times the strain in the middle, a smooth number; a branch
+is where that is none. To its left it is of one sign all along, to its right of the other. From a point of it the branch goes on
+where the sign changes on a circle: round a corner, where fibers go slack, or a fold as sharp as a needle no less than where
+it is smooth, and never to another branch beside it, which has its signs the other way round.
 """
 
-from math import hypot, isnan
+from math import atan2, cos, hypot, isnan, pi, sin
 from typing import NamedTuple
 
 import numpy as np
 
-FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-8  # along the branch
-STRAY, CALM = 0.3, 0.1  # of a step: how far beside it the branch may lie, and up to where the next one is longer
-LONGER, MOST_STEPS = 1.6, 3000
-NEAR, NEARER, TRIALS = 1e-5, 1e-11, 14  # a miss that is none along the branch, and of a state that is asked for
-ROUGH = 1e-2  # of a miss: a doubt that a step may have
-SLIGHT = 1e-3  # of a miss, by which a state is moved to see what changes
+FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-7  # radius of the circle
+STRAY, CALM = 0.3, 0.1  # turns of a step [radian]: above the first it is halved while it can be, below the second doubled
+SPREAD = 0.01, 3.0  # angles at which the change of sign is looked for: the first, and how much wider each time
+SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be known along it
+MOST_STEPS = 2000
+CLOSE = 1e-11  # a miss that is none
+MOST_HALVINGS, ROUNDING = 60, 4e-16  # of a bracket, and its width where it ends
+ROUGH, FAINT = 1e-2, 0.1  # doubt of a miss that a step may have; share of a doubt that cannot be told from none
+SLIGHT, LEAST_ASIDE = 1e-3, 1e-13  # a miss, and a stretch, by which a state is moved to see what changes
+CAUTION = 2.0  # times what a miss changes
 BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed
 LEAST_SHARE, FASTER = 1e-9, 3.0  # of the way, where it is looked for, and how much farther each time
 STILL = 1e-9  # strain beside which the middle is not looked at: the miss is a ratio of two small numbers there
-PEAK_STEPS, FLAT = 24, 1e-10  # to a turning point, and how exactly its load is met
-CAUTION = 2.0  # times what a miss changes
+GOLDEN, PEAK_STEPS, FLAT = 0.381966, 40, 1e-9  # to a turning point, and how exactly its load is met
 TRIES = 4
 ALL = range(TRIES)
 
@@ -35,8 +41,8 @@ class Question(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """By how much a question misses being a state (NaN: no tube at all), what may be missing of that, and the rest, which is
-    nobody's business here but that of who asked.
+    """By how much a question misses being a state (NaN: no tube at all), and what may be missing of that, both times the
+    strain; outputs, what may be missing of them, and by what they are measured; families that are slack.
     """
 
     miss: float
@@ -48,14 +54,16 @@ class Answer(NamedTuple):
 
 
 class Point(NamedTuple):
-    """A state of a branch: stretch in the middle, share of the way; unit vector along the branch, and how the miss changes to
-    the left of it.
+    """A state of a branch: stretch in the middle, share of the way; direction [radian] and length of the step that led there,
+    how fast the direction turns, and the sign of the miss to the left.
     """
 
     middle: float
     share: float
-    along: tuple
-    slope: float
+    chord: float
+    step: float
+    turn: float
+    left: float
 
 
 def ask(middle, share, tries=ALL):
@@ -67,42 +75,80 @@ def ask(middle, share, tries=ALL):
         answer = yield Question(middle, share, fineness)
         if not answer.doubt > ROUGH:
             break
-    return answer
+    strain = middle - 1.0
+    return answer._replace(miss=answer.miss * strain, doubt=answer.doubt * abs(strain))
 
 
-def zero_on_line(middle, share, toward, reach, step, near, tries=ALL):
-    """``(distance, slope, answer)`` of the place of a line, from a point ``toward`` a unit vector and back, not farther than
-    ``reach``, where nothing is missed; None where it is not met. ``step`` is a first guess of the distance.
+def crossing(place, low, high, width=0.0, tries=ALL):
+    """``(t, answer, other)`` where the miss changes its sign along ``place(t)``, a stretch and a share, between two pairs of a
+    t and its answer, as exactly as that ``width``; ``other`` is a pair beside it. None where the way there leads through what
+    is no tube.
+
+    By the regula falsi of Illinois; a bracket that it does not halve is halved.
     """
-    low = high = None  # (distance, miss) on both sides
-    before, at, found = None, 0.0, None
-    for trial in range(TRIALS):
-        answer = yield from ask(middle + at * toward[0], share + at * toward[1], tries)
-        miss = answer.miss
-        if isnan(miss):
-            if before is None:
-                return None
-            at = 0.5 * (at + before[0])  # half as far
-            continue
-        if before is not None and at != before[0] and miss != before[1]:
-            found = at, (miss - before[1]) / (at - before[0]), answer
-            if abs(miss) <= near or abs(at - before[0]) <= 1e-15 * (1.0 + abs(at)):
-                return found
-        low, high = ((at, miss), high) if miss < 0.0 else (low, (at, miss))
-        if before is None or at == before[0] or miss == before[1]:
-            ahead = at + step
+    weights, wide = [1.0, 1.0], abs(high[0] - low[0])
+    for trial in range(MOST_HALVINGS):
+        below, above = weights[0] * low[1].miss, weights[1] * high[1].miss
+        t = (low[0] * above - high[0] * below) / (above - below)
+        if trial % 3 == 2:
+            if abs(high[0] - low[0]) > 0.5 * wide or not min(low[0], high[0]) < t < max(low[0], high[0]):
+                t = 0.5 * (low[0] + high[0])
+            wide = abs(high[0] - low[0])
+        answer = yield from ask(*place(t), tries)
+        if isnan(answer.miss):
+            return None
+        same = answer.miss * low[1].miss > 0.0
+        other = low if abs(low[1].miss) < abs(high[1].miss) else high
+        if same:
+            low, weights = (t, answer), [1.0, 0.5 * weights[1]]
         else:
-            ahead = at - miss * (at - before[0]) / (miss - before[1])
-        if low is not None and high is not None:
-            least, most = min(low[0], high[0]), max(low[0], high[0])
-            if not least < ahead < most:
-                ahead = 0.5 * (least + most)
-        else:
-            ahead = min(max(ahead, at - 0.5 * reach), at + 0.5 * reach)
-            if abs(ahead) > reach:
-                return None
-        before, at = (at, miss), ahead
-    return None
+            high, weights = (t, answer), [0.5 * weights[0], 1.0]
+        none = max(CLOSE * abs(place(t)[0] - 1.0), FAINT * answer.doubt)
+        if abs(answer.miss) <= none or abs(high[0] - low[0]) <= max(width, ROUNDING * (1.0 + abs(t))):
+            break
+    return t, answer, other
+
+
+def advance(here, step):
+    """``(point, step)``: the next :class:`Point` of a branch, and how long the step after it may be; no point where what lies
+    ahead is no tube.
+    """
+    while True:
+        last, toward = step <= SMALLEST_STEP, here.chord + 0.5 * here.turn * (here.step + step)
+
+        def place(angle, step=step, toward=toward):
+            return here.middle + step * cos(toward + angle), here.share + step * sin(toward + angle)
+
+        angle = yield from leaves(here, place, pi if last else STRAY)
+        if angle is not None:
+            turn = (toward + angle - here.chord) / (0.5 * (here.step + step)) if abs(angle) < STRAY else 0.0
+            point = Point(*place(angle), toward + angle, step, turn, here.left)
+            return point, min(2.0 * step if abs(angle) < CALM else step, LARGEST_STEP)
+        if last:
+            return None, step
+        step = max(0.5 * step, SMALLEST_STEP)
+
+
+def leaves(here, place, widest):
+    """The angle, not wider than the ``widest``, at which a branch leaves a circle round ``here``; None where it is not met."""
+    answer = yield from ask(*place(0.0))
+    if isnan(answer.miss):
+        return None
+    rightward = answer.miss * here.left > 0.0  # the branch lies to the right
+    angle, before = SPREAD[0], (0.0, answer)
+    while True:
+        angle = min(angle, widest)
+        t = -angle if rightward else angle
+        answer = yield from ask(*place(t))
+        if isnan(answer.miss):
+            return None
+        if (answer.miss * here.left > 0.0) != rightward:
+            break
+        if angle == widest:
+            return None
+        before, angle = (t, answer), SPREAD[1] * angle
+    met = yield from crossing(place, before, (t, answer), SHARP)
+    return None if met is None else met[0]
 
 
 def begin():
@@ -111,77 +157,72 @@ def begin():
     """
     for strain in BEGINNINGS:
         for middle in (1.0 + strain, 1.0 - strain):
-            share, before = LEAST_SHARE, 0.0
+            share, before = LEAST_SHARE, None
             while share <= 1.0:
                 answer = yield from ask(middle, share)
-                if answer.miss >= 0.0:
+                if answer.miss * (middle - 1.0) >= 0.0:
                     break
-                before, share = share, FASTER * share
+                before, share = (share, answer), FASTER * share
             else:
                 continue
-            size = hypot(middle - 1.0, share)
-            met = yield from zero_on_line(middle, share, (0.0, 1.0), share - before, 0.5 * (before - share), NEAR)
+            if before is None:
+                continue
+            met = yield from crossing(lambda t, middle=middle: (middle, t), before, (share, answer), SHARP * share)
             if met is not None:
-                distance, slope, _ = met
-                share += distance
-                size = hypot(middle - 1.0, share)
-                along = (middle - 1.0) / size, share / size
-                return Point(middle, share, along, slope * along[0])
+                share = met[0]
+                return Point(middle, share, atan2(share, middle - 1.0), hypot(share, middle - 1.0), 0.0, 1.0)
     return None
-
-
-def advance(here, step):
-    """``(point, step)``: the next :class:`Point` of a branch and how long the step after it may be; no point where no step
-    leads on.
-    """
-    while step > SMALLEST_STEP:
-        (right, up) = here.along
-        left = -up, right
-        ahead = here.middle + step * right, here.share + step * up
-        met = yield from zero_on_line(*ahead, left, STRAY * step, 1e-3 * step, NEAR)
-        if met is not None and met[1] * here.slope > 0.0:
-            distance, slope, _ = met
-            chord = step * right + distance * left[0], step * up + distance * left[1]
-            size = hypot(*chord)
-            turned = 2.0 * chord[0] / size - right, 2.0 * chord[1] / size - up  # the tangent of a parabola
-            whole = hypot(*turned)
-            point = Point(here.middle + chord[0], here.share + chord[1], (turned[0] / whole, turned[1] / whole), slope)
-            return point, min(step * (LONGER if abs(distance) < CALM * step else 1.0), LARGEST_STEP)
-        step *= 0.5
-    return None, step
 
 
 def turning_point(points, sense):
     """``(share, bound, point)`` of the largest share, in this ``sense``, of a branch that passes three ``points``, the middle
     one of which lies farther than the others; None where it is not found.
+
+    At a turning point the branch runs across the way: to each stretch between the outer points belongs one share.
     """
-    near, top, far = points
-    best, step, doubt = top, 0.0, 0.0
+    (a, fa), (b, fb), (c, fc) = ((point.middle, sense * point.share) for point in points)
+    doubt, reach = 0.0, max(abs(fb - fa), abs(fb - fc)) + FLAT
     for trial in range(PEAK_STEPS):
-        (a, fa), (b, fb), (c, fc) = ((p.middle, sense * p.share) for p in (near, best, far))
         left, right = (b - a) * (fb - fc), (b - c) * (fb - fa)
-        vertex = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right) if left != right else b
-        inside = min(a, c) < vertex < max(a, c)
-        if not inside or abs(vertex - b) < 1e-3 * abs(c - a) or trial % 4 == 3:
-            vertex = b + 0.38 * ((c - b) if abs(c - b) > abs(b - a) else (a - b))
-        met = yield from zero_on_line(vertex, best.share, (0.0, 1.0), abs(far.share - near.share) + LARGEST_STEP, 0.0, NEAR)
+        t = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right) if left != right else b
+        if not min(a, c) < t < max(a, c) or abs(t - b) < FLAT or trial % 3 == 2:
+            t = b + GOLDEN * ((c - b) if abs(c - b) > abs(b - a) else (a - b))
+        met = yield from across(t, sense * fb, sense, reach)
         if met is None:
-            return None
-        distance, slope, answer = met
-        point = Point(vertex, best.share + distance, (sense, 0.0), slope)
-        gain = sense * (point.share - best.share)
-        doubt = (answer.doubt + NEAR) / abs(slope)
-        if gain > 0.0:
-            near, far = (near, best) if (vertex - b) * (c - b) < 0.0 else (best, far)
-            best = point
-        elif (vertex - b) * (c - b) > 0.0:
-            far = point
-        else:
-            near = point
-        if max(abs(near.share - best.share), abs(far.share - best.share)) < FLAT:
             break
-    apart = max(abs(near.share - best.share), abs(far.share - best.share))
-    return best.share, doubt + apart, best
+        share, doubt = met
+        if sense * share > fb:
+            (a, fa), (c, fc) = ((a, fa), (b, fb)) if (t - b) * (c - b) < 0.0 else ((b, fb), (c, fc))
+            b, fb = t, sense * share
+        elif (t - b) * (c - b) > 0.0:
+            c, fc = t, sense * share
+        else:
+            a, fa = t, sense * share
+        if max(fb - fa, fb - fc) < FLAT or abs(c - a) < SMALLEST_STEP:
+            break
+    return sense * fb, doubt + max(fb - fa, fb - fc, 0.0), points[1]._replace(middle=b, share=sense * fb)
+
+
+def across(middle, share, sense, reach):
+    """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than ``reach``."""
+
+    def place(t):
+        return middle, share + t
+
+    answer = yield from ask(middle, share)
+    distance, first = FAINT**3 * reach, (0.0, answer)
+    while distance < 4.0 * reach and not isnan(answer.miss):
+        for t in (-sense * distance, sense * distance):
+            other = yield from ask(*place(t))
+            if other.miss * answer.miss < 0.0:
+                met = yield from crossing(place, first, (t, other))
+                if met is None:
+                    return None
+                t, found, (aside, beside) = met
+                slope = abs((found.miss - beside.miss) / (t - aside)) if found.miss != beside.miss else np.inf
+                return share + t, (found.doubt + abs(found.miss)) / slope + FLAT * FAINT
+        distance *= SPREAD[1]
+    return None
 
 
 def state_at(share, near, far, accuracy):
@@ -190,19 +231,33 @@ def state_at(share, near, far, accuracy):
     """
     apart = far.middle - near.middle
     part = (share - near.share) / (far.share - near.share)
-    first, reach, stays = near.middle + part * apart, abs(apart) + STRAY * abs(far.share - near.share), None
+    first, reach, stays = near.middle + part * apart, abs(apart) + abs(far.share - near.share), None
+    rising = 1.0 if far.share > near.share else -1.0
+
+    def place(t):
+        return first + t, share
+
     for fineness in range(TRIES):
         tries = range(fineness, fineness + 1)
-        met = yield from zero_on_line(first, share, (1.0, 0.0), reach, 0.01 * apart, NEARER, tries)
-        if met is None or not met[1] * near.along[1] * near.slope < 0.0:
+        answer = yield from ask(*place(0.0), tries)
+        below = answer.miss * near.left * rising > 0.0  # to the left of what rises stretches are smaller
+        before, distance, met = (0.0, answer), FAINT**4 * reach, None
+        while distance < 2.0 * reach:
+            t = distance if below else -distance
+            answer = yield from ask(*place(t), tries)
+            if (answer.miss * near.left * rising > 0.0) != below:
+                met = yield from crossing(place, before, (t, answer), tries=tries)
+                break
+            before, distance = (t, answer), SPREAD[1] * distance
+        if met is None:
             return stays
-        distance, slope, answer = met
-        first = first + distance
-        aside = min(SLIGHT / abs(slope), 0.1 * reach)
-        other = yield from ask(first + aside, share, tries)
-        change = (other.values - answer.values) / (other.miss - answer.miss)
-        bounds = answer.bounds + CAUTION * np.abs(change) * (abs(answer.miss) + answer.doubt)
-        stays = answer, bounds
+        t, answer, (aside, other) = met
+        slope = abs((other.miss - answer.miss) / (aside - t)) if other.miss != answer.miss else np.inf
+        beside = max(min(SLIGHT * abs(first + t - 1.0) / slope, FAINT * reach), LEAST_ASIDE)
+        other = yield from ask(first + t + beside, share, tries)
+        change = np.abs(other.values - answer.values) / max(abs(other.miss - answer.miss), 1e-300)
+        bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
+        stays, first = (answer, bounds), first + t
         if np.max(bounds[: len(answer.scales)] / answer.scales) <= accuracy:
             break
     return stays

@@ -21,6 +21,7 @@ from .vector import WIDTH, bits, get, mask_of, put, select, spread
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
 TOLD = MISS, DOUBT, SLACK, SCALES = range(4)  # what is told beside outputs: three numbers, and from the last on four
 COUNT = SCALES + 4
+ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middle
 
 
 @kernel
@@ -44,7 +45,8 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
         scratch[0, lane] = exp(scratch[0, lane])
     miss = select(short > 0.0, -1.0 - short, get(scratch, 0) - 1.0)
     put(told, MISS, select(driven, select(valid, miss, np.nan), min(lack, -1.0)))
-    put(told, DOUBT, select(fine, unmet(mid, zero, numbers) * mid.rate, np.inf))
+    doubt = select(fine, unmet(mid, zero, numbers) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)), np.inf)
+    put(told, DOUBT, select(driven & valid, doubt, 0.0))
     finish(mid, zero, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
     scale, _ = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)

@@ -115,7 +115,7 @@ def middle_at(y, cell, load, half, scratch):
     (_, L_y, _, L_yy, _, L_vv), near = lagrangian.density_beside(y, zero, cell, load, nothing_yet(zero))
     level, G_1, psi, energy = lagrangian.level_of(y, cell, load, near)
     T, s, reach = load.p * y * y + load.f, sqrt(1.0 + G_1), 1.0 - y
-    rise, fall = -L_y / s, max(-L_yy / s, LEAST_RATE)
+    rise, fall = -L_y / s, max(-L_yy, -L_vv / (half * half)) / s
     part = fall * reach / rise
     driven = part > 0.0
     part = select(driven, part, 1.0)
