@@ -106,7 +106,7 @@ def on(way, questions):
 
 def turned_to(point, share, sense):
     """The same state as a point of the way of pressure, along which it leads in this ``sense``."""
-    upward = two_numbers.Point(point.middle, share, 0.5 * sense * np.pi, two_numbers.FIRST_STEP, 0.0, sense)
+    upward = two_numbers.Point(point.middle, share, 0.5 * sense * np.pi, 0.0, 0.0, sense)
     return upward
 
 
@@ -116,12 +116,12 @@ def settle(way, point, accuracy):
     while points[-1].share < 1.0:
         if len(points) > two_numbers.MOST_STEPS:
             return PENDING, None
-        ahead, step = yield from two_numbers.advance(points[-1], step)
+        points[-1], ahead, step = yield from two_numbers.advance(points[-1], step)
         if ahead is None:
             return lost(way, points[-1]), None
-        if ahead.share <= points[-1].share:
-            return BEYOND_LIMIT, None
         points.append(ahead)
+        if not (yield from two_numbers.goes_on(points, 1.0)):
+            return BEYOND_LIMIT, None
     if len(points) == 1:
         return PENDING, None
     found = yield from two_numbers.state_at(1.0, points[-2], points[-1], accuracy)
@@ -145,7 +145,7 @@ def follow(way, point, sense, asked, rows, accuracy):
     while sense * points[-1].share < far or len(points) == 1:
         if len(points) > two_numbers.MOST_STEPS:
             return
-        ahead, step = yield from two_numbers.advance(points[-1], step)
+        points[-1], ahead, step = yield from two_numbers.advance(points[-1], step)
         if ahead is None:
             status = lost(way, points[-1])
             for i in asked:
@@ -153,8 +153,9 @@ def follow(way, point, sense, asked, rows, accuracy):
                     rows.status[i] = status
             return
         points.append(ahead)
-        here, there = points[-2], points[-1]
-        if sense * there.share <= sense * here.share:
+        goes_on = yield from two_numbers.goes_on(points, sense)
+        here, there = points[-2:]
+        if not goes_on:
             yield from end_at(way, points, sense, shares, rows, accuracy)
             return
         for i, share in shares.items():
@@ -183,7 +184,7 @@ def end_at(way, points, sense, shares, rows, accuracy):
     share, bound, top = found
     if sense > 0.0:
         rows.limit[0] = way.load_at(share)[0]
-        rows.limit[1] = way.load_at(share + bound)[0] - rows.limit[0]
+        rows.limit[1] = way.unit * bound / (1.0 - share) ** 2
     for i, own in shares.items():
         if rows.status[i] != PENDING:
             continue
@@ -201,10 +202,12 @@ def locked(asked, rows, accuracy):
         return
     step, points = two_numbers.FIRST_STEP, [point]
     while points[-1].share < 1.0:
-        ahead, step = yield from two_numbers.advance(points[-1], step)
-        if ahead is None or ahead.share <= points[-1].share:
+        points[-1], ahead, step = yield from two_numbers.advance(points[-1], step)
+        if ahead is None:
             return
         points.append(ahead)
+        if not (yield from two_numbers.goes_on(points, 1.0)):
+            return
     if len(points) > 1:
         for i in asked:
             yield from write(1.0, points[-2], points[-1], i, rows, accuracy)

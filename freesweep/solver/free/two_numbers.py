@@ -14,9 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-7  # radius of the circle
-STRAY, CALM = 0.3, 0.1  # turns of a step [radian]: above the first it is halved while it can be, below the second doubled
+FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
+STRAY, CALM = 0.3, 0.1  # turns of a step [radian]: above the first it is shortened while it can be, below the second doubled
+SHORTER = 0.3
 SPREAD = 0.01, 3.0  # angles at which the change of sign is looked for: the first, and how much wider each time
+SMALL = 0.1  # of the step before: a step for which a point has to be known to rounding
 SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be known along it
 MOST_STEPS = 2000
 CLOSE = 1e-11  # a miss that is none
@@ -29,7 +31,7 @@ LEAST_SHARE, FASTER = 1e-9, 3.0  # of the way, where it is looked for, and how m
 STILL = 1e-9  # strain beside which the middle is not looked at: the miss is a ratio of two small numbers there
 GOLDEN, PEAK_STEPS, FLAT = 0.381966, 40, 1e-9  # to a turning point, and how exactly its load is met
 TRIES = 4
-ALL = range(TRIES)
+ALONG, SHARPLY = (range(TRIES), ROUGH), (range(TRIES), 1e-7)  # tries, and a doubt that needs no more of them
 
 
 class Question(NamedTuple):
@@ -66,20 +68,20 @@ class Point(NamedTuple):
     left: float
 
 
-def ask(middle, share, tries=ALL):
-    """The answer, from the first of the ``tries`` that leaves little doubt."""
+def ask(middle, share, tries=ALONG):
+    """The answer, from the first of the ``tries`` that leaves so little doubt."""
     if abs(middle - 1.0) < STILL:
         middle = 1.0 + (STILL if middle >= 1.0 else -STILL)
     answer = None
-    for fineness in tries:
+    for fineness in tries[0]:
         answer = yield Question(middle, share, fineness)
-        if not answer.doubt > ROUGH:
+        if not answer.doubt > tries[1]:
             break
     strain = middle - 1.0
     return answer._replace(miss=answer.miss * strain, doubt=answer.doubt * abs(strain))
 
 
-def crossing(place, low, high, width=0.0, tries=ALL):
+def crossing(place, low, high, width=0.0, tries=ALONG):
     """``(t, answer, other)`` where the miss changes its sign along ``place(t)``, a stretch and a share, between two pairs of a
     t and its answer, as exactly as that ``width``; ``other`` is a pair beside it. None where the way there leads through what
     is no tube.
@@ -110,23 +112,50 @@ def crossing(place, low, high, width=0.0, tries=ALL):
 
 
 def advance(here, step):
-    """``(point, step)``: the next :class:`Point` of a branch, and how long the step after it may be; no point where what lies
-    ahead is no tube.
+    """``(here, point, step)``: the point, as exactly as was needed, the next one of the branch, and how long the step after it
+    may be; no next one where what lies ahead is no tube.
     """
+    sharp = False
     while True:
-        last, toward = step <= SMALLEST_STEP, here.chord + 0.5 * here.turn * (here.step + step)
+        last, fresh = step <= SMALLEST_STEP, here.step == 0.0
+        toward = here.chord + 0.5 * here.turn * (here.step + step)
 
-        def place(angle, step=step, toward=toward):
+        def place(angle, here=here, step=step, toward=toward):
             return here.middle + step * cos(toward + angle), here.share + step * sin(toward + angle)
 
-        angle = yield from leaves(here, place, pi if last else STRAY)
+        angle = yield from leaves(here, place, pi if last else 0.5 * pi if fresh else STRAY)
         if angle is not None:
-            turn = (toward + angle - here.chord) / (0.5 * (here.step + step)) if abs(angle) < STRAY else 0.0
+            smooth = abs(angle) < STRAY and not fresh
+            turn = (toward + angle - here.chord) / (0.5 * (here.step + step)) if smooth else 0.0
             point = Point(*place(angle), toward + angle, step, turn, here.left)
-            return point, min(2.0 * step if abs(angle) < CALM else step, LARGEST_STEP)
+            return here, point, min(2.0 * step if fresh or abs(angle) < CALM else step, LARGEST_STEP)
         if last:
-            return None, step
-        step = max(0.5 * step, SMALLEST_STEP)
+            return here, None, step
+        step = max(SHORTER * step, SMALLEST_STEP)
+        if not sharp and not fresh and step < SMALL * here.step:
+            here, sharp = (yield from sharpened(here)), True
+
+
+def goes_on(points, sense):
+    """Whether the last step of a branch led on, in this ``sense``; where it hardly did, its ends are first made exact."""
+    here, there = points[-2:]
+    if abs(there.share - here.share) < 4.0 * SHARP * (here.step + there.step):
+        points[-2], points[-1] = (yield from sharpened(here)), (yield from sharpened(there))
+    return sense * points[-1].share > sense * points[-2].share
+
+
+def sharpened(here):
+    """The same point, to rounding."""
+
+    def place(t):
+        return here.middle - t * sin(here.chord), here.share + t * cos(here.chord)
+
+    far = 2.0 * SHARP * here.step
+    low, high = (-far, (yield from ask(*place(-far)))), (far, (yield from ask(*place(far))))
+    if not low[1].miss * high[1].miss < 0.0:
+        return here
+    met = yield from crossing(place, low, high)
+    return here if met is None else here._replace(middle=place(met[0])[0], share=place(met[0])[1])
 
 
 def leaves(here, place, widest):
@@ -209,13 +238,13 @@ def across(middle, share, sense, reach):
     def place(t):
         return middle, share + t
 
-    answer = yield from ask(middle, share)
+    answer = yield from ask(middle, share, SHARPLY)
     distance, first = FAINT**3 * reach, (0.0, answer)
     while distance < 4.0 * reach and not isnan(answer.miss):
         for t in (-sense * distance, sense * distance):
-            other = yield from ask(*place(t))
+            other = yield from ask(*place(t), SHARPLY)
             if other.miss * answer.miss < 0.0:
-                met = yield from crossing(place, first, (t, other))
+                met = yield from crossing(place, first, (t, other), tries=SHARPLY)
                 if met is None:
                     return None
                 t, found, (aside, beside) = met
@@ -238,7 +267,7 @@ def state_at(share, near, far, accuracy):
         return first + t, share
 
     for fineness in range(TRIES):
-        tries = range(fineness, fineness + 1)
+        tries = range(fineness, fineness + 1), np.inf
         answer = yield from ask(*place(0.0), tries)
         below = answer.miss * near.left * rising > 0.0  # to the left of what rises stretches are smaller
         before, distance, met = (0.0, answer), FAINT**4 * reach, None

@@ -21,6 +21,7 @@ from .vector import WIDTH, bits, get, mask_of, put, select, spread
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
 TOLD = MISS, DOUBT, SLACK, SCALES = range(4)  # what is told beside outputs: three numbers, and from the last on four
 COUNT = SCALES + 4
+AT_LEAST = 0.1  # of a depth
 ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middle
 
 
@@ -39,15 +40,16 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     )
     parts, unsure = find_ends(mid, cell, load, active & valid, ends, counts, starts, edges, scratch)
     fine = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch) & (unsure < slack_ends.ENOUGH)
-    missing = mid.rate * min(half - get(numbers[0], DX), (DEEPEST - mid.depth) / mid.rate)
-    put(scratch, 0, min(max(missing, -DEEPEST), DEEPEST))
+    miss = half - get(numbers[0], DX)
+    put(scratch, 0, min(max(min(mid.rate * miss, DEEPEST - mid.depth), -DEEPEST), DEEPEST))
     for lane in range(WIDTH):
         scratch[0, lane] = exp(scratch[0, lane])
-    miss = select(short > 0.0, -1.0 - short, get(scratch, 0) - 1.0)
-    put(told, MISS, select(driven, select(valid, miss, np.nan), min(lack, -1.0)))
+    lack = select(driven, select(short > 0.0, -1.0 - short, get(scratch, 0) - 1.0), min(lack, -1.0))
+    put(told, MISS, select(driven & ~valid, np.nan, lack))
     doubt = select(fine, unmet(mid, zero, numbers) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)), np.inf)
     put(told, DOUBT, select(driven & valid, doubt, 0.0))
-    finish(mid, zero, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
+    rest = select(mid.depth >= DEEPEST - AT_LEAST, max(miss, 0.0), 0.0)  # what is left of a long tube is uniform
+    finish(mid, rest, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
     scale, _ = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
     put(told, SCALES, scale[0])
