@@ -9,6 +9,7 @@ from ..interpret import at_once
 from .along.places import NUMBERS
 from .along.profile import FIELDS
 from .free.free_states import follow_many
+from .free.many_branches import follow_branches
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
 from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
@@ -58,6 +59,8 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
         solve, given = _vector_call(problems, stations)
         if not (soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls)):
             _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
+        if wall_columns(problems) == PHYSICAL:
+            follow_branches(problems, first, pressures, list(_kinds(problems)), accuracy, found)
     for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
         left = np.count_nonzero(call[11] == PENDING)
         if left and not (soon and at_once(left, follow_many, follow_many, *call)):

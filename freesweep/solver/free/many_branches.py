@@ -16,6 +16,9 @@ from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
 from . import two_numbers
 
 
+PIECES = 1, 2, 4, 16  # in which each part of a tube is summed, one try after the other
+
+
 class Way(NamedTuple):
     """Loads along a way, by its share: p, f, m, gamma and weight of the energy at its begin, and what they change by; of a
     way of pressure the unit p/(1 - share) is given.
@@ -81,7 +84,7 @@ def walk(problem, settled, rows, accuracy):
     point = yield from on(rise, two_numbers.begin())
     if point is None:
         return
-    found, point = yield from on(rise, settle(rise, point, accuracy))
+    found, point = yield from on(rise, settle(rise, point))
     if found != OK:
         for i in asked if found != PENDING else ():
             rows.status[i] = found
@@ -110,7 +113,7 @@ def turned_to(point, share, sense):
     return upward
 
 
-def settle(way, point, accuracy):
+def settle(way, point):
     """``(status, point)``: OK and the state at the end of the way of loads."""
     step, points = two_numbers.FIRST_STEP, [point]
     while points[-1].share < 1.0:
@@ -124,10 +127,8 @@ def settle(way, point, accuracy):
             return BEYOND_LIMIT, None
     if len(points) == 1:
         return PENDING, None
-    found = yield from two_numbers.state_at(1.0, points[-2], points[-1], accuracy)
-    if found is None:
-        return PENDING, None
-    return OK, points[-1]._replace(middle=float(found[0].values[4]), share=1.0)
+    middle = yield from two_numbers.middle_at(1.0, points[-2], points[-1])
+    return (PENDING, None) if middle is None else (OK, points[-1]._replace(middle=middle, share=1.0))
 
 
 def lost(way, point):
@@ -176,7 +177,12 @@ def write(share, near, far, i, rows, accuracy):
 
 def end_at(way, points, sense, shares, rows, accuracy):
     """What rows still wait for, of a branch that turns back behind the last but one of its ``points``."""
-    if len(points) < 3:
+    far = sense * points[-2].share + two_numbers.LARGEST_STEP  # the branch turns nearer than a step
+    for i, own in shares.items():
+        if rows.status[i] == PENDING and sense * own > far:
+            rows.status[i] = BEYOND_LIMIT
+    waits = any(rows.status[i] == PENDING for i in shares)
+    if len(points) < 3 or not (waits or sense > 0.0):
         return
     found = yield from two_numbers.turning_point(points[-3:], sense)
     if found is None:
@@ -225,9 +231,10 @@ def follow_branches(problems, first, pressures, kinds, accuracy, found):
                         found.limits[k])
             walks[k] = walk(problems[k], settled[k], rows, accuracy)
     asked = {k: next(walk_, None) for k, walk_ in walks.items()}
-    while asked := {k: request for k, request in asked.items() if request is not None}:
-        answers = measured(problems, kinds, asked, found.values.shape[1])
-        asked = {k: _sent(walks[k], answer) for k, answer in answers.items()}
+    with np.errstate(all="ignore"):  # of what is no tube nothing can be told
+        while asked := {k: request for k, request in asked.items() if request is not None}:
+            answers = measured(problems, kinds, asked, found.values.shape[1])
+            asked = {k: _sent(walks[k], answer) for k, answer in answers.items()}
 
 
 def _sent(walk_, answer):
@@ -240,8 +247,6 @@ def _sent(walk_, answer):
 def measured(problems, kinds, asked, columns):
     """Answers to the questions ``asked`` of problems, by vectors of those that are alike."""
     from ..lanes import by_middle
-
-    from ..batch import PIECES
 
     owners = np.array(list(asked), np.int64)
     middles = np.array([question.middle for _, question in asked.values()])

@@ -9,13 +9,14 @@ where the sign changes on a circle: round a corner, where fibers go slack, or a 
 it is smooth, and never to another branch beside it, which has its signs the other way round.
 """
 
-from math import atan2, cos, hypot, isnan, pi, sin
+from math import atan2, cos, exp, hypot, isnan, pi, sin
 from typing import NamedTuple
 
 import numpy as np
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
-STRAY, CALM = 0.3, 0.1  # turns of a step [radian]: above the first it is shortened while it can be, below the second doubled
+SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
+STRAY, CALM = 0.3, 0.1  # turns of a step [radian]: above the first it is shortened, below the second doubled
 SHORTER = 0.3
 SPREAD = 0.01, 3.0  # angles at which the change of sign is looked for: the first, and how much wider each time
 SMALL = 0.1  # of the step before: a step for which a point has to be known to rounding
@@ -117,21 +118,21 @@ def advance(here, step):
     """
     sharp = False
     while True:
-        last, fresh = step <= SMALLEST_STEP, here.step == 0.0
+        fresh = here.step == 0.0
         toward = here.chord + 0.5 * here.turn * (here.step + step)
 
         def place(angle, here=here, step=step, toward=toward):
-            return here.middle + step * cos(toward + angle), here.share + step * sin(toward + angle)
+            return here.middle * exp(step * cos(toward + angle)), here.share + step * sin(toward + angle)
 
-        angle = yield from leaves(here, place, pi if last else 0.5 * pi if fresh else STRAY)
+        angle = yield from leaves(here, place, pi if step <= SHORT_STEP else 0.5 * pi if fresh else STRAY)
         if angle is not None:
             smooth = abs(angle) < STRAY and not fresh
             turn = (toward + angle - here.chord) / (0.5 * (here.step + step)) if smooth else 0.0
             point = Point(*place(angle), toward + angle, step, turn, here.left)
             return here, point, min(2.0 * step if fresh or abs(angle) < CALM else step, LARGEST_STEP)
-        if last:
+        if step <= SMALLEST_STEP:
             return here, None, step
-        step = max(SHORTER * step, SMALLEST_STEP)
+        step *= SHORTER if step > SHORT_STEP / SHORTER or step <= SHORT_STEP else SHORT_STEP / step
         if not sharp and not fresh and step < SMALL * here.step:
             here, sharp = (yield from sharpened(here)), True
 
@@ -148,7 +149,7 @@ def sharpened(here):
     """The same point, to rounding."""
 
     def place(t):
-        return here.middle - t * sin(here.chord), here.share + t * cos(here.chord)
+        return here.middle * exp(-t * sin(here.chord)), here.share + t * cos(here.chord)
 
     far = 2.0 * SHARP * here.step
     low, high = (-far, (yield from ask(*place(-far)))), (far, (yield from ask(*place(far))))
@@ -219,8 +220,9 @@ def turning_point(points, sense):
         met = yield from across(t, sense * fb, sense, reach)
         if met is None:
             break
-        share, doubt = met
-        if sense * share > fb:
+        share, own = met
+        if sense * share > fb + own + doubt:  # what hardly differs is no larger
+            doubt = own
             (a, fa), (c, fc) = ((a, fa), (b, fb)) if (t - b) * (c - b) < 0.0 else ((b, fb), (c, fc))
             b, fb = t, sense * share
         elif (t - b) * (c - b) > 0.0:
@@ -254,39 +256,58 @@ def across(middle, share, sense, reach):
     return None
 
 
-def state_at(share, near, far, accuracy):
-    """``(answer, bounds)`` of the state at a ``share`` of the way, between two points of the branch; None where it is not met.
-    What no try tells to the ``accuracy`` is told by the last.
+def middle_at(share, near, far):
+    """The stretch in the middle at a ``share`` of the way, between two points of the branch, as exactly as they are."""
+    met = yield from met_at(share, near, far, near.middle + part_of(share, near, far) * (far.middle - near.middle), ALONG)
+    return None if met is None else met[0]
+
+
+def part_of(share, near, far):
+    """How far between two points a share of the way is met."""
+    return (share - near.share) / (far.share - near.share)
+
+
+def met_at(share, near, far, first, tries, aside=None):
+    """``(middle, answer, other)`` at a ``share`` of the way, near a ``first`` guess of the stretch in the middle, see
+    :func:`crossing`; it is looked for ``aside`` first.
     """
-    apart = far.middle - near.middle
-    part = (share - near.share) / (far.share - near.share)
-    first, reach, stays = near.middle + part * apart, abs(apart) + abs(far.share - near.share), None
+    reach = abs(far.middle - near.middle) + abs(far.share - near.share)
+    distance = SPREAD[0] * reach if aside is None else aside
     rising = 1.0 if far.share > near.share else -1.0
 
     def place(t):
         return first + t, share
 
+    answer = yield from ask(*place(0.0), tries)
+    before, below = (0.0, answer), answer.miss * near.left * rising > 0.0  # to the left of what rises stretches are smaller
+    while distance < 2.0 * reach:
+        t = distance if below else -distance
+        answer = yield from ask(*place(t), tries)
+        if (answer.miss * near.left * rising > 0.0) != below:
+            met = yield from crossing(place, before, (t, answer), tries=tries)
+            return None if met is None else (first + met[0], met[1], (first + met[2][0], met[2][1]))
+        before, distance = (t, answer), SPREAD[1] * distance
+    return None
+
+
+def state_at(share, near, far, accuracy):
+    """``(answer, bounds)`` of the state at a ``share`` of the way, between two points of the branch; None where it is not met.
+    What no try tells to the ``accuracy`` is told by the last.
+    """
+    middle, stays, aside = near.middle + part_of(share, near, far) * (far.middle - near.middle), None, None
     for fineness in range(TRIES):
         tries = range(fineness, fineness + 1), np.inf
-        answer = yield from ask(*place(0.0), tries)
-        below = answer.miss * near.left * rising > 0.0  # to the left of what rises stretches are smaller
-        before, distance, met = (0.0, answer), FAINT**4 * reach, None
-        while distance < 2.0 * reach:
-            t = distance if below else -distance
-            answer = yield from ask(*place(t), tries)
-            if (answer.miss * near.left * rising > 0.0) != below:
-                met = yield from crossing(place, before, (t, answer), tries=tries)
-                break
-            before, distance = (t, answer), SPREAD[1] * distance
+        met = yield from met_at(share, near, far, middle, tries, aside)
         if met is None:
             return stays
-        t, answer, (aside, other) = met
-        slope = abs((other.miss - answer.miss) / (aside - t)) if other.miss != answer.miss else np.inf
-        beside = max(min(SLIGHT * abs(first + t - 1.0) / slope, FAINT * reach), LEAST_ASIDE)
-        other = yield from ask(first + t + beside, share, tries)
+        middle, answer, (beside, other) = met
+        slope = abs((other.miss - answer.miss) / (beside - middle)) if other.miss != answer.miss else np.inf
+        moved = max(min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle)), LEAST_ASIDE)
+        other = yield from ask(middle + moved, share, tries)
         change = np.abs(other.values - answer.values) / max(abs(other.miss - answer.miss), 1e-300)
         bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
-        stays, first = (answer, bounds), first + t
+        stays = answer, bounds
         if np.max(bounds[: len(answer.scales)] / answer.scales) <= accuracy:
             break
+        aside = max(FAINT * answer.doubt / slope, LEAST_ASIDE)
     return stays
