@@ -8,8 +8,8 @@ from numba import config
 from ..interpret import at_once
 from .along.places import NUMBERS
 from .along.profile import FIELDS
+from .by_middle.many import PIECES, follow_branches
 from .free.free_states import follow_many
-from .free.many_branches import follow_branches
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
 from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
@@ -17,7 +17,6 @@ from .status import PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
 NOTHING = np.empty(0)
-PIECES = 1, 2, 4, 16
 FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
@@ -60,7 +59,8 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
         if not (soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls)):
             _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
         if wall_columns(problems) == PHYSICAL:
-            follow_branches(problems, first, pressures, list(_kinds(problems)), accuracy, found)
+            kinds = [(kind, some) for _, _, kind, some in _kinds(problems)]
+            follow_branches(problems, first, pressures, kinds, accuracy, found)
     for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
         left = np.count_nonzero(call[11] == PENDING)
         if left and not (soon and at_once(left, follow_many, follow_many, *call)):

@@ -1,5 +1,5 @@
-"""Half tubes of given stretch in the middle, for a vector of designs: how much too long each is, and all that is told of it.
-What the branch of a physical tube is made of (:mod:`..constant.branch_by_middle`).
+"""Half tubes of given stretch in the middle, for a vector of designs: how much too long each is, and all that is told
+of it. What the branch of a physical tube is made of (:mod:`..constant.branch_by_middle`).
 """
 
 from math import exp
@@ -27,10 +27,10 @@ ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middl
 
 @kernel
 def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numbers, scratch, counts, out, told):
-    """What is told of half tubes whose middles have the stretch ``y``, in the ``active`` lanes: outputs, and what sums may
-    miss, to ``out`` as :func:`.quadrature.solve` does; to ``told`` (COUNT, WIDTH) how much the drive of the middle is too
-    large for a tube of that ``half`` length (:func:`.meridian.middle_at`), what may be missing of that, and by what outputs
-    are measured. Returns masks: (alpha slack or pushed somewhere, beta).
+    """What is told of half tubes whose middles have the stretch ``y``, in the ``active`` lanes: outputs, and what sums
+    may miss, to ``out`` as :func:`.quadrature.solve` does; to ``told`` (COUNT, WIDTH) how much the drive of the middle
+    is too large for a tube of that ``half`` length (:func:`.meridian.middle_at`), what may be missing of that, and by
+    what outputs are measured. Returns masks: (alpha slack or pushed somewhere, beta).
     """
     zero = spread(0.0)
     mid, driven, lack = middle_at(y, cell, load, half, scratch)
@@ -61,9 +61,9 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
 
 @entry_point
 def measure_physical(problems, owners, given, middles, constants, layers, pieces, values, bounds, told):
-    """:func:`measure` half of each physical tube ``problems[owners[i]]`` under the load ``given[i]``, the columns OF_LOAD,
-    whose middle has the stretch ``middles[i]``, in so many ``pieces``; other arguments as of :func:`.free.solve`. Rows of
-    ``values``, ``bounds`` and ``told`` (n, COUNT) take what is told.
+    """:func:`measure` half of each physical tube ``problems[owners[i]]`` under the load ``given[i]``, the columns
+    OF_LOAD, whose middle has the stretch ``middles[i]``, in so many ``pieces``; other arguments as of
+    :func:`.free.solve`. Rows of ``values``, ``bounds`` and ``told`` (n, COUNT) take what is told.
     """
     room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
     edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(4, COLUMNS)

@@ -2,16 +2,16 @@
 
 Toward the uniform stretch u the layer at an end falls as exp(-depth), to meet that of the other end in the middle::
 
-    y = u - (u - 1) (z + q^2/z)/(1 + q^2),    z = exp(-depth),    q = exp(-depth of the middle)
+y = u - (u - 1) (z + q^2/z)/(1 + q^2),    z = exp(-depth),    q = exp(-depth of the middle)
 
-The level of the first integral is that of the middle's uniform tube, and tells the resultant R = T/cosine of the meridian's
-angle (:mod:`..physics.first_integral`) at any other stretch. With it x along the tube, and all that is summed along it, are
-integrals of smooth functions of the depth ::
+The level of the first integral is that of the middle's uniform tube, and tells the resultant R = T/cosine of the
+meridian's angle (:mod:`..physics.first_integral`) at any other stretch. With it x along the tube, and all that is
+summed along it, are integrals of smooth functions of the depth ::
 
-    dx/d(depth) = dy/d(depth) / (sqrt(G) sine),   sine^2 = (R - T)(R + T)/R^2
+dx/d(depth) = dy/d(depth) / (sqrt(G) sine),   sine^2 = (R - T)(R + T)/R^2
 
-between the places where families go slack. Near the middle R - T has no digits: there it follows from its slope, which has
-twice as many. Depths are counted from 0 to 1, finer where the layer begins.
+between the places where families go slack. Near the middle R - T has no digits: there it follows from its slope, which
+has twice as many. Depths are counted from 0 to 1, finer where the layer begins.
 """
 
 from math import exp, log, sqrt
@@ -29,12 +29,15 @@ APART = 1e-6  # of 2 q |u - 1|: difference of two stretches that has digits
 MEETS = 1e-9  # of q: as near to the middle as counts as there
 LEAST_RATE = 1e-12
 ALMOST = 0.99  # of one
-SHALLOW, DEPTHS = 0.01, 30.0  # depths of a middle that is given: behind a turning point of the uniform tube there is none
+SHALLOW, DEPTHS = (
+    0.01,
+    30.0,
+)  # depths of a middle that is given: behind a turning point of the uniform tube there is none
 
 
 class Middle(NamedTuple):
-    """Uniform stretch u, rate of the layer, depth of the middle, q, 1/(1 + q^2); stretch and level there, and how x grows
-    with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall.
+    """Uniform stretch u, rate of the layer, depth of the middle, q, 1/(1 + q^2); stretch and level there, and how x
+    grows with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall.
     """
 
     u: float
@@ -105,11 +108,12 @@ def middle(u, depth, cell, load, scratch):
 
 @kernel
 def middle_at(y, cell, load, half, scratch):
-    """``(Middle, how much too far it is)`` of a tube whose middle has the stretch ``y``: where the drive toward it falls with
-    the stretch, the uniform stretch u is where it would be none. Too far by -1 is where there is no drive left.
+    """``(Middle, how much too far it is)`` of a tube whose middle has the stretch ``y``: where the drive toward it
+    falls with the stretch, the uniform stretch u is where it would be none. Too far by -1 is where there is no drive
+    left.
 
-    Half the tube grows with the logarithm of the drive; what is counted is the drive, as a share of that at which half a
-    tube is ``half`` long: evenly with it, through none.
+    Half the tube grows with the logarithm of the drive; what is counted is the drive, as a share of that at which half
+    a tube is ``half`` long: evenly with it, through none.
     """
     zero = spread(0.0)
     (_, L_y, _, L_yy, _, L_vv), near = lagrangian.density_beside(y, zero, cell, load, nothing_yet(zero))
@@ -143,8 +147,8 @@ def logarithm(number, scratch):
 
 @kernel
 def work_of(u, cell, load, half):
-    """What tells states that are as much work, from 0 to 1: how many families pull at the end and not in the middle, or the
-    other way round; of states that are alike in this, the depth of the middle.
+    """What tells states that are as much work, from 0 to 1: how many families pull at the end and not in the middle, or
+    the other way round; of states that are alike in this, the depth of the middle.
     """
     zero, one = spread(0.0), spread(1.0)
     (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
@@ -179,7 +183,9 @@ def look(t, mid, cell, load, near, scratch):
 
 @kernel
 def handed_on(y, at, near):
-    """What the next place may start from: (kind, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), rises as from the one before."""
+    """What the next place may start from: (kind, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), rises as from the one
+    before.
+    """
     zero = spread(0.0)
     alike = (at.kind == near[0]) & (abs(y - near[1]) > APART)
     per_y = 1.0 / select(alike, y - near[1], 1.0)

@@ -1,10 +1,10 @@
-"""Free states of physical tubes by quadrature of their first integral, for a vector of designs: no mesh, no Newton's method
-but that for what the fibers leave the wall at one place.
+"""Free states of physical tubes by quadrature of their first integral, for a vector of designs: no mesh, no Newton's
+method but that for what the fibers leave the wall at one place.
 
-A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant finds
-it, first by one rule along the whole depth, then part by part between the places where families go slack
-(:mod:`slack_ends`). What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs` makes
-of the sums what is told.
+A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant
+finds it, first by one rule along the whole depth, then part by part between the places where families go slack
+(:mod:`slack_ends`). What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs`
+makes of the sums what is told.
 """
 
 from ...jit import kernel
@@ -30,9 +30,9 @@ SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
 
 @kernel
 def along(first, last, mid, cell, load, near, whole, rows, scratch):
-    """Look at the places of one rule between two shares of the depth. ``rows`` (15, > LAST, WIDTH) take how x grows with the
-    share of the part, pulls, and what was handed on; and as the ``whole`` also what else is to be summed and known. Returns
-    what is handed on, the lanes that may be, and by what share R falls short of T.
+    """Look at the places of one rule between two shares of the depth. ``rows`` (15, > LAST, WIDTH) take how x grows
+    with the share of the part, pulls, and what was handed on; and as the ``whole`` also what else is to be summed and
+    known. Returns what is handed on, the lanes that may be, and by what share R falls short of T.
     """
     valid, width, short = mask_of(-1), last - first, spread(0.0)
     for k in range(LAST + 1):
@@ -65,9 +65,9 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
 
 @kernel
 def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
-    """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) limp in the
-    middle, (alpha, beta) lengths in doubt, lanes that may be, share by which R falls short of T)``. Brackets of the ends go to ``ends``, what may be handed on
-    to them to ``starts``, (4, MOST, WIDTH).
+    """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) limp in
+    the middle, (alpha, beta) lengths in doubt, lanes that may be, share by which R falls short of T)``. Brackets of the
+    ends go to ``ends``, what may be handed on to them to ``starts``, (4, MOST, WIDTH).
     """
     valid, near, total = mask_of(-1), nothing_yet(spread(0.0)), spread(0.0)
     limp_a, limp_b, doubt_a, doubt_b = mask_of(0), mask_of(0), spread(0.0), spread(0.0)
@@ -91,8 +91,8 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
 
 @kernel
 def find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch):
-    """Write the shares of the depth between which no family goes slack to ``edges`` (> MOST + 1, WIDTH); returns how many
-    parts there are, and by how much an end may be off.
+    """Write the shares of the depth between which no family goes slack to ``edges`` (> MOST + 1, WIDTH); returns how
+    many parts there are, and by how much an end may be off.
     """
     most, zero, unsure = 0, spread(0.0), spread(0.0)
     for lane in range(WIDTH):
@@ -126,8 +126,9 @@ def is_mixed(pull):
 
 @kernel
 def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
-    """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss, behind
-    them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN. Returns the lanes that may be.
+    """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss,
+    behind them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN. Returns the lanes
+    that may be.
     """
     valid, near = mask_of(-1), nothing_yet(spread(0.0))
     for k in range(WORST + 4):
@@ -191,12 +192,12 @@ def let_go(mid, cell, load, half):
 
 @kernel
 def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
-    """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out`` (2, >
-    11, WIDTH) takes the outputs, the numbers of :mod:`..along.places`, and their bounds. Returns masks: ``(met, alpha slack
-    or pushed somewhere, beta)``.
+    """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out``
+    (2, > 11, WIDTH) takes the outputs, the numbers of :mod:`..along.places`, and their bounds. Returns masks: ``(met,
+    alpha slack or pushed somewhere, beta)``.
 
-    The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges`` (>
-    MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
+    The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges``
+    (> MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
     """
     mid = middle(u, spread(DEEPEST), cell, load, scratch)
     depth = min(mid.rate * half, DEEPEST)
