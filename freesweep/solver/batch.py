@@ -113,7 +113,8 @@ def _replace(found, rows, better):
     """Put what is known ``better`` into these rows. Profiles stay where they are of the same states; where there are none,
     the status says that something is missing.
     """
-    alike = np.all(np.abs(found.values - better.values) <= found.bounds + better.bounds, axis=1)
+    apart = np.abs(found.values - better.values)[:, :OUTPUTS]
+    alike = np.all(apart <= (found.bounds + better.bounds)[:, :OUTPUTS], axis=1)
     for name in STATES[:-1]:
         getattr(found, name)[rows] = getattr(better, name)[rows]
     found.limits[:] = better.limits
