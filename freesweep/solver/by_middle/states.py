@@ -4,12 +4,12 @@ from math import isnan
 
 import numpy as np
 
-from .question import ALONG, FAINT, SHARPLY, TRIES, WIDER, ask, crossing, slope_of
-from .steps import SMALLEST_STEP
+from .question import ALONG, FAINT, FINEST, TRIES, WIDER, ask, crossing, slope_of
 
-CAUTION = 2.0  # times what a miss changes
+CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turning point stands out from its neighbours
 SLIGHT, LEAST_ASIDE = 1e-3, 1e-13  # a miss, and a stretch, by which a state is moved to see what changes
-GOLDEN, PEAK_STEPS, FLAT = 0.381966, 40, 1e-9  # to a turning point, and how exactly its share is met
+GOLDEN, PEAK_STEPS, FLAT, THIN = 0.381966, 40, 1e-9, 1e-7  # to a turning point; how exactly share and stretch are met
+NUDGE, NUDGES = 0.01, 4  # of the way between the outer ones of three points
 NEAR = 1e-2  # of the way between two points: where a state is looked for first
 
 
@@ -88,7 +88,7 @@ def turning_point(points, sense):
         t = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right) if left != right else b
         if not min(a, c) < t < max(a, c) or abs(t - b) < FLAT or trial % 3 == 2:
             t = b + GOLDEN * ((c - b) if abs(c - b) > abs(b - a) else (a - b))
-        met = yield from across(t, sense * fb, sense, reach)
+        t, met = yield from clear(t, sense * fb, sense, reach, NUDGE * (c - a))
         if met is None:
             break
         share, own = met
@@ -100,9 +100,23 @@ def turning_point(points, sense):
             c, fc = t, sense * share
         else:
             a, fa = t, sense * share
-        if max(fb - fa, fb - fc) < FLAT or abs(c - a) < SMALLEST_STEP:
+        if max(fb - fa, fb - fc) < FLAT or abs(c - a) < THIN:
             break
-    return sense * fb, doubt + max(fb - fa, fb - fc, 0.0), points[1]._replace(middle=b, share=sense * fb)
+    return sense * fb, doubt + STANDS_OUT * max(fb - fa, fb - fc, 0.0), points[1]._replace(middle=b, share=sense * fb)
+
+
+def clear(middle, share, sense, reach, nudge):
+    """A stretch near that of the ``middle``, and what :func:`across` tells of it: some places are in more doubt than
+    others, as fibers go slack now here, now there between those that are summed.
+    """
+    best = middle, None
+    for k in range(NUDGES):
+        met = yield from across(middle + k * nudge, share, sense, reach)
+        if met is not None and (best[1] is None or met[1] < best[1][1]):
+            best = middle + k * nudge, met
+        if met is None or met[1] < FLAT:
+            break
+    return best
 
 
 def across(middle, share, sense, reach):
@@ -113,13 +127,13 @@ def across(middle, share, sense, reach):
     def place(t):
         return middle, share + t
 
-    answer = yield from ask(middle, share, SHARPLY)
+    answer = yield from ask(middle, share, FINEST)
     distance, first = FAINT**3 * reach, (0.0, answer)
     while distance < 4.0 * reach and not isnan(answer.miss):
         for t in (-sense * distance, sense * distance):
-            other = yield from ask(*place(t), SHARPLY)
+            other = yield from ask(*place(t), FINEST)
             if other.miss * answer.miss < 0.0:
-                met = yield from crossing(place, first, (t, other), tries=SHARPLY)
+                met = yield from crossing(place, first, (t, other), tries=FINEST)
                 if met is None:
                     return None
                 t, found, _ = met

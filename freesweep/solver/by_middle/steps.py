@@ -8,7 +8,7 @@ it is smooth, and never to another branch beside it, which has its signs the oth
 from math import atan2, cos, exp, hypot, isnan, pi, sin
 from typing import NamedTuple
 
-from .question import WIDER, ask, crossing
+from .question import SHARPLY, WIDER, ask, crossing
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
 SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
@@ -150,8 +150,8 @@ def sharpened(here):
         return here.middle * exp(-t * sin(here.chord)), here.share + t * cos(here.chord)
 
     far = 2.0 * SHARP * here.step
-    low, high = (-far, (yield from ask(*place(-far)))), (far, (yield from ask(*place(far))))
+    low, high = (-far, (yield from ask(*place(-far), SHARPLY))), (far, (yield from ask(*place(far), SHARPLY)))
     if not low[1].miss * high[1].miss < 0.0:
         return here
-    met = yield from crossing(place, low, high)
+    met = yield from crossing(place, low, high, tries=SHARPLY)
     return here if met is None else here._replace(middle=place(met[0])[0], share=place(met[0])[1])
