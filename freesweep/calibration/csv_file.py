@@ -40,7 +40,7 @@ def read_measurements(
     paths: Path | Sequence[Path],
     *,
     measured: str | Sequence[str] = (),
-    material: MooneyRivlin | Yeoh = FIRST_GUESS,
+    material: MooneyRivlin | Yeoh | str = FIRST_GUESS,
     energy: str = "full",
     **tube: Any,
 ) -> list[Measurement]:

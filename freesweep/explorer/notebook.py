@@ -1,18 +1,18 @@
 """The explorer of an atlas from Python: in a notebook, or in the browser beside a script."""
 
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..atlas.store import Atlas
 from ..description.faults import ActuatorError
 from ..description.given import described
+from ..description.quantities import Path as PathName
 
 if TYPE_CHECKING:
     from .server import Explorer
 
 
-def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, port: int = 0) -> "Explorer | Path":
+def explore(atlas: Atlas | PathName, html: PathName | None = None, port: int = 0) -> "Explorer | Path":
     """Explore an atlas in the browser; a notebook shows it below the cell.
 
     Parameters
