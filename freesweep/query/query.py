@@ -115,8 +115,7 @@ class Reader:
 
         if len(parts) == 1:
             return one(parts[0])
-        for name in (*names, *(("mid_radius",) if table.has_slack else ())):
-            table.variable(name)  # made here, not by two threads
+        table.make((*names, *(("mid_radius",) if table.has_slack else ())))  # here, not by the threads of the parts
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             answers = list(pool.map(one, parts))
         return {name: np.concatenate([answer[name] for answer in answers]) for name in answers[0]}
