@@ -199,7 +199,8 @@ def even(count, dimensions):
 
 def sentences() -> list:
     """Statuses in words: meaning and sentence, by value."""
-    rows = [{"meaning": one.meaning.replace("_", " "), "sentence": one.sentence} for one in STATUSES]
+    here = (one.sentence.replace("refine=True", "'solve exactly'") for one in STATUSES)
+    rows = [{"meaning": one.meaning.replace("_", " "), "sentence": words} for one, words in zip(STATUSES, here)]
     assert len(rows) == COARSE_STATUS
     return [*rows, {"meaning": "coarse", "sentence": COARSE_SENTENCE}]
 
