@@ -132,6 +132,14 @@ def test_names_stand_in_their_regions():
         assert (abs(beta) > alpha) == name.startswith("(")
 
 
+def test_labels_stay_dark_over_light_maps_whatever_the_style(whole):
+    with pyplot.style.context("dark_background"):
+        texts = design_map(whole).texts
+    names = [text for text in texts if text.get_text() in ("I", "IIa", "IIb")]
+    assert len(names) == 3
+    assert all(sum(to_rgb(text.get_color())) < 1.0 for text in names)
+
+
 def test_paths_start_at_designs_and_end_locked(whole):
     paths = drawn(design_map(whole), "path")
     assert len(paths) == len(regions.STARTS)
