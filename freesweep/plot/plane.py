@@ -114,7 +114,8 @@ def _parts(names, x, y, variable, point):
     alpha, beta = (grid.get(name, point.get(name)) for name in ("alpha", "beta"))
     if alpha is None or beta is None:
         return [whole]
-    parts = [whole] if point.model.is_loose else [whole & (alpha > beta), whole & (alpha < beta)]
+    crossed = point.model.is_loose and variable not in schema.EXCHANGED  # what the families exchange there jumps
+    parts = [whole] if crossed else [whole & (alpha > beta), whole & (alpha < beta)]
     if variable in POLE_ON_AF:
         parts = [part & half for part in parts for half in (alpha > -beta, alpha < -beta)]
     return parts

@@ -370,5 +370,8 @@ def test_flags_between_nodes_are_one_of_their_nodes():
 
 @pytest.mark.parametrize(("fibers", "parts"), [("loose", 1), ("bonded", 2)])
 def test_contours_cross_the_diagonal_where_threads_may_be_slack(fibers, parts):
-    sheet = plane.plane(atlas().assign_attrs(fibers=fibers), "rotation", {})
-    assert len(sheet.parts) == parts
+    data = atlas().assign_attrs(fibers=fibers)
+    assert len(plane.plane(data, "rotation", {}).parts) == parts
+    share = data["rotation"] * 0.0
+    data = data.assign(slack_alpha=share, slack_beta=share, slack_fiber=data["status"] * 0)
+    assert len(plane.plane(data, "slack_alpha", {}).parts) == 2  # what the families exchange jumps there
