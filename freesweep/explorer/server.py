@@ -3,6 +3,7 @@
 import contextlib
 import json
 import secrets
+import sys
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
@@ -60,6 +61,11 @@ class Explorer(ThreadingHTTPServer):
             self._thread = None
             self._compiling.close()
         self.server_close()
+
+    def handle_error(self, request, client_address):
+        """Nothing is said of a page that was closed before its answer came."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
     def __exit__(self, *_):
         self.stop()

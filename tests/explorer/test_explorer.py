@@ -253,6 +253,16 @@ def test_the_server_answers_its_own_page_alone(atlas):
         urllib.request.urlopen(explorer.url, timeout=1)
 
 
+def test_a_page_that_is_closed_before_its_answer_comes_says_nothing_in_the_terminal(atlas, capsys):
+    with fs.explore(atlas) as explorer:
+        for error in (BrokenPipeError(), ValueError("a fault")):
+            try:
+                raise error
+            except Exception:
+                explorer.handle_error(None, ("127.0.0.1", 1))
+            assert ("Traceback" in capsys.readouterr().err) == isinstance(error, ValueError)
+
+
 def test_a_page_that_waits_hears_how_long_the_compiler_has_been_at_work(atlas):
     from numba import njit
 
