@@ -75,7 +75,7 @@ function showBusy() {
   if (byId("busy").textContent !== text) byId("busy").textContent = text; // while something moves, nothing is laid out anew
 }
 
-const say = (text) => { byId("said").textContent = text; };
+const say = (text) => { byId("said").textContent = byId("said").title = text; };
 const SOLVER = ["shape", "exact", "polish"];
 // Whether nothing is under way; `solver` false: but for what the solver is at.
 const isIdle = (solver = true) => ![...underWay.keys(), ...waiting.keys()].some((kind) => solver || !SOLVER.includes(kind));
