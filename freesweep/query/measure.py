@@ -26,7 +26,6 @@ HELD_SHARE, SLACK_SHARE = (
 )  # held states cost more, shares and tensions are solved for once more: so much fewer designs
 SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
 LOOSE_SHARPER = 1.0  # where fibers go slack digits are dear, and what lies between nodes errs by far more
-TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
 REGIONS = ("I", "IIa", "IIb")
 
 
@@ -88,7 +87,7 @@ def _family(reader, key, names, values):
     accuracy = max(sharper * reader.frame.accuracy, ACCURACIES[0])
     exact = exact_answers(reader, key, inquiry.points[places], names, accuracy)
     solved = np.isin(exact[FAMILIES[key].answer_status], VALUED)
-    with ThreadPoolExecutor(TOGETHER if table.size <= MUCH else 1) as pool:
+    with ThreadPoolExecutor(table.together) as pool:
         kept = dict(
             zip(names, pool.map(lambda name: _compare(inquiry, name, places, exact[name], solved, reader), names))
         )

@@ -1,5 +1,6 @@
 """A family of stored variables in memory, ready to be interpolated: end effects, their slopes, the codes of the cells."""
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
+TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
 TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
@@ -180,6 +182,21 @@ class Table:
         if name not in self._variables:
             self._variables[name] = self._interpolant(name)
         return self._variables[name]
+
+    def make(self, names):
+        """Make what :meth:`variable` tells of several, some at a time."""
+        left = [one for one in dict.fromkeys(TOLD_FROM.get(name, name) for name in names) if one not in self._variables]
+        if len(left) > 1:  # what all of them share is made once
+            if self.family.kind != reference.NONE:
+                self.states()
+            self.phases()
+        with ThreadPoolExecutor(self.together) as pool:
+            list(pool.map(self.variable, left))
+
+    @property
+    def together(self):
+        """How many variables are made at a time."""
+        return TOGETHER if self.size <= MUCH else 1
 
     @np.errstate(all="ignore")  # whatever a file holds
     def _interpolant(self, name):
