@@ -70,7 +70,7 @@ def test_limit_pressures_are_those_of_the_meshes(number, many):
     limit, bound = LIMITS[number]
     found, own = walks.limits[numbers.index(number)]
     assert abs(found - limit) <= own + bound
-    assert own < 1e-4 * limit
+    assert own < 1e-3 * limit  # at a corner, where threads go slack; 1e-6 and less where it is smooth
 
 
 def test_every_state_is_solved_or_has_a_physical_reason(many):
