@@ -15,6 +15,7 @@ SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
 STRAY, CALM = 0.3, 0.1  # turns of a step [radian]: above the first it is shortened, below the second doubled
 SHORTER = 0.3
 SPREAD = 0.01  # the first angle at which the change of sign is looked for
+KEPT = 5  # points, of which the last may tell that the first lay farther
 SMALL = 0.1  # of the step before: a step for which a point has to be known to rounding
 SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be known along it
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
@@ -63,8 +64,8 @@ def begin():
 
 def follow(point, sense, far, answer):
     """Follow a branch from a point on in this ``sense``, until the share ``far`` is passed; ``answer(here, there)``
-    answers what is asked for on each step. Returns ``(ARRIVED, TURNED or LOST, the last points)``: at most three, of
-    which the last lies behind a turning point where the branch has TURNED.
+    answers what is asked for on each step. Returns ``(ARRIVED, TURNED or LOST, the last points)``: where
+    the branch has TURNED three, between the outer ones of which its turning point lies.
     """
     step, points = FIRST_STEP, [point]
     for _ in range(MOST_STEPS):
@@ -73,12 +74,12 @@ def follow(point, sense, far, answer):
         points[-1], ahead, longer = yield from advance(points[-1], step)
         if ahead is None:
             return LOST, points
-        points = [*points[-2:], ahead]
+        points = [*points[1 - KEPT :], ahead]
         if (yield from goes_on(points, sense)):
             yield from answer(*points[-2:])
             step = longer
         elif len(points) > 2:
-            return TURNED, points
+            return TURNED, (yield from around_top(points, sense))
         else:  # a turning point has a point before it
             points, step = points[:1], SHORTER * step
             if step < SMALLEST_STEP:
@@ -133,6 +134,15 @@ def leaves(here, place, widest):
         before, angle = (t, answer), WIDER * angle
     met = yield from crossing(place, before, (t, answer), SHARP)
     return None if met is None else met[0]
+
+
+def around_top(points, sense):
+    """The three of the ``points``, made exact, of which the middle one has the largest share in this ``sense``."""
+    exact = []
+    for point in points:
+        exact.append((yield from sharpened(point)))
+    top = max(range(1, len(exact) - 1), key=lambda k: sense * exact[k].share)
+    return exact[top - 1 : top + 2]
 
 
 def goes_on(points, sense):
