@@ -8,7 +8,7 @@ from freesweep.description.tube_model import MODELS
 from freesweep.solver import batch
 from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian
-from freesweep.solver.problem import AREA, FORCE, GAMMA, PHYSICAL, TORQUE, D, H, rubber_of, wall_of
+from freesweep.solver.problem import AREA, FORCE, GAMMA, LENGTH, PHYSICAL, TORQUE, D, H, rubber_of, wall_of
 from freesweep.solver.status import BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID, OK
 
 SEED, ACCURACY = 7, 1e-6
@@ -139,3 +139,22 @@ def test_census_of_loaded_physical_tubes_leaves_no_state_open():
     walks = walked(numbers)
     assert np.count_nonzero(walks.status == INACCURATE) <= 8
     assert np.count_nonzero(~np.isin(walks.status, (OK, BEYOND_LIMIT, COMPRESSED, INACCURATE, INVALID))) <= 1
+
+
+@pytest.mark.parametrize("number", [17, 86, 191])
+def test_states_with_profiles_are_those_without(number, many):
+    """Profiles are drawn on meshes: where these lose a state, or pass over a snap, the first integral decides."""
+    walks, numbers = many
+    problems, first, pressures = designs([number])
+    drawn = batch.walk_all(
+        problems, first, pressures, batch.uniform(24), ACCURACY, np.linspace(0.0, problems[0, LENGTH], 5)
+    )
+    own = slice(4 * numbers.index(number), 4 * numbers.index(number) + 4)
+    valued = np.isin(walks.status[own], (OK, INACCURATE))
+    assert np.array_equal(np.isin(drawn.status, (OK, INACCURATE)), valued)
+    assert np.array_equal(drawn.status[~valued], walks.status[own][~valued])
+    missed = np.abs(drawn.values - walks.values[own])[:, :5]
+    assert np.all(missed[valued] <= (drawn.bounds + walks.bounds[own])[valued, :5])
+    told = np.isfinite(drawn.profiles).all(axis=(1, 2))
+    assert np.all(told[drawn.status == OK])
+    assert not np.any(told[~valued])
