@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..load_path import is_loaded, settling_pressure
+from ..physics.wall import LOOSE
+from ..problem import THREADS
 from ..stability import PUSHED
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
 from .question import Answer
@@ -98,7 +100,7 @@ def on(way, steps):
 def walk(problem, settled, rows, accuracy):
     """Write the rows of a problem whose loads have ``settled`` at that pressure."""
     locked = [i for i in rows.waiting() if rows.pressures[i] == np.inf]
-    if locked:
+    if locked and problem[THREADS] <= LOOSE:  # a single family locks nothing
         yield from on(fading(problem), lock(locked, rows, accuracy))
     asked = [i for i in rows.waiting() if rows.pressures[i] < np.inf]
     if not asked:
