@@ -21,7 +21,7 @@ SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be k
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
 BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed
-LEAST_SHARE = 1e-9  # of the way, where it is looked for
+LEAST_SHARE, EARLY = 1e-9, 0.05  # of the way, where it is looked for, and up to where it has hardly begun
 ARRIVED, TURNED, LOST = range(3)
 
 
@@ -40,26 +40,34 @@ class Point(NamedTuple):
 
 
 def begin():
-    """The first :class:`Point` of a branch from rest, where the load is small enough to have one state only; None where
-    no strain is seen on the way.
+    """The first :class:`Point` of a branch from rest, where the load is small enough to have one state only; None where no
+    strain is seen on the way.
     """
+    first = None
     for strain in BEGINNINGS:
         for middle in (1.0 + strain, 1.0 - strain):
-            share, before = LEAST_SHARE, None
-            while share <= 1.0:
-                answer = yield from ask(middle, share)
-                if answer.miss * (middle - 1.0) >= 0.0:
-                    break
-                before, share = (share, answer), WIDER * share
-            else:
-                continue
-            if before is None:
-                continue
-            met = yield from crossing(lambda t, middle=middle: (middle, t), before, (share, answer), SHARP * share)
-            if met is not None:
-                share = met[0]
-                return Point(middle, share, atan2(share, middle - 1.0), hypot(share, middle - 1.0), 0.0, 1.0)
-    return None
+            share = yield from strained(middle)
+            if share is not None and (first is None or share < first.share):
+                first = Point(middle, share, atan2(share, middle - 1.0), hypot(share, middle - 1.0), 0.0, 1.0)
+                if share < EARLY:
+                    return first
+    return first
+
+
+def strained(middle):
+    """The share of the way at which a middle is first strained that much; None where it never is."""
+    share, before = LEAST_SHARE, None
+    while share <= 1.0:
+        answer = yield from ask(middle, share)
+        if answer.miss * (middle - 1.0) >= 0.0:
+            break
+        before, share = (share, answer), WIDER * share
+    else:
+        return None
+    if before is None:
+        return None
+    met = yield from crossing(lambda t: (middle, t), before, (share, answer), SHARP * share)
+    return None if met is None else met[0]
 
 
 def follow(point, sense, far, answer):
