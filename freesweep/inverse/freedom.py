@@ -163,7 +163,9 @@ def read(template, free, faults):
     if len(faults) > before:
         return None
     choices = [{k: v for part in parts for k, v in part.items()} for parts in itertools.product(*lists)]
-    held = {name: value for name, value in template.design().items() if name not in absent}
+    lines = template.design()  # the first line is that of the one family, if there are not two
+    held = lines | {name: lines["alpha"] for name in given_by(template)[:1]}
+    held = {name: value for name, value in held.items() if name not in absent}
     held |= {name: getattr(template, name) for name in SHAPE}
     return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots, held)
 
