@@ -25,7 +25,7 @@ def exact_slopes(space, wishes, u, choice, values):
     """
     count, free = u.shape
     slopes = np.full((count, len(wishes), free), np.nan)
-    if not space.is_alike or count == 0 or free == 0:
+    if not space.is_source or count == 0 or free == 0:
         return slopes
     parts = np.zeros((free, OWN + free + 1, 1))  # along each that is free, and a load that holds something
     parts[np.arange(free), OWN + np.arange(free), 0] = space.high - space.low

@@ -102,9 +102,14 @@ class Space(NamedTuple):
 
     @property
     def is_alike(self):
-        """Whether all designs are the source's tubes, the same all along: vectors solve many of them."""
-        tube, free = self.template, {*self.names, *self.ties, *self.choices[0]}
-        return not (self.knots or free & {*SHAPE} or tube.varies or tube.is_thick or tube.threads)
+        """Whether all designs are the same all along: vectors solve many of them."""
+        free = {*self.names, *self.ties, *self.choices[0]}
+        return not (self.knots or free & {*SHAPE} or self.template.varies)
+
+    @property
+    def is_source(self):
+        """Whether they are the source's tubes, too: vectors tell their derivatives."""
+        return self.is_alike and not (self.template.is_thick or self.template.threads)
 
     def accuracy(self, asked):
         """The accuracy that is ``asked`` for, or what profiles along a tube allow."""

@@ -33,6 +33,8 @@ def look(misfit: Misfit, count, seed, atlas=None):
     else:
         _, residuals = misfit.at(draws, choice, LOOKING, False)
         if not np.any(np.all(np.isfinite(residuals), axis=1)):
+            if not space.is_source:  # each by itself
+                draws, choice = draws[: max(ONE_BY_ONE, len(shown))], choice[: max(ONE_BY_ONE, len(shown))]
             _, residuals = misfit.at(draws, choice, LOOKING)
     goals = np.abs(residuals)
     middles = np.array([np.median(some[np.isfinite(some)]) if np.any(np.isfinite(some)) else 0.0 for some in goals.T])

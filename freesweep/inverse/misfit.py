@@ -27,9 +27,10 @@ class Misfit(NamedTuple):
     @property
     def is_quick(self) -> bool:
         """Whether vectors tell all that is wished for."""
-        from .vectors import TOLD
+        from .vectors import Kind
 
-        return self.space.is_alike and all(wish.kind == "design" or wish.output in TOLD for wish in self.wishes)
+        told = Kind.of(self.space.template).told
+        return self.space.is_alike and all(wish.kind == "design" or wish.output in told for wish in self.wishes)
 
     def residuals(self, values):
         """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""

@@ -29,7 +29,7 @@ def polish(misfit: Misfit, u, choice):
         trial, missed = misfit.at(ahead, choice[rows], thorough=False)
         new = _cost(missed)
         dear = np.flatnonzero(~np.isfinite(new))
-        if misfit.space.is_alike and len(dear) and np.all(cost > DONE**2):
+        if misfit.space.is_source and len(dear) and np.all(cost > DONE**2):
             again, missed[dear] = misfit.at(ahead[dear], choice[rows[dear]])
             for own, other in zip(trial, again):
                 own[dear] = other
