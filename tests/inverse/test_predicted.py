@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import freesweep as fs
-from freesweep.inverse import freedom
+from freesweep.inverse import freedom, misfit
+from freesweep.inverse.exact import exact_slopes
 from freesweep.inverse.predict import predict, state_of
 from freesweep.inverse.singles import solve_single
 
@@ -93,3 +94,18 @@ def test_slack_shares_and_physical_tubes_are_found_quickly():
     found = fs.design(TUBES["source"], free, goals, count=2)
     assert found["met"].values[0]
     assert time.process_time() - begun < 10.0
+
+
+@pytest.mark.parametrize(("output", "held"), [("torque", {}), ("torque", {"rotation": 0.0}), ("force", {})])
+def test_slopes_of_a_tube_that_is_held_as_it_is_are_exact(output, held):
+    """In closed form, of stiff ones, too (216 N, 7 N): differences tell the same, as exactly as they can."""
+    free = {"alpha": (5, 80), "wall": (5e-4, 2e-3), "pressure": (1e4, 1e5)}
+    space = freedom.read(fs.Actuator(**MORE | {"length": 0.15}, alpha=30, beta=-40, model="source"), free, [])
+    wish = fs.Goal(output, 1.0, **held).wishes([])
+    problem, u, choice = misfit.make(space, wish, []), np.random.default_rng(0).uniform(size=(6, 3)), np.zeros(6, int)
+    found, _ = problem.at(u, choice)
+    slopes = exact_slopes(space, wish, u, choice, found.values)
+    assert np.all(np.isfinite(slopes))
+    assert np.all(slopes[..., 1] == 0.0)  # the wall is not strained
+    differences = problem._differences(wish, u, choice, found.values)
+    assert slopes == pytest.approx(differences, rel=2e-4, abs=1e-9 * np.max(np.abs(slopes)))
