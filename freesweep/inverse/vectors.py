@@ -91,14 +91,17 @@ def _solved(own, kind, points, accuracy, most, thorough, sure, along):
         def free(points):
             return solve(LOADED, points, own.energy, accuracy, thorough=False, **given)
 
+        two = len(own.families) == 2
+
         def like(points):
-            two = len(own.families) == 2
             return solve(KINDS[kind], points, own.energy, accuracy, thorough=False)[kind] if two else 0.0
 
         def alone(points):
             return solve(KINDS[kind], points, own.energy, accuracy, **given)
 
-        return alone(points) if sure else hold_by_loads(kind, points, free, like, alone if thorough else None, accuracy)
+        if sure:
+            return alone(points)
+        return hold_by_loads(kind, points, free, like, alone if thorough else None, accuracy, two)
     if own.is_source:  # the few that vectors leave are not worth it that scalar kernels are compiled for them
         found = solve(KINDS[kind], points, own.energy, accuracy, thorough=False, along=True, **given)
     else:

@@ -109,3 +109,16 @@ def test_slopes_of_a_tube_that_is_held_as_it_is_are_exact(output, held):
     assert np.all(slopes[..., 1] == 0.0)  # the wall is not strained
     differences = problem._differences(wish, u, choice, found.values)
     assert slopes == pytest.approx(differences, rel=2e-4, abs=1e-9 * np.max(np.abs(slopes)))
+
+
+def test_a_physical_tube_that_no_given_load_would_hold_is_found_again():
+    """Its torque at no rotation is that of the straight cylinder, which loads alone do not lead to."""
+    more = {"alpha": 18.93, "beta": -55.75, "radius": 10.8e-3, "wall": 1.46e-3, "material": RUBBER, "model": "physical"}
+    secret = fs.Actuator(length=65e-3, **more)
+    goals = [
+        fs.Goal("torque", fs.blocked_torque(secret, 2.08e5, x=0.0)["torque"].item()),
+        fs.Goal("rotation", fs.inflate(secret, 1.43e5, x=0.0)["rotation"].item(), pressure=1.43e5),
+    ]
+    found = fs.design(fs.Actuator(length=0.15, **more), {"pressure": (2e4, 3e5), "length": (0.05, 0.3)}, goals, count=2)
+    assert found["met"].values[0]
+    assert found["length"].values[0] == pytest.approx(65e-3, rel=1e-3)
