@@ -17,11 +17,12 @@ ROUNDING = 1e-12  # relative
 DEGREES = 57.3  # what a rotation is measured by
 
 
-def hold_by_loads(kind, points, free, like, alone, accuracy, two):
+def hold_by_loads(kind, points, free, like, alone, accuracy, two, near):
     """As of :func:`freesweep.query.exact.solve`: the load ``kind`` that holds what ``points`` (n, 17) say.
 
     ``free(points)`` solves free tubes; ``like(points)`` (n,) are loads that hold tubes like these; what is not found
-    ``alone(points)`` solves, if it is not None; ``two``: there are two families of fibers.
+    ``alone(points)`` solves, if it is not None; ``two``: there are two families of fibers;
+    ``near`` (n,): loads of designs beside these, NaN of none.
     """
     count, load, moved = len(points), COLUMNS.index(kind), HELD[kind][0]
     column = {name: points[:, k] for k, name in enumerate(COLUMNS)}
@@ -30,7 +31,7 @@ def hold_by_loads(kind, points, free, like, alone, accuracy, two):
     size = np.pi * column["fiber_radius"] ** (2 if kind == "force" else 3)
     size = size * np.maximum(column["pressure"], LEAST * column["c10"])
     names = (moved, f"{moved}_error", "slack_fiber")
-    at, off, slope = np.zeros(count), np.full(count, np.nan), np.full(count, np.nan)
+    at, off, slope = np.nan_to_num(near), np.full(count, np.nan), np.full(count, np.nan)
     doubt, slack, status = np.full(count, np.nan), np.zeros(count, np.int8), np.full(count, NOT_CONVERGED, np.int8)
 
     straight = _straight(kind, column) if two else np.full(count, np.nan)
@@ -48,8 +49,8 @@ def hold_by_loads(kind, points, free, like, alone, accuracy, two):
     if len(rows):
         off[rows], doubt[rows], slack[rows] = look(rows, at[rows])
     trial = at + FIRST * size
-    if len(rows):
-        trial[rows] += np.nan_to_num(like(points[rows]))
+    if len(far := rows[np.isnan(near[rows])]):
+        trial[far] += np.nan_to_num(like(points[far]))
     low, high = np.where(off < 0.0, at, -np.inf), np.where(off > 0.0, at, np.inf)
     for _ in range(ROUNDS if accuracy < ROUGH else FEW):
         rows = rows[np.isfinite(off[rows]) & ~((np.abs(off[rows]) <= NEAR * accuracy) & np.isfinite(slope[rows]))]

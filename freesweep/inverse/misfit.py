@@ -45,9 +45,9 @@ class Misfit(NamedTuple):
             missed = np.where(np.isfinite(values), above + below, np.where(values > 0, 0.0, np.nan))
         return missed / self.tolerances
 
-    def at(self, u, choice, accuracy=POLISHING, thorough=True):
-        """``(what is predicted, residuals)`` at points u (n, p)."""
-        found = predict(self.space, self.wishes, u, choice, accuracy, thorough)
+    def at(self, u, choice, accuracy=POLISHING, thorough=True, near=None):
+        """``(what is predicted, residuals)`` at points u (n, p); ``near``: values (n, wishes) of points beside them."""
+        found = predict(self.space, self.wishes, u, choice, accuracy, thorough, near=near)
         return found, self.residuals(found.values)
 
     def slopes(self, u, choice, found):
@@ -73,7 +73,13 @@ class Misfit(NamedTuple):
         step = STEP * np.eye(free)
         ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
         values = predict(
-            self.space, wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING, thorough=False
+            self.space,
+            wishes,
+            ends.reshape(-1, free),
+            np.repeat(choice, 2 * free),
+            POLISHING,
+            thorough=False,
+            near=np.repeat(middle, 2 * free, axis=0),
         ).values.reshape(count, 2 * free, -1)
         middle, there = middle[:, None], np.isfinite(values)
         values = np.where(there, values, middle)

@@ -50,10 +50,11 @@ class Kind(NamedTuple):
         return TOLD + (OF_SOURCE if self.is_source else WORST if self.model.is_thick else ())
 
 
-def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False) -> dict:
+def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, near=None) -> dict:
     """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound);
     ``tube`` is one of the kind that they are. Not ``thorough``: what vectors cannot do has no value. ``sure``: held states
-    of physical tubes are those that the ways from rest lead to, each by itself.
+    of physical tubes are those that the ways from rest lead to, each by itself; ``near``: state -> loads (n,) that hold
+    tubes beside these.
     """
     from ..solver.lanes.free import solve_lanes, solve_physical
 
@@ -68,7 +69,9 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False) -> 
         points = np.concatenate([np.column_stack([part.get(name, none) for name in COLUMNS]) for part in parts])
         most = max(part["pressure"].max(initial=0.0) for part in parts) if kind == "limit" else None
         along = any(name in ALONG for state in states for name in asked[state])
-        found = _solved(own, kind, points, accuracy, most, thorough, sure, along)
+        none_near, beside = np.full(count, np.nan), near or {}
+        loads = np.concatenate([beside.get(state, none_near) for state in states])
+        found = _solved(own, kind, points, accuracy, most, thorough, sure, along, loads)
         for k, (state, part) in enumerate(zip(states, parts)):
             numbers = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
             if own.is_source:
@@ -80,7 +83,7 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False) -> 
     return answers
 
 
-def _solved(own, kind, points, accuracy, most, thorough, sure, along):
+def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
     """What the exact solver tells of all points."""
     given = {"model": own.model, "families": own.families}
     if own.is_source and not along:
@@ -101,7 +104,7 @@ def _solved(own, kind, points, accuracy, most, thorough, sure, along):
 
         if sure:
             return alone(points)
-        return hold_by_loads(kind, points, free, like, alone if thorough else None, accuracy, two)
+        return hold_by_loads(kind, points, free, like, alone if thorough else None, accuracy, two, near)
     if own.is_source:  # the few that vectors leave are not worth it that scalar kernels are compiled for them
         found = solve(KINDS[kind], points, own.energy, accuracy, thorough=False, along=True, **given)
     else:
