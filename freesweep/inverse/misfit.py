@@ -23,6 +23,7 @@ class Misfit(NamedTuple):
     wishes: list
     goals: int
     tolerances: np.ndarray
+    is_dear: bool = False  # vectors tell no state of any design that is near: each is solved by itself
 
     @property
     def is_quick(self) -> bool:
@@ -47,7 +48,7 @@ class Misfit(NamedTuple):
 
     def at(self, u, choice, accuracy=POLISHING, thorough=True, near=None):
         """``(what is predicted, residuals)`` at points u (n, p); ``near``: values (n, wishes) of points beside them."""
-        found = predict(self.space, self.wishes, u, choice, accuracy, thorough, near=near)
+        found = predict(self.space, self.wishes, u, choice, accuracy, thorough or self.is_dear, near=near)
         return found, self.residuals(found.values)
 
     def slopes(self, u, choice, found):

@@ -17,7 +17,7 @@ def polish(misfit: Misfit, u, choice):
     """
     u, count, free = u.copy(), len(u), u.shape[1]
     dear_ones = not misfit.space.is_source
-    found, residuals = misfit.at(u, choice)
+    found, residuals = misfit.at(u, choice, thorough=not dear_ones or not misfit.is_quick)
     slopes = misfit.slopes(u, choice, found)
     cost, damping = _cost(residuals), np.full(count, DAMPING)
     active = np.isfinite(cost) & (free > 0)
