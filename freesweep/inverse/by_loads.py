@@ -8,7 +8,7 @@ from ..query.reference import COLUMNS
 from ..status import NOT_CONVERGED, OK, VALUED
 from .wishes import HELD
 
-ROUNDS, FEW, ROUGH = 24, 8, 1e-5  # steps; of a rough look, whose accuracy is not that
+ROUNDS, FEW, ROUGH = 24, 10, 1e-5  # steps; of a rough look, whose accuracy is not that
 SLOW = 0.5  # of what was missed: a step that wins less is no step of the secant's, halves the way instead
 FIRST = 1e-3  # of the load that the pressure alone makes: the first step
 LEAST = 1e-2  # of c10: a pressure that such steps are measured by

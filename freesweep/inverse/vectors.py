@@ -23,7 +23,7 @@ WORST = ("outer_radius", "largest_stretch")
 TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tubes
 OF_SOURCE = (*WORST, "limit_pressure", *STIFF)
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
-SUMMED = 1e-7  # accuracy that such sums have nearly always
+SUMMED = 1e-6  # accuracy that such sums have nearly always
 
 
 class Kind(NamedTuple):
