@@ -61,7 +61,7 @@ def test_states_are_those_of_the_meshes(many):
         row = 4 * numbers.index(number) + pressure
         assert walks.status[row] == OK, number
         missed = np.abs(walks.values[row, :5] - expected)
-        assert np.all(missed <= walks.bounds[row, :5] + 2e-6 * np.abs(expected)), number
+        assert np.all(missed <= walks.bounds[row, :5] + 5e-6 * np.abs(expected)), number  # they had less Gauss points
 
 
 @pytest.mark.parametrize("number", LIMITS)

@@ -28,7 +28,7 @@ from .membrane import excess, yeoh_slope
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
-MISSED = 1e-8  # of the energy: what a pole at the axis may leave
+MISSED = 1e-11  # of the energy: what a pole at the axis may leave; forces lose three digits of it
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
 PLACES = np.concatenate([0.5 + 0.5 * rule[0] for rule in _RULES])  # shares of rho_o^2 - rho_i^2, all rules in a row
 WEIGHTS = np.concatenate([0.5 * rule[1] for rule in _RULES])
