@@ -228,10 +228,13 @@ class Table:
             return np.where(number, stored, np.nan), errors.astype(np.float32)
         effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
         kinds, size = (self.family.variables[name], self.family.kind), int(self.strides[0])
+        angled = not {"alpha", "beta"}.isdisjoint(self.names)
         for k, points in enumerate(self._points().slabs()):
             here = slice(k * size, (k + 1) * size)
             args = (stored[here], errors[here], effects[here], noise[here])
             self.predictor.end_effects(*kinds, points, self.states().slab(k), *args)
+            if angled:  # a design of one angle has one family: its numbers say nothing of those beside it
+                number[here] &= points[:, reference.ALPHA] != points[:, reference.BETA]
         effects[~number], noise[~number] = np.nan, 0.0
         return effects, noise
 
