@@ -66,17 +66,22 @@ class Inquiry:
         spline.interpolate(table.variable(name).values, *args)
         return found
 
-    def estimate(self, name, scales):
+    def interpolated(self, name):
+        """End effects of one variable (n,), and what is known of the cells that they lie in (n, ROUGH + d)."""
+        name = TOLD_FROM.get(name, name)
+        return self.effects(name, self.orders()), self.table.variable(name).cells.at(self.cell)
+
+    def estimate(self, name, scales, interpolated=None):
         """``(value, estimate, bound, beside)``: interpolated, what the next order would add, what was stored wrongly, and
-        whether beside a hole; ``scales`` (d, RANKS) of the estimate.
+        whether beside a hole; ``scales`` (d, RANKS) of the estimate. What was ``interpolated`` is taken if it is given.
         """
         if name in TOLD_FROM:
             if self._told is None:  # one calculation tells all of them
-                *told, beside = self.estimate(TOLD_FROM[name], scales)
+                *told, beside = self.estimate(TOLD_FROM[name], scales, interpolated)
                 self._told = *self.table.predictor.worst_places(self.points, *told), beside
             *told, beside = self._told
             return *(array[list(TOLD).index(name)] for array in told), beside
-        effects, known = self.effects(name, self.orders()), self.table.variable(name).cells[self.cell]
+        effects, known = interpolated or self.interpolated(name)
         rest = known[:, DOUBT] + self.rests(known, scales).sum(axis=1)
         if self.method == LINEAR:
             rest += np.abs(effects - self.effects(name, np.zeros(len(self.table.axes), np.int64)))
@@ -151,7 +156,7 @@ class Inquiry:
         places = np.flatnonzero(refused)
         if not len(places):
             return
-        rests = self.rests(self.table.variable(name).cells[self.cell[places]], scales, places)
+        rests = self.rests(self.table.variable(name).cells.at(self.cell[places]), scales, places)
         worst = np.bincount(rests.argmax(axis=1)[rests.any(axis=1)], minlength=len(self.table.axes))
         coarse.extend((axis.name, count) for axis, count in zip(self.table.axes, worst.tolist()) if count)
 

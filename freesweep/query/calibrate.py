@@ -69,16 +69,16 @@ def _high(numbers):
     return few * np.quantile(numbers, 1.0 - BEYOND)
 
 
-def piece_scales(inquiry, name, places, exact):
+def piece_scales(inquiry, name, interpolated, places, exact):
     """Scales (d, RANKS) of what the next order would add, so that errors reach the same share of it on all pieces.
 
-    ``exact`` (k,) solutions at ``places`` of the inquiry, NaN where there is none.
+    ``interpolated`` at all points of the inquiry; ``exact`` (k,) solutions at ``places``, NaN where there is none.
     """
     table = inquiry.table
     scales = np.ones((len(table.axes), RANKS))
-    value, estimate, bound, beside = (array[places] for array in inquiry.estimate(name, scales))
+    value, estimate, bound, beside = (array[places] for array in inquiry.estimate(name, scales, interpolated))
     pieces, shares = inquiry.pieces[places], inquiry.shares[places]
-    parts = table.variable(name).cells[inquiry.cell[places], ROUGH:] * (shares * (1.0 - shares))
+    parts = interpolated[1][places][:, ROUGH:] * (shares * (1.0 - shares))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(value - exact) / estimate
         alone = parts > ALONE * parts.sum(axis=1, keepdims=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from ..status import INACCURATE, OK
-from .axis import WINDOW
+from .spline import FIRST, LEFT, RIGHT, product_term
 
 SWEEPS = 6  # how far from good nodes numbers are put, in steps along the axes: windows reach two nodes beyond a cell
 REACH = 4  # nodes along an axis that a hole looks at, on either side
@@ -98,42 +98,44 @@ def fill(values, shape, strides, nodes):
     return doubt
 
 
-def slopes(values, axis, step, out):
-    """Slopes of ``values`` (nodes,) along an axis with nodes ``step`` apart, into ``out`` (nodes,).
+@entry_point
+def slopes(table, source, column, nodes, knots, window, step):
+    """Put slopes of a column of ``table`` (nodes, NODE) into another, along an axis with ``nodes`` that are ``step`` apart.
 
     Where the window of a node has holes, from the nodes next to it.
     """
-    count, widths = len(axis.nodes), np.append(np.diff(axis.nodes), 1.0)
-    weights = axis.left / widths[:, None]
-    weights[-1] = axis.right[-2] / widths[-2]
-    first = np.append(axis.first[:-1], axis.first[-2])
-    weigh(values, count, step, first, weights, out)
-    lost = np.flatnonzero(~np.isfinite(out))
-    index = (lost // step) % count
-    here, h, k = values[lost], widths[index - 1], widths[index]
-    before = np.where(index > 0, (here - values[lost - step]) / h, np.nan)
-    after = np.where(index + 1 < count, (values[np.minimum(lost + step, len(values) - 1)] - here) / k, np.nan)
-    both = (k * before + h * after) / (h + k)
-    out[lost] = np.where(np.isfinite(both), both, np.where(np.isfinite(before), before, after))
+    count, weights = len(nodes), np.empty(window)
+    for block in range(len(table) // (count * step)):
+        for index in range(count):
+            own = min(index, count - 2)
+            side, width = LEFT if own == index else RIGHT, nodes[own + 1] - nodes[own]
+            for j in range(window):
+                weights[j] = knots[own, side + j] / width
+            begin = (block * count + int(knots[own, FIRST])) * step
+            for at in range((block * count + index) * step, (block * count + index + 1) * step):
+                total = 0.0
+                for j in range(window):
+                    total += weights[j] * table[begin + j * step, source]
+                if not math.isfinite(total):  # nodes of weight zero do not count
+                    total = 0.0
+                    for j in range(window):
+                        total += product_term(weights[j], table[begin + j * step, source])
+                table[at, column] = total if math.isfinite(total) else beside(table, source, nodes, at, index, step)
+                begin += 1
 
 
-@entry_point
-def weigh(values, count, step, first, weights, out):
-    """Sums over the windows of the pieces of an axis, weighed, into ``out`` (nodes,); ``weights`` (count, WINDOW).
-
-    Numbers of weight zero do not count, whatever they are.
-    """
-    size = min(WINDOW, count)
-    for block in range(len(values) // (count * step)):
-        for piece in range(count):
-            at = (block * count + piece) * step
-            for k in range(at, at + step):
-                out[k] = 0.0
-            for j in range(size):
-                weight, apart = weights[piece, j], (first[piece] + j - piece) * step
-                if weight != 0.0:
-                    for k in range(at, at + step):
-                        out[k] += weight * values[k + apart]
+@kernel
+def beside(table, source, nodes, at, index, step):
+    """The slope at a node from those next to it."""
+    before = after = math.nan
+    if index > 0:
+        before = (table[at, source] - table[at - step, source]) / (nodes[index] - nodes[index - 1])
+    if index + 1 < len(nodes):
+        after = (table[at + step, source] - table[at, source]) / (nodes[index + 1] - nodes[index])
+    if math.isfinite(before) and math.isfinite(after):
+        h, k = nodes[index] - nodes[index - 1], nodes[index + 1] - nodes[index]
+        return (k * before + h * after) / (h + k)
+    return before if math.isfinite(before) else after
 
 
 @kernel

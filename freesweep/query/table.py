@@ -8,7 +8,7 @@ from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
-from .cells import describe
+from .cells import Cells
 from .family import TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
@@ -24,10 +24,10 @@ TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
 class Interpolant(NamedTuple):
-    """End effects of one variable: ``values`` and slopes (4 nodes,); what is known of each cell (nodes, ROUGH + d)."""
+    """End effects of one variable: ``values`` and slopes (NODE nodes,), and what is known of each cell."""
 
     values: np.ndarray
-    cells: np.ndarray
+    cells: Cells
 
 
 class Table:
@@ -119,7 +119,9 @@ class Table:
         part = {name: slice(*self.box[name]) if name in self.names else 0 for name in variable.dims}
         array = np.asarray(variable.isel(part).values)
         array = array[tuple(slice(None) if name in variable.dims else None for name in self.names)]
-        array = np.broadcast_to(array.reshape(array.shape + (1,) * self.padding), self.shape)
+        array = array.reshape(array.shape + (1,) * self.padding)
+        if array.size < self.size:
+            array = np.broadcast_to(array, self.shape)
         return np.ascontiguousarray(array).ravel()
 
     def _codes(self):
@@ -186,14 +188,15 @@ class Table:
         effects, noise = self._end_effects(name)
         bad = ~np.isfinite(effects)
         doubt = fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
-        along, phases = np.empty((3, len(effects))), self.phases()
-        for column, source, axis in ((0, effects, -1), (1, effects, -2), (2, along[0], -2)):
-            slopes(source, self.axes[axis], int(self.strides[axis]), along[column])
+        doubt[bad] = np.maximum(doubt[bad], np.finfo(np.float32).tiny)
+        table, phases = np.empty((len(effects), NODE)), self.phases()
+        table[:, 0] = effects
+        for column, source, axis in ((1, 0, -1), (2, 0, -2), (3, 1, -2)):
+            nodes, knots, step = self.axes[axis].nodes, self.knots[axis], int(self.strides[axis])
+            slopes(table, source, column, nodes, knots, int(self.windows[axis]), step)
             if phases is not None:
-                slopes_within(source, phases, self.axes[axis].nodes, int(self.strides[axis]), along[column])
-        table = np.empty((len(effects), NODE))
-        table[:, 0], table[:, 1:] = effects, along.T
-        return Interpolant(table.ravel(), describe(effects, noise, doubt, bad, phases, self.axes, along[1::-1]))
+                slopes_within(table, source, column, phases, nodes, step)
+        return Interpolant(table.ravel(), Cells(effects, table, noise, doubt, phases, self.axes, self.knots))
 
     def states(self) -> GridStates:
         """Uniform states of the grid."""
@@ -223,19 +226,19 @@ class Table:
     def _end_effects(self, name):
         """End effects of the stored numbers and their bounds, (nodes,)."""
         stored, errors = self._grid(name), self._bounds(name)
-        number = self.is_number(self.codes[0])
         if self.family.kind == reference.NONE:
-            return np.where(number, stored, np.nan), errors.astype(np.float32)
+            return np.where(self.is_number(self.codes[0]), stored, np.nan), errors.astype(np.float32)
         effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
-        kinds, size = (self.family.variables[name], self.family.kind), int(self.strides[0])
-        angled = not {"alpha", "beta"}.isdisjoint(self.names)
-        for k, points in enumerate(self._points().slabs()):
-            here = slice(k * size, (k + 1) * size)
-            args = (stored[here], errors[here], effects[here], noise[here])
-            self.predictor.end_effects(*kinds, points, self.states().slab(k), *args)
-            if angled:  # a design of one angle has one family: its numbers say nothing of those beside it
-                number[here] &= points[:, reference.ALPHA] != points[:, reference.BETA]
-        effects[~number], noise[~number] = np.nan, 0.0
+        variable, kind = self.family.variables[name], self.family.kind
+        terms = np.empty((0, 3))
+        if self.predictor.bodies is not None:
+            points = self._points().slabs()
+            slabs = [self.predictor.terms(variable, some, self.states().slab(k)) for k, some in enumerate(points)]
+            terms = np.concatenate(slabs)
+        good = self.is_number(self.codes[0])
+        # a design of one angle has one family where others have two: what ends add to it says nothing of those beside it
+        apart = not {"alpha", "beta"}.isdisjoint(self.names)
+        self.states().end_effects(variable, kind, terms, stored, errors, good, apart, effects, noise)
         return effects, noise
 
     def _points(self):

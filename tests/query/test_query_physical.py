@@ -123,7 +123,7 @@ def test_where_fibers_go_slack_between_nodes_answers_keep_their_bounds_or_say_wh
     assert len(set(flags[1:].tolist())) > 1
     changes = (flags[cells] != flags[cells + 1]) & (cells > 0)
     table = reader.table("state")
-    known = table.variable("rotation").cells[cells * table.strides[0], BESIDE] > 0.0
+    known = table.variable("rotation").cells.at(cells * table.strides[0])[:, BESIDE] > 0.0
     assert known[changes].all()
     assert not known.all()
 
