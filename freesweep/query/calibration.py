@@ -15,7 +15,7 @@ from ..description.tube_model import model_of
 
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
-ESTIMATES, OF_PHYSICAL = 2, 3  # which estimates were measured, of physical tubes too: of others, factors say nothing
+ESTIMATES, OF_PHYSICAL = 2, 4  # which estimates were measured, of physical tubes too: of others, factors say nothing
 DEFAULT_TOLERANCE = 1e-4
 DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
 CLASSES = len(DECADES) + 1

@@ -10,9 +10,8 @@ from threading import Lock
 import numpy as np
 
 from ..jit import entry_point, kernel
-from .axis import LABEL, WINDOW, extrapolation
-from .phases import kinks_along
-from .spline import FIRST, PLACE
+from .axis import LABEL, WINDOW
+from .spline import FIRST
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
@@ -22,24 +21,18 @@ FIRST_ROWS = 1 << 10  # there is room for; twice as many where they are too few
 class Cells:
     """What is known of the cells of a grid over ``axes``, with their ``knots`` as :mod:`.spline` takes them.
 
-    ``values`` (nodes,) are end effects, holes filled, ``table`` (nodes, NODE) has their slopes, too; ``noise`` (nodes,) are
-    their bounds; ``doubt`` (nodes,) says how far numbers that were put in may be off, 0 where there was one; ``phases``
-    (nodes,) are alike where numbers are smooth, or None if they are everywhere.
+    ``values`` (nodes,) are end effects, holes filled; ``noise`` (nodes,) are their bounds; ``doubt`` (nodes,) says how far
+    numbers that were put in may be off, 0 where there was one.
     """
 
-    def __init__(self, values, table, noise, doubt, phases, axes, knots):
+    def __init__(self, values, noise, doubt, axes, knots):
         shape = np.array([len(axis.nodes) for axis in axes], np.int64)
         strides = np.array([int(np.prod(shape[k + 1 :])) for k in range(len(shape))], np.int64)
         windows = np.array([0 if axis.kind == LABEL else axis.window for axis in axes], np.int64)
-        weights = np.zeros((len(axes), knots.shape[1], 3, WINDOW))  # of the next order, and of both sides of a kink
+        weights = np.zeros((len(axes), knots.shape[1], WINDOW))  # of what the next order would add
         for own, axis in zip(weights, axes):
-            own[: len(axis.nodes), 0] = axis.remainder
-            if phases is not None:
-                own[: len(axis.nodes), 1:] = np.moveaxis(extrapolation(axis), 0, 1)
-        phases = np.empty(0, np.uint8) if phases is None else phases
-        places = np.ascontiguousarray(knots[:, :, PLACE])
-        of_axes = shape, strides, windows, knots, places, weights
-        self._grid = values, table, noise, doubt, phases, *of_axes
+            own[: len(axis.nodes)] = axis.remainder
+        self._grid = values, noise, doubt, shape, strides, windows, knots, weights
         self._slots = np.zeros(len(values), np.int32)  # of each cell in what is known; 0: nothing yet
         self._rows, self._count = np.empty((FIRST_ROWS, ROUGH + len(axes)), np.float32), 1
         self._lock = Lock()
@@ -66,7 +59,7 @@ class Cells:
 
 
 @entry_point
-def _describe(cells, values, table, noise, doubt, phases, shape, strides, windows, knots, places, weights, rows):
+def _describe(cells, values, noise, doubt, shape, strides, windows, knots, weights, rows):
     """Into ``rows`` (k, ROUGH + d) what is known of ``cells`` (k,)."""
     d = len(shape)
     lines, out = np.empty(1 << d, np.int64), np.empty(ROUGH + d)
@@ -75,7 +68,6 @@ def _describe(cells, values, table, noise, doubt, phases, shape, strides, window
         cell = cells[n]
         for k in range(ROUGH + d):
             out[k] = 0.0
-        many = 1
         for a in range(d):
             if windows[a] == 0:  # labels have nothing beside them
                 continue
@@ -89,7 +81,7 @@ def _describe(cells, values, table, noise, doubt, phases, shape, strides, window
                     many *= 2
             low, high = all_around(around, knots[a], weights[a], windows[a], piece, count)
             first = int(knots[a, piece, FIRST])
-            worst, loudest = 0.0, out[NOISE]
+            worst, loudest, doubtful = 0.0, out[NOISE], out[DOUBT]
             for k in range(many):
                 at = lines[k]
                 begin = at - piece * step
@@ -108,28 +100,18 @@ def _describe(cells, values, table, noise, doubt, phases, shape, strides, window
                             if around[i, j] != 0.0:
                                 sums[i] += around[i, j] * values[begin + (low + j) * step]
                         sums[i] = sums[i] if math.isfinite(sums[i]) else math.inf
-                kink = 0.0
-                if len(phases) > 0 and differ(phases, begin, step, max(piece - 2, 0), min(piece + 4, count), low, high):
-                    kink = kinks_along(
-                        table, phases, begin, step, piece, count, windows[a], knots[a], weights[a], places[a],
-                        d - a if a >= d - 2 else 0, sums,
-                    )  # fmt: skip
-                worst = max(worst, smoothed(sums, piece, count), kink)
+                worst = max(worst, smoothed(sums, piece, count))
                 for j in range(first, first + windows[a]):
                     if doubt[begin + j * step] > 0.0:
-                        out[BESIDE] = 1.0
+                        out[BESIDE], doubtful = 1.0, max(doubtful, WEIGHT * doubt[begin + j * step])
                 for j in range(2):
-                    out[DOUBT] = max(out[DOUBT], doubt[at + j * step])
+                    doubtful = max(doubtful, doubt[at + j * step])
                     loudest = max(loudest, noise[at + j * step])
                 if piece > 0:
                     loudest = max(loudest, WEIGHT * noise[at - step])
                 if piece + 2 < count:
                     loudest = max(loudest, WEIGHT * noise[at + 2 * step])
-            out[ROUGH + a], out[NOISE] = worst, loudest
-        if len(phases) > 0:
-            for k in range(many):  # of corners, both along the last axis
-                if phases[lines[k]] != phases[cell] or phases[lines[k] + strides[d - 1]] != phases[cell]:
-                    out[BESIDE] = 1.0
+            out[ROUGH + a], out[NOISE], out[DOUBT] = worst, loudest, doubtful
         for k in range(ROUGH + d):
             rows[n, k] = out[k]
 
@@ -147,17 +129,8 @@ def all_around(around, knots, weights, window, piece, count):
         other = piece - 1 + i
         if 0 <= other < count - 1:
             for j in range(window):
-                around[i, int(knots[other, FIRST]) + j - low] = weights[other, 0, j]
+                around[i, int(knots[other, FIRST]) + j - low] = weights[other, j]
     return low, high
-
-
-@kernel
-def differ(phases, begin, step, first, last, low, high):
-    """Whether nodes ``first`` to ``last`` - 1, and ``low`` to ``high`` - 1, of a line are of several phases."""
-    for j in range(min(first, low), max(last, high)):
-        if phases[begin + j * step] != phases[begin + low * step]:
-            return True
-    return False
 
 
 @kernel

@@ -116,7 +116,7 @@ class Reader:
         if len(parts) == 1:
             return one(parts[0])
         for name in (*names, *(("mid_radius",) if table.has_slack else ())):
-            table.variable(name)  # made here, not by two threads
+            table.make(name)  # here, not by two threads
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             answers = list(pool.map(one, parts))
         return {name: np.concatenate([answer[name] for answer in answers]) for name in answers[0]}

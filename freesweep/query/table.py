@@ -1,5 +1,6 @@
 """A family of stored variables in memory, ready to be interpolated: end effects, their slopes, the codes of the cells."""
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,6 @@ from .family import TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
 from .missing_nodes import cell_codes, fill, slopes
-from .phases import slopes_within
 from .predictor import Predictor
 from .reference import COLUMNS
 from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
@@ -56,7 +56,7 @@ class Table:
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
         self.knots, self.windows, self.coordinates = self._packed()
         self._place()
-        self._variables, self._stored, self._errors, self._states, self._phases = {}, {}, {}, None, None
+        self._variables, self._stored, self._errors, self._states, self._taut = {}, {}, {}, None, None
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
@@ -133,7 +133,8 @@ class Table:
         if self.has_flag:
             codes |= self._grid(flag).astype(np.uint8) << 4
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
-            codes |= self.phases() << 4
+            some = [(self._grid(name) > 0.0).astype(np.uint8) for name in self.family.variables]
+            codes |= (self._beyond_rest(self._taut_nodes() | some[0] << 2 | some[1] << 3)) << 4
         return codes
 
     def _beyond_rest(self, slack):
@@ -173,30 +174,37 @@ class Table:
 
     def forget(self, name):
         """Let go of the arrays of one variable."""
-        for kept in (self._variables, self._stored, self._errors):
+        for side in self.sides:
+            self._variables.pop((name, side), None)
+        for kept in (self._stored, self._errors):
             kept.pop(name, None)
 
-    def variable(self, name):
-        """The :class:`Interpolant` of one variable, or of the one that it is told from."""
-        name = TOLD_FROM.get(name, name)
-        if name not in self._variables:
-            self._variables[name] = self._interpolant(name)
-        return self._variables[name]
+    def variable(self, name, side) -> Interpolant:
+        """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
+        key = TOLD_FROM.get(name, name), side
+        if key not in self._variables:
+            self._variables[key] = self._interpolant(*key)
+        return self._variables[key]
+
+    def make(self, name):
+        """Make all of one variable, as a thread alone has to."""
+        for side in self.sides:
+            self.variable(name, side)
 
     @np.errstate(all="ignore")  # whatever a file holds
-    def _interpolant(self, name):
+    def _interpolant(self, name, side):
         effects, noise = self._end_effects(name)
+        if len(self.sides) > 1:
+            effects[self._sides_of_nodes() != side] = np.nan
         bad = ~np.isfinite(effects)
         doubt = fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
-        doubt[bad] = np.maximum(doubt[bad], np.finfo(np.float32).tiny)
-        table, phases = np.empty((len(effects), NODE)), self.phases()
+        doubt[bad], noise[bad] = np.maximum(doubt[bad], np.finfo(np.float32).tiny), 0.0
+        table = np.empty((len(effects), NODE))
         table[:, 0] = effects
         for column, source, axis in ((1, 0, -1), (2, 0, -2), (3, 1, -2)):
             nodes, knots, step = self.axes[axis].nodes, self.knots[axis], int(self.strides[axis])
             slopes(table, source, column, nodes, knots, int(self.windows[axis]), step)
-            if phases is not None:
-                slopes_within(table, source, column, phases, nodes, step)
-        return Interpolant(table.ravel(), Cells(effects, table, noise, doubt, phases, self.axes, self.knots))
+        return Interpolant(table.ravel(), Cells(effects, noise, doubt, self.axes, self.knots))
 
     def states(self) -> GridStates:
         """Uniform states of the grid."""
@@ -206,22 +214,29 @@ class Table:
             self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
         return self._states
 
-    def phases(self):
-        """Which fibers are slack, in the middle of a long tube and anywhere, (nodes,): where it changes, numbers have kinks.
-        None where they have none.
+    @functools.cached_property
+    def sides(self) -> list:
+        """Which families pull in the middle of a long tube, all such codes (as :data:`reference.TAUT`) that there are: where
+        it changes, what the ends add has a kink, and nodes on one side say nothing of the other. ``[None]``: no kinks.
         """
-        if not self.tells_slack and not (self.has_slack and self.frame.model.is_loose):
-            return None
-        if self._phases is None:
-            size = int(self.strides[0])
-            kinds = [self.states().slab(k)[:, reference.TAUT] for k in range(self.size // size)]
-            kinds = np.nan_to_num(np.concatenate(kinds), nan=3.0).astype(np.uint8)
-            if self.tells_slack:
-                some = [(self._grid(name) > 0.0).astype(np.uint8) for name in self.family.variables]
-                self._phases = self._beyond_rest(kinds | some[0] << 2 | some[1] << 3)
-            else:
-                self._phases = self._beyond_rest(kinds) | self.codes[1]
-        return self._phases
+        if not self.frame.model.is_loose or self.family.kind != reference.LOADED:
+            return [None]
+        found = np.unique(self._sides_of_nodes()).tolist()
+        return found if len(found) > 1 else [None]
+
+    def side_of(self, states) -> np.ndarray:
+        """Which of the ``sides`` points with such uniform states (n, UNIFORM) lie on, (n,)."""
+        return np.nan_to_num(states[:, reference.TAUT], nan=3.0).astype(np.uint8)
+
+    def _sides_of_nodes(self):
+        return self._beyond_rest(self._taut_nodes())
+
+    def _taut_nodes(self):
+        """Which fibers pull in the middle of long tubes (nodes,)."""
+        if self._taut is None:
+            slabs = range(self.size // int(self.strides[0]))
+            self._taut = np.concatenate([self.side_of(self.states().slab(k)) for k in slabs])
+        return self._taut
 
     def _end_effects(self, name):
         """End effects of the stored numbers and their bounds, (nodes,)."""
