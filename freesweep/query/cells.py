@@ -11,10 +11,11 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from .axis import LABEL, WINDOW
-from .spline import FIRST
+from .spline import FIRST, LEFT, RIGHT
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
+STEEPEST = 4.0 / 27.0  # largest weight of a slope in a cubic, times the width
 FIRST_ROWS = 1 << 10  # there is room for; twice as many where they are too few
 
 
@@ -101,9 +102,11 @@ def _describe(cells, values, noise, doubt, shape, strides, windows, knots, weigh
                                 sums[i] += around[i, j] * values[begin + (low + j) * step]
                         sums[i] = sums[i] if math.isfinite(sums[i]) else math.inf
                 worst = max(worst, smoothed(sums, piece, count))
-                for j in range(first, first + windows[a]):
-                    if doubt[begin + j * step] > 0.0:
-                        out[BESIDE], doubtful = 1.0, max(doubtful, WEIGHT * doubt[begin + j * step])
+                for j in range(windows[a]):
+                    lacks = doubt[begin + (first + j) * step]
+                    if lacks > 0.0:
+                        share = STEEPEST * (abs(knots[a, piece, LEFT + j]) + abs(knots[a, piece, RIGHT + j]))
+                        out[BESIDE], doubtful = 1.0, max(doubtful, share * lacks)
                 for j in range(2):
                     doubtful = max(doubtful, doubt[at + j * step])
                     loudest = max(loudest, noise[at + j * step])
