@@ -18,6 +18,7 @@ SWEEPS = 6  # how far from good nodes numbers are put, in steps along the axes: 
 REACH = 4  # nodes along an axis that a hole looks at, on either side
 BETWEEN = 3  # of those it takes the nearest on each side,
 BEYOND = 4  # or so many where one side has none
+LEAST = 1e-30  # square of what a number is off at least
 INHERITED = 2.5  # of the doubt of a number that another is told from: third differences make 1, 4, 10 of 1 so
 MIXED = 255  # code of a cell whose nodes do not agree
 
@@ -40,13 +41,13 @@ def _through(xs, fs, found, x, left_out):
 def fill_once(values, doubt_of, bad, shape, strides, nodes, beyond, numbers, doubts):
     """Numbers for the NaN of ``values`` (nodes,) at ``bad`` (k,) that lie beside numbers, into ``numbers`` (k,).
 
-    Between nodes rather than beyond them; NaN where nothing is beside. ``doubts`` (k,): what the farthest node changes, and
-    what is inherited of ``doubt_of`` (nodes,) numbers that were put in before. ``beyond``: see :func:`weights_beyond`.
+    Between nodes rather than beyond them; NaN where nothing is beside. Of several axes the surer count more. ``doubts``
+    (k,): what the farthest node changes, by how much axes differ, and what is inherited of ``doubt_of`` (nodes,) numbers that were put in before. ``beyond``: see :func:`weights_beyond`.
     """
     xs, fs, given = np.empty(2 * BETWEEN), np.empty(2 * BETWEEN), np.empty(2 * REACH + 1)
+    found_along, weights = np.empty((2, len(shape)))
     for k in range(len(bad)):
         at, most, many = bad[k], 0, 0
-        total, doubt = 0.0, 0.0
         for a in range(len(shape)):
             count, step = shape[a], strides[a]
             index = (at // step) % count
@@ -87,18 +88,29 @@ def fill_once(values, doubt_of, bad, shape, strides, nodes, beyond, numbers, dou
                         farthest = j
                 value = _through(xs, fs, found, nodes[a, index], -1)
                 other = _through(xs, fs, found, nodes[a, index], farthest)
-            if sides > most:
-                most, many, total, doubt = sides, 0, 0.0, 0.0
-            total += value
-            many += 1
             inherited = 0.0
             if math.isfinite(given[REACH - 1]):
                 inherited = max(inherited, doubt_of[at - step])
             if math.isfinite(given[REACH + 1]):
                 inherited = max(inherited, doubt_of[at + step])
-            doubt = max(doubt, abs(value - other) + INHERITED * inherited)
-        numbers[k] = total / many if many > 0 else math.nan
-        doubts[k] = doubt
+            many = many if sides == most else 0
+            most, doubt = sides, abs(value - other) + INHERITED * inherited
+            found_along[many], weights[many] = value, 1.0 / (doubt * doubt + LEAST)
+            many += 1
+        numbers[k], doubts[k] = weighed(found_along, weights, many)
+
+
+@kernel
+def weighed(numbers, weights, many):
+    """The mean of numbers with weights, inverse squares of what they may be off, and how far it may be off."""
+    whole, total, spread = 0.0, 0.0, 0.0
+    for j in range(many):
+        whole += weights[j]
+        total += weights[j] * numbers[j]
+    mean = total / whole if many > 0 else math.nan
+    for j in range(many):
+        spread += weights[j] * (numbers[j] - mean) ** 2
+    return mean, math.sqrt(many / whole) + math.sqrt(spread / whole) if many > 0 else 0.0
 
 
 def weights_beyond(nodes, shape):
