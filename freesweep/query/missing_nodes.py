@@ -19,7 +19,6 @@ REACH = 4  # nodes along an axis that a hole looks at, on either side
 BETWEEN = 3  # of those it takes the nearest on each side,
 BEYOND = 4  # or so many where one side has none
 LEAST = 1e-30  # square of what a number is off at least
-INHERITED = 2.5  # of the doubt of a number that another is told from: third differences make 1, 4, 10 of 1 so
 MIXED = 255  # code of a cell whose nodes do not agree
 
 
@@ -42,7 +41,8 @@ def fill_once(values, doubt_of, bad, shape, strides, nodes, beyond, numbers, dou
     """Numbers for the NaN of ``values`` (nodes,) at ``bad`` (k,) that lie beside numbers, into ``numbers`` (k,).
 
     Between nodes rather than beyond them; NaN where nothing is beside. Of several axes the surer count more. ``doubts``
-    (k,): what the farthest node changes, by how much axes differ, and what is inherited of ``doubt_of`` (nodes,) numbers that were put in before. ``beyond``: see :func:`weights_beyond`.
+    (k,): what the farthest node changes, by how much axes differ, and what is inherited of ``doubt_of`` (nodes,) numbers
+    that were put in before. ``beyond``: see :func:`weights_beyond`.
     """
     xs, fs, given = np.empty(2 * BETWEEN), np.empty(2 * BETWEEN), np.empty(2 * REACH + 1)
     found_along, weights = np.empty((2, len(shape)))
@@ -94,7 +94,7 @@ def fill_once(values, doubt_of, bad, shape, strides, nodes, beyond, numbers, dou
             if math.isfinite(given[REACH + 1]):
                 inherited = max(inherited, doubt_of[at + step])
             many = many if sides == most else 0
-            most, doubt = sides, abs(value - other) + INHERITED * inherited
+            most, doubt = sides, abs(value - other) + inherited
             found_along[many], weights[many] = value, 1.0 / (doubt * doubt + LEAST)
             many += 1
         numbers[k], doubts[k] = weighed(found_along, weights, many)
