@@ -5,6 +5,7 @@ import numpy as np
 from ..atlas.schema import EXCHANGED
 from ..status import DEGENERATE, INACCURATE, NOT_INTERPOLABLE, OK
 from . import errors, reference, spline
+from .calibration import CLEAR, FILLED, NEAR_HOLES
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED, TOLD, TOLD_FROM
 from .locate import place
@@ -89,7 +90,8 @@ class Inquiry:
 
     def estimate(self, name, scales, interpolated=None):
         """``(value, estimate, bound, beside)``: interpolated, what the next order would add, what was stored wrongly, and
-        whether beside a hole; ``scales`` (d, RANKS) of the estimate. What was ``interpolated`` is taken if it is given.
+        how it lies to holes, as :mod:`calibration` has it; ``scales`` (d, RANKS) of the estimate. What was ``interpolated``
+        is taken if it is given.
         """
         if name in TOLD_FROM:
             if self._told is None:  # one calculation tells all of them
@@ -98,11 +100,13 @@ class Inquiry:
             *told, beside = self._told
             return *(array[list(TOLD).index(name)] for array in told), beside
         effects, known = interpolated or self.interpolated(name)
-        rest = known[:, DOUBT] + self.rests(known, scales).sum(axis=1)
+        doubt, rest = known[:, DOUBT].astype(float), self.rests(known, scales).sum(axis=1)
+        beside = np.where(known[:, BESIDE] > 0.0, np.where(doubt > rest, FILLED, NEAR_HOLES), CLEAR)
+        rest += doubt
         if self.method == LINEAR:
             rest += np.abs(effects - self.effects(name, np.zeros(len(self.table.axes), np.int64)))
         noise = known[:, NOISE].astype(float)
-        return *self._restored(name, slice(None), effects, rest, noise), known[:, BESIDE] > 0.0
+        return *self._restored(name, slice(None), effects, rest, noise), beside
 
     def rests(self, known, scales, places=slice(None)):
         """What the next order would add along each axis (k, d) at some places, from what is ``known`` of their cells.

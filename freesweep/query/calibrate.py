@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import calibration, errors
-from .calibration import CLASSES, RANKS
+from .calibration import CLASSES, CLEAR, LYING, RANKS
 from .cells import ROUGH
 from .family import TOLD_FROM
 from .reference import MID_RADIUS
@@ -45,10 +45,10 @@ def calibrate(error, estimate, bound, size, beside, allowed) -> calibration.Fact
 
 
 def _by_class(needed, classes, beside):
-    """Largest factor but a few of each class, beside holes or not; classes with few designs ask their neighbours."""
+    """Largest factor but a few of each class, as it lies to holes; classes with few designs ask their neighbours."""
     known = np.isfinite(needed)
-    lists = [[needed[known & (classes == k) & (beside == kind)] for k in range(CLASSES)] for kind in (False, True)]
-    found = np.empty((2, CLASSES))
+    lists = [[needed[known & (classes == k) & (beside == kind)] for k in range(CLASSES)] for kind in range(LYING)]
+    found = np.empty((LYING, CLASSES))
     for kind, own in enumerate(lists):
         for k in range(CLASSES):
             for reach in range(CLASSES):
@@ -56,7 +56,7 @@ def _by_class(needed, classes, beside):
                 if sum(map(len, near)) >= ENOUGH:
                     break
             else:  # too few of the kind: all designs
-                near = [*lists[0], *lists[1]]
+                near = [numbers for other in lists for numbers in other]
             found[kind, k] = float(f"{max(SMALLEST, _high(np.concatenate(near))):.3g}")
     return found
 
@@ -82,7 +82,7 @@ def piece_scales(inquiry, name, interpolated, places, exact):
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(value - exact) / estimate
         alone = parts > ALONE * parts.sum(axis=1, keepdims=True)
-    use = np.isfinite(ratio) & ~beside & (estimate > PLAIN * bound)
+    use = np.isfinite(ratio) & (beside == CLEAR) & (estimate > PLAIN * bound)
     summed = table.family.variables[name] != MID_RADIUS and name not in TOLD_FROM
     if use.sum() < SPEAK or not summed:  # an estimate that is no sum over axes
         return scales

@@ -58,7 +58,7 @@ def measured(data, designs=None) -> dict:
             solved[kind] = _solved(reader, key, inquiry)
         answered[key], results = _family(reader, key, names, inquiry, told_of(reader, key, names, solved[kind]))
         variables |= results
-    head = {"designs": count, "seed": SEED, "estimates": calibration.estimates(data)}
+    head = {"designs": count, "seed": SEED, "estimates": calibration.ESTIMATES}
     return head | {"answered": answered, "variables": variables}
 
 

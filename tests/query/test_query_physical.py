@@ -8,7 +8,7 @@ from freesweep import Atlas, status
 from freesweep.closed_form import uniform_state
 from freesweep.description.tube_model import MODELS, TubeModel
 from freesweep.query import reference
-from freesweep.query.cells import BESIDE
+from freesweep.query.cells import DOUBT
 from freesweep.query.exact import solve
 from freesweep.query.family import TOLD
 from freesweep.query.missing_nodes import fill
@@ -127,7 +127,7 @@ def test_where_fibers_go_slack_between_nodes_answers_keep_their_bounds_or_say_wh
     alike = np.zeros(len(pressure), bool)
     for side in table.sides:
         own = sides == side
-        known = table.variable("rotation", side).cells.at(cells * table.strides[0])[:, BESIDE] > 0.0
+        known = table.variable("rotation", side).cells.at(cells * table.strides[0])[:, DOUBT] > 0.0
         values = table.variable("rotation", side).values[:: NODE * table.strides[0]]
         assert own.any()
         assert np.isfinite(values).any()
