@@ -98,7 +98,7 @@ def _family(reader, key, names, inquiry, exact):
     places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
     exact = {name: array[places] for name, array in exact.items()}
     solved = np.isin(exact[FAMILIES[key].answer_status], VALUED)
-    with ThreadPoolExecutor(TOGETHER if table.size <= MUCH else 1) as pool:
+    with ThreadPoolExecutor(TOGETHER if table.size * len(table.sides) <= MUCH else 1) as pool:
         kept = dict(
             zip(names, pool.map(lambda name: _compare(inquiry, name, places, exact[name], solved, reader), names))
         )

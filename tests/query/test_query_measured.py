@@ -205,9 +205,10 @@ def test_ends_of_an_axis_have_estimates_of_their_own(made):
     assert (calibration.factors(made.data, "volume", ("torque",)).scales == 1.0).all()
 
 
-@pytest.mark.parametrize(
-    "text", ["", "{", "[]", '{"estimates": 2, "variables": {"rotation": {"factors": [1], "bound": 0}}}']
-)
+OF_OTHER_FORM = {"estimates": calibration.ESTIMATES, "variables": {"rotation": {"factors": [1], "bound": 0}}}
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", json.dumps(OF_OTHER_FORM)])
 def test_what_cannot_be_read_of_a_measurement_is_replaced_by_caution(made, text):
     data = made.data.assign_attrs({calibration.ATTRIBUTE: text})
     assert (calibration.factors(data, "rotation").classes == calibration.UNMEASURED).all()
