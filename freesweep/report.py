@@ -14,30 +14,46 @@ SHOWN = {
 }
 
 
-def table(dataset) -> str:
-    """One line for each pressure: outputs in everyday units, status, slack fibers; then what the statuses mean."""
+def shown_in(asked) -> dict:
+    """:data:`SHOWN`, but kinds of quantities in the unit of the question that named one first: ``asked`` are pairs of a
+    text and the unit in which its kind is kept.
+    """
+    from .description.units import factor, unit_of
+
+    found = {}
+    for text, kept in asked:
+        if unit := unit_of(text):
+            found.setdefault(kept, (unit, 1.0 / factor(unit, kept)))
+    return SHOWN | found
+
+
+def table(dataset, shown=SHOWN) -> str:
+    """One line for each pressure: outputs in units such as :func:`shown_in` finds, status, slack fibers; then what the
+    statuses mean.
+    """
     heads, rows = [], []
+    pascal, press = shown["Pa"]
     points = dataset.drop_dims("x")
     columns = [name for name in COLUMNS if f"{name}_error" in dataset]
     if "pressure" in points.dims:
-        heads.append("pressure [kPa]")
+        heads.append(f"pressure [{pascal}]")
         states = [points.isel(pressure=k) for k in range(points.sizes["pressure"])]
     else:
         states = [points]
     for name in columns:
-        unit, _ = SHOWN[dataset[name].attrs["units"]]
+        unit, _ = shown[dataset[name].attrs["units"]]
         heads.append(f"{name.replace('_', ' ')} [{unit}]")
     for state in states:
-        row = [f"{state['pressure'].item() * 1e-3:.6g}"] if "pressure" in points.dims else []
+        row = [f"{state['pressure'].item() * press:.6g}"] if "pressure" in points.dims else []
         for name in columns:
-            _, scale = SHOWN[dataset[name].attrs["units"]]
+            _, scale = shown[dataset[name].attrs["units"]]
             row.append(number(state[name].item() * scale, state[f"{name}_error"].item() * scale))
         rows.append([*row, STATUSES[int(state["status"])].meaning + _flags(state)])
     lines = aligned([[*heads, "status"], *rows])
     seen = sorted({int(value) for value in dataset["status"].values.ravel()} - {0})
     lines += [f"{STATUSES[value].meaning}: {STATUSES[value].sentence}" for value in seen]
     if "limit_found" in dataset and bool(dataset["limit_found"]):
-        lines.append(f"limit pressure: {dataset['limit_pressure'].item() * 1e-3:.6g} kPa")
+        lines.append(f"limit pressure: {dataset['limit_pressure'].item() * press:.6g} {pascal}")
     if bool((dataset["slack_fiber"] > 0).any()):
         loose = dataset.attrs.get("fibers") == "loose"
         lines.append(

@@ -117,7 +117,6 @@ def _differentiated(result, tube, names, loads, accuracy):
 def _solve(tube, loads, stations, accuracy):
     """Solve for the product of the loads, and put the results into a Dataset."""
     from .solver.batch import uniform, walk_all
-    from .solver.halves import in_two_halves
 
     shape = tuple(np.size(loads[name]) for name in LOADS)
     force, torque = (grid.ravel() for grid in np.meshgrid(loads["force"], loads["torque"], indexing="ij"))
@@ -130,7 +129,7 @@ def _solve(tube, loads, stations, accuracy):
     if tube.varies:
         course, error = read_course(tube, accuracy)
     else:
-        course = in_two_halves(rows[0], BASE_CELLS // 2) if whole else uniform(BASE_CELLS)
+        course = uniform(BASE_CELLS // 2 if whole else BASE_CELLS)
     every = with_own(tube, stations)
     unique, index = near_stations(tube, every, whole)
     first = np.arange(count + 1, dtype=np.int64) * steps

@@ -22,12 +22,13 @@ c01 = "0.5*c10"
 
 from pathlib import Path
 
+from ..atlas.schema import PARAMETERS
 from ..description.elastomer import rubber_of
 from ..description.faults import ActuatorError
 from ..description.given import numbers
 from ..description.material_library import material
 from ..sweep import toml_guard
-from .csv_file import FIRST_GUESS, TUBE, WORDS, read_measurements
+from .csv_file import FIRST_GUESS, TUBE, WORDS, read_measurements, units_of_files
 
 CONSTANTS = ("c10", "c01", "c20", "c30")
 SECTIONS = {
@@ -62,6 +63,15 @@ def read_case(path) -> tuple:
     asked = {key: document[key] for key in ("priors", "bounds", "ties") if key in document}
     asked |= {"own_extension": fit["own_extension"]} if "own_extension" in fit else {}
     return measurements, asked | {"fit": fit.get("parameters")}
+
+
+def units_asked(path) -> list:
+    """Pairs of a text and the unit in which its kind is kept, of all that a case and its files give with units."""
+    document = toml_guard.load(toml_guard.read_text(path), str(path))
+    given = document.get("actuator", {})
+    files = document["data"]["files"]
+    pairs = units_of_files(Path(path).parent / name for name in ([files] if isinstance(files, str) else files))
+    return pairs + [(given[name], PARAMETERS[name].units) for name in TUBE if isinstance(given.get(name), str)]
 
 
 def _mirrored(angle, faults):

@@ -11,6 +11,7 @@ from ..description.elastomer import Yeoh
 from ..description.options import read_path
 from ..description.quantities import Path
 from ..description.units import shown
+from ..report import SHOWN
 from ..table_file import RATIO, TEXT, Known, read_columns
 from .branches import BRANCHES, branch_faults
 from .measured import COLUMNS, SHORTENINGS, Measurement, as_length, default_measured, measured_faults, read_names
@@ -40,7 +41,7 @@ def read_measurements(
     paths: Path | Sequence[Path],
     *,
     measured: str | Sequence[str] = (),
-    material: MooneyRivlin | Yeoh = FIRST_GUESS,
+    material: MooneyRivlin | Yeoh | str = FIRST_GUESS,
     energy: str = "full",
     **tube: Any,
 ) -> list[Measurement]:
@@ -76,6 +77,14 @@ def read_measurements(
     if faults:
         raise ActuatorError(faults)
     return made
+
+
+def units_of_files(paths) -> list:
+    """Pairs of a text and the unit in which its kind is kept, of the columns of CSV files that can be read."""
+    found = {}
+    for path in paths:
+        found = read_columns(path, KNOWN).units | found  # the first counts
+    return [(f"1 {unit}", KNOWN.units[name]) for name, unit in found.items() if unit and KNOWN.units[name] in SHOWN]
 
 
 def _measurements(found, measured, tube, others, name):

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..description.actuator import ActuatorError
+from ..description.actuator import Actuator, ActuatorError
+from ..description.elastomer import MooneyRivlin, Yeoh
 from ..description.given import described
 from ..description.options import read_switch
 from ..description.quantities import Names, Quantities
@@ -56,22 +57,22 @@ class Calibration:
     quantile : Student's, of the intervals; ``parameters`` : how theta becomes actuators
     """
 
-    names: tuple
+    names: tuple[str, ...]
     values: np.ndarray
     covariance: np.ndarray
     intervals: np.ndarray
-    measurements: tuple
-    tubes: tuple
-    predicted: tuple
-    sigma: dict
+    measurements: tuple[Measurement, ...]
+    tubes: tuple[Actuator, ...]
+    predicted: tuple[Any, ...]
+    sigma: dict[str, float]
     condition: float
     chi_square: float
-    notes: tuple
+    notes: tuple[str, ...]
     profile_intervals: np.ndarray | None = None
     fits: bool = True
     widening: np.ndarray | None = None
-    leave_one_out: dict = field(default_factory=dict)
-    hysteresis: dict = field(default_factory=dict)
+    leave_one_out: dict[str, float] = field(default_factory=dict)
+    hysteresis: dict[str, float] = field(default_factory=dict)
     dead_length: float = 0.0
     threshold_pressure: float = 0.0
     quantile: float = 1.96
@@ -100,7 +101,7 @@ class Calibration:
             return self.covariance / np.outer(self.standard_errors, self.standard_errors)
 
     @property
-    def material(self):
+    def material(self) -> MooneyRivlin | Yeoh:
         """The material with the constants found."""
         return self.tubes[0].material
 

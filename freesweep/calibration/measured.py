@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -62,13 +62,13 @@ class Measurement:
     mid_radius: np.ndarray | None = None
     force: np.ndarray | None = None
     torque: np.ndarray | None = None
-    measured: tuple = ()
-    sigma: dict = field(default_factory=dict)
+    measured: tuple[str, ...] = ()
+    sigma: dict[str, Any] = field(default_factory=dict)
     contraction: np.ndarray | None = None
     stroke: np.ndarray | None = None
     branch: np.ndarray | None = None
-    half_width: dict = field(default_factory=dict)
-    notes: tuple = ()
+    half_width: dict[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
     length_as: str = "deformed_length"
 
     if TYPE_CHECKING:  # what may be given is more than what is kept
@@ -164,7 +164,7 @@ class Measurement:
     def __len__(self):
         return len(self.pressure)
 
-    def imposed(self, name):
+    def imposed(self, name: str) -> np.ndarray:
         """An imposed column (n,); where the bench left it out, what it is then. Raises :class:`ActuatorError`."""
         faults = []
         if read_choice("name", name, tuple(COLUMNS), faults) is None:

@@ -10,7 +10,7 @@ from ..description.python_line import python_line
 from ..report import SHOWN
 from .branches import curves_of
 from .measured import COLUMNS
-from .report import rows_of, told_rows
+from .report import USUAL, rows_of, told_rows
 
 DOTS = 100  # per inch
 
@@ -76,7 +76,7 @@ def _label(found, k, swept, rows):
     return f"{np.mean(found.measurements[k].pressure[rows]) * 1e-3:.4g} kPa"
 
 
-def page(found) -> str:
+def page(found, shown=USUAL) -> str:
     """The page as HTML."""
     image = base64.b64encode(picture(found)).decode()
     verdict = "The model fits: what is left looks like noise." if found.fits else found.notes[0].capitalize() + "."
@@ -87,8 +87,8 @@ def page(found) -> str:
         "td:first-child,th:first-child{text-align:left}",
         "pre{background:#f4f4f4;padding:.8em;overflow:auto}img{max-width:100%}</style></head><body><h1>Calibration</h1>",
         f"<p><strong>{html.escape(verdict)}</strong></p>",
-        "<h2>What was found</h2>", _table(rows_of(found)),
-        "<h2>How well it is met</h2>", _table(told_rows(found)),
+        "<h2>What was found</h2>", _table(rows_of(found, shown)),
+        "<h2>How well it is met</h2>", _table(told_rows(found, shown)),
         f"<h2>Curves</h2><img alt='curves and residuals' src='data:image/png;base64,{image}'>",
         "<p>Lines: the model; bands: where 95 % of readings are expected, with half of what parts the branches of loops;"
         " rings: slack muscles. Below: what is left.</p>",

@@ -2,28 +2,43 @@
 
 import numpy as np
 
-from ..report import SHOWN, aligned
+from ..report import SHOWN, aligned, shown_in
 from .measured import COLUMNS
 
-UNITS = {"alpha": ("deg", 1.0), "beta": ("deg", 1.0), "threshold_pressure": ("kPa", 1e-3)}
-UNITS |= dict.fromkeys(("length", "radius", "wall", "fiber_radius", "dead_length"), ("mm", 1e3))
+KEPT = {"alpha": "degree", "beta": "degree", "threshold_pressure": "Pa"}  # in these, of parameters
+KEPT |= dict.fromkeys(("length", "radius", "wall", "fiber_radius", "dead_length"), "m")
+CONSTANTS = "constants"  # of rubbers: megapascals, unless pressures were given in what is no multiple of a pascal
+USUAL = SHOWN | {CONSTANTS: ("MPa", 1e-6)}
 SAME = 1e-3  # of an interval's width: ends that differ by less are the same
 
 
-def table(found) -> str:
+def shown_as(asked) -> dict:
+    """Units of a report, as :func:`freesweep.report.shown_in` finds them."""
+    shown = shown_in(asked)
+    _, scale = shown["Pa"]
+    return USUAL | shown | ({} if np.log10(scale).is_integer() else {CONSTANTS: shown["Pa"]})
+
+
+def table(found, shown=USUAL) -> str:
     """Parameters with uncertainties, what was measured and how well it is met, and what a reader has to know."""
-    lines = [*aligned(rows_of(found)), "", *aligned(told_rows(found)), ""]
+    lines = [*aligned(rows_of(found, shown)), "", *aligned(told_rows(found, shown)), ""]
     lines += [*(f"- {note}" for note in found.notes), "", repr(found.material)]
     return "\n".join(lines)
 
 
-def unit_of(name) -> tuple:
+def unit_of(name, shown=USUAL) -> tuple:
     """Unit in which a parameter is shown, and its scale."""
+    kept = kept_in(name)
+    return shown[kept] if kept else ("", 1.0)
+
+
+def kept_in(name) -> str | None:
+    """Unit in which a parameter is kept, ``CONSTANTS``, or None."""
     base = name.rstrip("0123456789").removesuffix("_") if "_" in name else name
-    return UNITS.get(base, ("MPa", 1e-6) if name.startswith("c") else ("", 1.0))
+    return KEPT.get(base, CONSTANTS if name.startswith("c") else None)
 
 
-def rows_of(found) -> list:
+def rows_of(found, shown=USUAL) -> list:
     """Parameters, with a profile interval where it differs from the linearised one."""
     profiled = found.profile_intervals
     with np.errstate(invalid="ignore"):  # of what data do not tell
@@ -32,7 +47,7 @@ def rows_of(found) -> list:
     heads = ["parameter", "value", "standard error", "95 % interval"]
     rows = [[*heads, "by profile likelihood"] if apart.any() else heads]
     for k, (name, value, error) in enumerate(zip(found.names, found.values, found.standard_errors)):
-        unit, scale = unit_of(name)
+        unit, scale = unit_of(name, shown)
         unit = f" {unit}" if unit else ""
         digits = _digits(value * scale, error * scale)
         row = [name, f"{value * scale:.{digits}f}{unit}", f"{error * scale:.2g}{unit}"]
@@ -43,12 +58,12 @@ def rows_of(found) -> list:
     return rows
 
 
-def told_rows(found) -> list:
+def told_rows(found, shown=USUAL) -> list:
     """What was measured and how well it is met, by quantity."""
     heads = ["measured", "values", "counted", "standard uncertainty", "largest misfit", "unseen curves"]
     rows = [[*heads, "half of a loop"] if found.hysteresis else heads]
     for name, sigma in found.sigma.items():
-        unit, scale = SHOWN[COLUMNS[name]]
+        unit, scale = shown[COLUMNS[name]]
         misfit = np.concatenate(
             [residuals[name] for residuals in map(_residuals, found.measurements, found.predicted) if name in residuals]
         )

@@ -59,6 +59,27 @@ def of_candidates(found) -> str:
     return text({"summary": found.attrs["summary"], "candidates": rows})
 
 
+def of_calibration(found) -> str:
+    """Parameters with their uncertainties, in SI units and degrees, how well what was measured is met, and the notes."""
+    from ..calibration.measured import COLUMNS
+    from ..calibration.report import CONSTANTS, kept_in
+
+    rows = zip(found.names, found.values, found.standard_errors, found.intervals, found.profile_intervals)
+    parameters = {
+        name: {
+            "value": value, "standard_error": error, "interval": interval, "profile_interval": profiled,
+            "units": {CONSTANTS: "Pa", None: "1"}.get(kept := kept_in(name), kept),
+        }
+        for name, value, error, interval, profiled in rows
+    }  # fmt: skip
+    measured = {
+        name: {"standard_uncertainty": sigma, "unseen_curves": found.leave_one_out.get(name), "units": COLUMNS[name]}
+        for name, sigma in found.sigma.items()
+    }
+    about = {"fits": bool(found.fits), "chi_square": found.chi_square, "notes": found.notes}
+    return text({"parameters": parameters, "measured": measured, **about, "material": repr(found.material)})
+
+
 def of_comparisons(path, comparisons) -> str:
     """Largest differences of an atlas from the second method, beside the stored bounds."""
     rows = {

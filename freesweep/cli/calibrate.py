@@ -13,7 +13,7 @@ def add_calibrate(commands):
         "calibrate",
         help="rubber, angle, fiber extension and other scalars of an actuator from measured curves",
         description="Fits any scalar of an actuator to measured curves of length, rotation, force or torque."
-        " Each CSV file has a line of names and units, such as 'pressure [psi],contraction [%%]'; columns:"
+        " Each CSV file has a line of names and units, such as 'pressure [psi],contraction [%]'; columns:"
         " pressure, deformed_length (or contraction, stroke), rotation, mid_radius, force, torque, their standard"
         " uncertainties as force_sigma, branch, and whatever describes the actuator, unless it is given as an option."
         " A file FILE.toml holds all of that, with the options, and is given alone.",
@@ -58,6 +58,7 @@ def add_calibrate(commands):
         command.add_argument(f"--{name}", choices=tuple(choices), help="of all actuators, as in freesweep inflate")
     command.add_argument("-o", "--out", metavar="FILE.nc", help="keep parameters, covariance and curves as netCDF4")
     command.add_argument("--report", metavar="FILE", help="a page to send around (.html), or its picture (.png)")
+    command.add_argument("--json", action="store_true", help="print what was found as JSON")
     command.set_defaults(run=_run)
 
 
@@ -65,9 +66,12 @@ def _run(options):
     from pathlib import Path
 
     from ..atlas.files import write_whole
-    from ..calibration.case_file import read_case
+    from ..calibration.case_file import read_case, units_asked
+    from ..calibration.csv_file import units_of_files
     from ..calibration.fit import calibrate
-    from ..calibration.report import table, to_dataset
+    from ..calibration.report import shown_as, table, to_dataset
+    from .as_json import of_calibration
+    from .single import asked_in_units
 
     faults = []
     asked = {"fit": options.fit, "own_extension": options.own_extension}
@@ -77,17 +81,19 @@ def _run(options):
         if len(options.files) > 1:
             raise ValueError("a calibration as TOML names its data; give it alone")
         measurements, asked = read_case(options.files[0])
+        shown = shown_as(units_asked(options.files[0]))
     else:
         measurements = _measurements(options, asked, faults)
+        shown = shown_as([*units_of_files(map(Path, options.files)), *asked_in_units(options)])
     found = calibrate(measurements, **asked)
-    print(table(found))
+    print(of_calibration(found) if options.json else table(found, shown))
     if options.out:
         write_whole(options.out, to_dataset(found).to_netcdf(engine="netcdf4"))
         print(options.out)
     if options.report:
         from ..calibration.page import page, picture
 
-        content = page(found).encode() if options.report.endswith(".html") else picture(found)
+        content = page(found, shown).encode() if options.report.endswith(".html") else picture(found)
         write_whole(options.report, content)
         print(options.report)
 

@@ -13,6 +13,7 @@ def add_explore(commands):
     command.add_argument("--html", metavar="FILE.html", help="write one page with a smaller table inside, and stop")
     command.add_argument("--port", type=int, default=0, metavar="N", help="of 127.0.0.1 (default: any free one)")
     command.add_argument("--no-browser", action="store_true", help="print the address only")
+    command.add_argument("--quiet", action="store_true", help="no progress bar while the page is made")
     command.set_defaults(run=_run)
 
 
@@ -30,7 +31,7 @@ def _run(options):
         raise ValueError(str(error)) from error
     with open_atlas(options.atlas) as atlas:
         if options.html:
-            print(explore(atlas, options.html))
+            print(explore(atlas, options.html, progress=not options.quiet))
             return
         with explore(atlas, port=options.port) as explorer:
             print(f"{explorer.url} (Ctrl-C ends it)", flush=True)

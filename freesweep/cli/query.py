@@ -205,7 +205,8 @@ def _table(found):
             rows.append([*given, *(cell(record, name) for name in values), *(record[name] for name in statuses)])
         lines = aligned(rows)
     seen = sorted({record[name] for record in records for name in statuses} - {"ok"})
-    lines += [f"{status.meaning}: {status.sentence}" for status in STATUSES if status.meaning in seen]
+    told = (one for one in STATUSES if one.meaning in seen)
+    lines += [f"{one.meaning}: {one.sentence.replace('refine=True', '--refine')}" for one in told]
     if "too_coarse" in found.attrs:
         lines += [f"nodes too far apart along (answers refused): {found.attrs['too_coarse']}"]
     return "\n".join(lines)

@@ -2,6 +2,7 @@
 
 import argparse
 import difflib
+import sys
 
 from .examples import EXAMPLES
 
@@ -32,15 +33,19 @@ class Parser(argparse.ArgumentParser):
             )
 
     def parse_known_args(self, args=None, namespace=None):
-        """Options that are unknown here are told here, with the option that was meant."""
-        found, rest = super().parse_known_args(args, namespace)
-        unknown = [word.partition("=")[0] for word in rest if word.startswith("--")]
+        """Options that are unknown here are told here, with the option that was meant, before others are missed."""
+        words = list(sys.argv[1:] if args is None else args)
+        end = words.index("--") if "--" in words else len(words)
+        if self._subparsers is not None:  # what follows a command is the command's
+            end = next((k for k, word in enumerate(words[:end]) if not word.startswith("-")), end)
+        known = [name for name in self._option_string_actions if name.startswith("--")]
+        given = [word.partition("=")[0] for word in words[:end] if word.startswith("--")]
+        unknown = [word for word in given if not any(name.startswith(word) for name in known)]
         if unknown:
-            known = [name for name in self._option_string_actions if name.startswith("--")]
             self.error(
                 "; ".join(f"there is no option {word:.60}; {_meant(word, known)}".rstrip("; ") for word in unknown)
             )
-        return found, rest
+        return super().parse_known_args(args, namespace)
 
 
 def _meant(word, known):

@@ -245,12 +245,22 @@ def _run_block(options):
         _show(blocked_torque(tube, pressure, at, given["force"][0], buckled=options.buckled), options)
 
 
+def asked_in_units(options):
+    """What was given in units, and the unit in which that is kept."""
+    given = vars(options)
+    for names, kept in (("length radius wall", "m"), ("alpha beta", "degree"), ("force", "N"), ("torque", "N m")):
+        yield from ((given[name], kept) for name in names.split() if given.get(name) is not None)
+    yield from ((text, "Pa") for text in given.get("pressure") or ())
+    if given.get("at") is not None:
+        yield given["at"], "m" if options.hold == "length" else "degree"
+
+
 def _show(dataset, options):
     from ..atlas.files import write_whole
-    from ..report import table
+    from ..report import shown_in, table
     from .as_json import of_states
 
-    print(of_states(dataset) if options.json else table(dataset))
+    print(of_states(dataset) if options.json else table(dataset, shown_in(asked_in_units(options))))
     if note := dataset.attrs.get("thin_wall_note"):
         print(f"freesweep: note: {note}", file=sys.stderr)
     if options.out:

@@ -24,7 +24,7 @@ class MooneyRivlin:
     :class:`ActuatorError`.
     """
 
-    constants: ClassVar[tuple] = ("c10", "c01")
+    constants: ClassVar[tuple[str, ...]] = ("c10", "c01")
     c20: ClassVar[float] = 0.0
     c30: ClassVar[float] = 0.0
 
@@ -52,7 +52,7 @@ class MooneyRivlin:
 class NeoHookean(MooneyRivlin):
     """Neo-Hookean rubber: w = c10 (I1 - 3), ``c10`` > 0 in [Pa]; the rest as in :class:`MooneyRivlin`."""
 
-    constants: ClassVar[tuple] = ("c10",)
+    constants: ClassVar[tuple[str, ...]] = ("c10",)
 
     c01: float = field(default=0.0, init=False, repr=False)
 
@@ -71,7 +71,7 @@ class Yeoh:
     :class:`ActuatorError`.
     """
 
-    constants: ClassVar[tuple] = ("c1", "c2", "c3")
+    constants: ClassVar[tuple[str, ...]] = ("c1", "c2", "c3")
     c01: ClassVar[float] = 0.0
 
     c1: float

@@ -7,6 +7,7 @@ Silicones differ between batches, curing and test speeds: published constants of
 
 import difflib
 from collections.abc import Mapping
+from typing import Literal, TypeAlias, overload
 
 from .elastomer import MooneyRivlin, Yeoh
 from .faults import ActuatorError
@@ -51,7 +52,7 @@ class Library(Mapping[str, MooneyRivlin | Yeoh]):
         return of_library(self)
 
 
-materials = Library(
+materials: Library = Library(
     {
         "natural-latex": MooneyRivlin(0.11e6, 0.06e6, largest_stretch=1.64, source=_TABLE_1.format(angle=30)),
         "natural-latex-35": MooneyRivlin(0.18e6, 0.12e6, largest_stretch=1.43, source=_TABLE_1.format(angle=35)),
@@ -73,6 +74,16 @@ materials = Library(
 )
 
 
+Latex: TypeAlias = Literal["natural-latex", "natural-latex-35", "natural-latex-40"]  # editors complete them
+Silicone: TypeAlias = Literal["ecoflex-00-30", "dragon-skin-30", "elastosil-m4601"]
+
+
+@overload
+def material(name: Latex) -> MooneyRivlin: ...
+@overload
+def material(name: Silicone) -> Yeoh: ...
+@overload
+def material(name: str) -> MooneyRivlin | Yeoh: ...
 def material(name: str) -> MooneyRivlin | Yeoh:
     """A rubber of the library (``freesweep.materials`` lists them); its ``source`` says where the constants come from.
 

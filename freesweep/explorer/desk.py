@@ -7,6 +7,7 @@ import numpy as np
 
 from ..atlas.schema import HELD, LOADS, PARAMETERS
 from ..query.family import FAMILY_OF
+from ..query.table import MUCH, TOGETHER
 from ..status import STATUSES
 from .measures import COARSE, COARSE_STATUS, evaluate, measures_of
 
@@ -148,15 +149,39 @@ class Desk:
             raise AskError(f"unknown measures {wrong!r:.100}; known: {', '.join(self.measures)}")
         return [self.measures[name] for name in dict.fromkeys(names)]
 
+    def begin(self):
+        """Make the tables of what the page shows first, and those that a first pin needs, all of them, unless the atlas is
+        large; what fails is told by the question that needs it.
+        """
+        with contextlib.suppress(Exception):
+            self._ready(list(self.measures)[:2])
+            if np.prod([float(len(self.reader.frame.values[name])) for name in self.axes]) <= MUCH:
+                self.make()
+
     def _ready(self, names):
         """The same, their whole tables made: once, whoever asks first."""
         wanted = self._wanted(names)
         for source in dict.fromkeys(one.source for one in wanted if one.source in FAMILY_OF):
             if source not in self._made:
                 with self._making:
-                    self.reader.table(FAMILY_OF[source]).make(source)
+                    self.reader.table(FAMILY_OF[source]).make([source])
                     self._made.add(source)
         return wanted
+
+    def make(self, told=lambda: None):
+        """Make the whole tables of all measures; ``told`` is called for each source of one."""
+        families = {}
+        for source in dict.fromkeys(one.source for one in self.measures.values()):
+            families.setdefault(FAMILY_OF.get(source), []).append(source)
+        for key, sources in families.items():
+            for first in range(0, len(sources), TOGETHER):
+                some = sources[first : first + TOGETHER]
+                if key is not None:
+                    with self._making:
+                        self.reader.table(key).make(some)
+                        self._made.update(some)
+                for _ in some:
+                    told()
 
     def _alone(self, wanted):
         """A lock for what may read from the file; none where whole tables are there already."""
@@ -174,7 +199,8 @@ def even(count, dimensions):
 
 def sentences() -> list:
     """Statuses in words: meaning and sentence, by value."""
-    rows = [{"meaning": one.meaning.replace("_", " "), "sentence": one.sentence} for one in STATUSES]
+    here = (one.sentence.replace("refine=True", "'solve exactly'") for one in STATUSES)
+    rows = [{"meaning": one.meaning.replace("_", " "), "sentence": words} for one, words in zip(STATUSES, here)]
     assert len(rows) == COARSE_STATUS
     return [*rows, {"meaning": "coarse", "sentence": COARSE_SENTENCE}]
 

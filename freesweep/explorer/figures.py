@@ -23,7 +23,13 @@ HATCHES = {  # by status of what failed, of COARSE_STATUS, and by slack families
 
 def figures() -> dict:
     """Name -> figure: ``map``, ``section``, ``space``, ``curve``, ``front``."""
-    return {"map": _map(), "section": _section(), "space": _space(), "curve": _curve(), "front": _front()}
+    made = {"map": _map(), "section": _section(), "space": _space(), "curve": _curve(), "front": _front()}
+    for one in made.values():
+        for (
+            renderer
+        ) in one.renderers:  # nothing looks otherwise when selected or muted: no copies that are dressed anew
+            renderer.selection_glyph = renderer.nonselection_glyph = renderer.muted_glyph = None
+    return made
 
 
 def _figure(name, tools="", events=(), **how):

@@ -123,7 +123,7 @@ def evaluate(reader, values, size, wanted) -> Evaluated:
     names = list(dict.fromkeys(one.source for one in wanted))
     if "slack_fiber" in reader.frame.dims and not any(FAMILY_OF.get(name) == "state" for name in names):
         names += [name for name in reader.names if FAMILY_OF.get(name) == "state"][:1]
-    found = reader.answer(values, size, names, tolerance=ANY)
+    found = reader.answer(values, size, names, tolerance=ANY, sure=False)
     columns = _columns(reader, values, size)
     made = Evaluated({}, {}, {}, *(found.get(name, np.zeros(size, np.int8)) for name in ("slack_fiber", "stable")))
     for one in wanted:

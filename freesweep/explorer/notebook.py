@@ -1,18 +1,21 @@
 """The explorer of an atlas from Python: in a notebook, or in the browser beside a script."""
 
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..atlas.store import Atlas
 from ..description.faults import ActuatorError
 from ..description.given import described
+from ..description.options import read_switch
+from ..description.quantities import Path as PathName
 
 if TYPE_CHECKING:
     from .server import Explorer
 
 
-def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, port: int = 0) -> "Explorer | Path":
+def explore(
+    atlas: Atlas | PathName, html: PathName | None = None, port: int = 0, progress: bool = True
+) -> "Explorer | Path":
     """Explore an atlas in the browser; a notebook shows it below the cell.
 
     Parameters
@@ -20,12 +23,17 @@ def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, p
     atlas : an :class:`freesweep.Atlas`, or the path of one
     html : a path: write one file that needs no server, with a smaller table inside, instead of serving
     port : of 127.0.0.1; 0: any free one
+    progress : show a bar while a file is made
 
     Returns the running explorer, whose ``url`` a browser opens and whose ``stop()`` ends it; or the path that was written.
     Needs Bokeh: ``pip install 'freesweep[explore]'``. Raises :class:`freesweep.ActuatorError` for what is no atlas, and
     ImportError.
     """
     check_bokeh()
+    faults = []
+    progress = read_switch("progress", progress, faults)
+    if faults:
+        raise ActuatorError(faults)
     if not isinstance(atlas, Atlas):
         from ..atlas.store import open_atlas
 
@@ -38,12 +46,16 @@ def explore(atlas: Atlas | str | PathLike, html: str | PathLike | None = None, p
         return Explorer(atlas, port).start()
 
     from ..atlas.files import write_whole
+    from ..sweep.jobs import bar
     from .desk import Desk
     from .page import page_of
-    from .table import small_table
+    from .table import small_table, steps
 
     desk = Desk(atlas)
-    write_whole(html, page_of(desk, small_table(desk)).encode())
+    with bar(steps(desk) + 1, 0, " steps", progress) as shown:
+        content = page_of(desk, small_table(desk, shown.update)).encode()
+        shown.update()
+    write_whole(html, content)
     return Path(html)
 
 

@@ -3,9 +3,11 @@
 import contextlib
 import json
 import secrets
+import sys
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
+from .compiling import Compiling
 from .desk import Desk
 from .exact import shape, solved
 from .page import page_of
@@ -25,7 +27,7 @@ class Explorer(ThreadingHTTPServer):
         self.desk, self.token = Desk(atlas), secrets.token_urlsafe(18)
         self.page = page_of(self.desk, token=self.token).encode()
         super().__init__((HOST, port), _Handler)
-        self._thread = None
+        self._thread, self._compiling = None, Compiling()
 
     @property
     def url(self) -> str:
@@ -36,12 +38,15 @@ class Explorer(ThreadingHTTPServer):
         """The answer to one question of the page. Raises ValueError."""
         slow = {"shape": shape, "exact": solved, "polish": polished}
         what = question.get("what") if isinstance(question, dict) else None
+        if what == "busy":
+            return {"compiling": self._compiling.seconds}
         return slow[what](self.desk, question) if what in slow else self.desk.answer(question)
 
     def start(self):
         """Serve from a thread of its own; returns itself."""
         self._thread = threading.Thread(target=self.serve_forever, kwargs={"poll_interval": 0.1}, daemon=True)
         self._thread.start()
+        threading.Thread(target=self.desk.begin, daemon=True).start()  # while the browser opens
         return self
 
     def wait(self):
@@ -54,7 +59,13 @@ class Explorer(ThreadingHTTPServer):
         if self._thread is not None:
             self.shutdown()
             self._thread = None
+            self._compiling.close()
         self.server_close()
+
+    def handle_error(self, request, client_address):
+        """Nothing is said of a page that was closed before its answer came."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
     def __exit__(self, *_):
         self.stop()

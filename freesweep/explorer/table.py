@@ -29,10 +29,9 @@ SCALES = {  # what a measure grows with, as powers of sizes: what is left is smo
 }  # fmt: skip
 
 
-def small_table(desk) -> dict:
+def small_table(desk, told=lambda: None) -> dict:
     """What the page holds: axes with their kinds, and each measure over its own axes; ``deviation``: how far it is from the
-    atlas, relative, in QUANTILE of
-    the places of each bin.
+    atlas, relative, in QUANTILE of the places of each bin. ``told`` is called :func:`steps` times meanwhile.
     """
     reader = desk.reader
     nodes = thinned({name: reader.frame.values[name] for name in desk.axes})
@@ -40,6 +39,7 @@ def small_table(desk) -> dict:
         raise ValueError("--html: a list of named designs is shown by the server; an atlas of axes makes a page")
     kinds = {name: _kind(reader.frame.axis(name)) for name in nodes}
     tables, arrays = {}, {}
+    desk.make(told)
     for names, some in _by_axes(desk).items():
         axes = [name for name in nodes if name in names]
         grid = np.meshgrid(*(nodes[name] for name in axes), indexing="ij")
@@ -54,10 +54,16 @@ def small_table(desk) -> dict:
                 "axes": axes, "scale": scale, "values": coded(arrays[one.name]),
                 "status": _packed(found.status[one.name]), "slack": _packed(found.slack.astype(np.uint8)),
             }  # fmt: skip
+            told()
     axes = {name: {"nodes": array.tolist(), "kind": kinds[name]} for name, array in nodes.items()}
-    for name, error in _deviations(desk, axes, tables, arrays).items():
+    for name, error in _deviations(desk, axes, tables, arrays, told).items():
         tables[name]["deviation"] = error
     return {"axes": axes, "tables": tables, "bins": BINS}
+
+
+def steps(desk) -> int:
+    """How often :func:`small_table` tells that it goes on."""
+    return len({one.source for one in desk.measures.values()}) + 2 * len(desk.measures)
 
 
 def thinned(axes: dict) -> dict:
@@ -161,19 +167,32 @@ def read(axes, names, table, values):
     given = [
         weights(place(np.array(axes[n]["nodes"]), axes[n]["kind"]), place(values[n], axes[n]["kind"])) for n in names
     ]
-    counts = [len(cubic) for _, cubic, _ in given]
-    found = np.empty((*counts, size))
-    for corner in np.ndindex(*counts):
-        found[corner] = table[tuple(first + k for (first, _, _), k in zip(given, corner))]
+    table = np.ascontiguousarray(table)
+    strides = np.array(table.strides) // table.itemsize
+    around = np.zeros(1, np.int64)  # of the nodes that count, from the first of them
+    for (_, cubic, _), stride in zip(given, strides):
+        around = np.add.outer(around, stride * np.arange(len(cubic))).ravel()
+    first = sum(stride * first for (first, _, _), stride in zip(given, strides))
+    found = table.ravel()[around[:, None] + first]
     for _, cubic, linear in reversed(given):
-        found = np.moveaxis(found, -2, 0)
-        smooth = np.sum([np.where(w != 0.0, w * v, 0.0) for w, v in zip(cubic, found)], axis=0)
-        plain = np.sum([np.where(w != 0.0, w * v, 0.0) for w, v in zip(linear, found)], axis=0)
-        found = np.where(np.isfinite(smooth), smooth, plain)
-    return found
+        found = found.reshape(-1, len(cubic), size)
+        smooth = _weighed(cubic, found)
+        lost = ~np.isfinite(smooth)
+        found = np.where(lost, _weighed(linear, found), smooth) if lost.any() else smooth
+    return found.reshape(size)
 
 
-def _deviations(desk, axes, tables, arrays):
+def _weighed(weights, found):
+    """Sums over the nodes of an axis; those of no weight may have no number."""
+    with np.errstate(invalid="ignore"):
+        parts = (np.where(w != 0.0, w * found[:, k], 0.0) for k, w in enumerate(weights))
+        total = next(parts)
+        for part in parts:
+            total += part
+    return total
+
+
+def _deviations(desk, axes, tables, arrays, told):
     """Measure -> deviation from the atlas at random places, relative to the value (small ones to the floor), in each of the
     BINS of the first two axes, row by row.
     """
@@ -187,6 +206,7 @@ def _deviations(desk, axes, tables, arrays):
     found = evaluate(desk.reader, values, SAMPLE, list(desk.measures.values()))
     result = {}
     for name, table in tables.items():
+        told()
         numbers = decoded(table["values"], arrays[name].shape)
         made = [
             read(axes, table["axes"], numbers, {key: array[k : k + CHUNK] for key, array in values.items()})

@@ -15,7 +15,7 @@ from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import read_tolerances
 from .least import beaten, front, least, multipliers
-from .look import look, spread
+from .look import look, spread, with_dear
 from .misfit import make
 from .polish import polish
 from .wishes import Goal, Limit
@@ -97,12 +97,20 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
         raise ActuatorError(
             [f"goals, limits: no design that is allowed has all the states in which they count: {titles}"]
         )
+    misfit = with_dear(misfit, u, choice)
     u, _, residuals, slopes = polish(misfit, u, choice)
     if objectives:
         return _with_least(misfit, objectives, u, choice, residuals, count, allowed)
     cost = np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf)
     best = spread(space, u, choice, _order(cost), count, DIFFERENT)
-    return gather(misfit, u[best], choice[best], slopes[best], allowed)
+    made = gather(misfit, u[best], choice[best], slopes[best], allowed)
+    first = np.argsort(
+        ~made.data["met"].values, kind="stable"
+    )  # a held tube's own way may lead elsewhere than its loads
+    if np.any(np.diff(first) < 0):
+        best = best[first]
+        made = gather(misfit, u[best], choice[best], slopes[best], allowed)
+    return made
 
 
 def _order(cost):

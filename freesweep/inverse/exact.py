@@ -5,8 +5,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from ..derivative.cylinder import at_cylinder
 from ..derivative.dual import Dual
-from ..derivative.physics import OWN
+from ..derivative.physics import OWN, Physics
 from ..derivative.request import SHAPE
 from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
@@ -25,7 +26,7 @@ def exact_slopes(space, wishes, u, choice, values):
     """
     count, free = u.shape
     slopes = np.full((count, len(wishes), free), np.nan)
-    if not space.is_alike or count == 0 or free == 0:
+    if not space.is_source or count == 0 or free == 0:
         return slopes
     parts = np.zeros((free, OWN + free + 1, 1))  # along each that is free, and a load that holds something
     parts[np.arange(free), OWN + np.arange(free), 0] = space.high - space.low
@@ -69,6 +70,7 @@ def _state(space, state, outputs, columns, values, some, free):
         design[state.kind] = Dual(values[:, 0], load)
     rows, _ = differentiated(design, space.template.energy, _sizes(design, state, len(some), free), SHAPE, ACCURACY)
     if held is not None:
+        rows = _straight(space.template, design, rows, free + 1)
         target = (
             Dual(np.array([given[held]])) if held in given else design["length"] if held == "deformed_length" else None
         )
@@ -85,6 +87,23 @@ def _state(space, state, outputs, columns, values, some, free):
         np.abs(values.T), [_least(name, design) for name in outputs]
     )
     return np.moveaxis(np.where(same[:, None], found[:, 1:], np.nan), -1, 0)
+
+
+class Designs(Physics):
+    """Many designs like a ``tube``: name -> dual numbers (n,), with derivatives along some directions."""
+
+    def __init__(self, tube, design, directions):
+        self.tube, self.course, self.parameters, self.is_locked = tube, None, tuple(range(directions)), False
+        self.design, self.length = design, design["length"] / design["fiber_radius"]
+
+
+def _straight(tube, design, rows, directions):
+    """The ``rows`` of outputs and derivatives (outputs, 1 + directions, n), of those that their loads leave as they are in
+    closed form: tubes whose own length is held, or no rotation.
+    """
+    with np.errstate(all="ignore"):
+        made, there = at_cylinder(Designs(tube, design, directions), rows.shape[-1])
+    return np.where(there, rows_of(made, SHAPE, directions), rows)
 
 
 def _sizes(design, state, count, free):

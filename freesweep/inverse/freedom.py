@@ -102,9 +102,14 @@ class Space(NamedTuple):
 
     @property
     def is_alike(self):
-        """Whether all designs are the source's tubes, the same all along: vectors solve many of them."""
-        tube, free = self.template, {*self.names, *self.ties, *self.choices[0]}
-        return not (self.knots or free & {*SHAPE} or tube.varies or tube.is_thick or tube.threads)
+        """Whether all designs are the same all along: vectors solve many of them."""
+        free = {*self.names, *self.ties, *self.choices[0]}
+        return not (self.knots or free & {*SHAPE} or self.template.varies)
+
+    @property
+    def is_source(self):
+        """Whether they are the source's tubes, too: vectors tell their derivatives."""
+        return self.is_alike and not (self.template.is_thick or self.template.threads)
 
     def accuracy(self, asked):
         """The accuracy that is ``asked`` for, or what profiles along a tube allow."""
@@ -163,7 +168,9 @@ def read(template, free, faults):
     if len(faults) > before:
         return None
     choices = [{k: v for part in parts for k, v in part.items()} for parts in itertools.product(*lists)]
-    held = {name: value for name, value in template.design().items() if name not in absent}
+    lines = template.design()  # the first line is that of the one family, if there are not two
+    held = lines | {name: lines["alpha"] for name in given_by(template)[:1]}
+    held = {name: value for name, value in held.items() if name not in absent}
     held |= {name: getattr(template, name) for name in SHAPE}
     return Space(template, tuple(names), np.array(low), np.array(high), ties, choices, knots, held)
 

@@ -4,8 +4,10 @@ import numpy as np
 
 from .from_atlas import ask, told
 from .misfit import LOOKING, Misfit
+from .wishes import HELD
 
 ALIKE, ONE_BY_ONE = 4096, 128  # designs of a first look: in vectors, or each by itself; the choices share them
+DEAR, DEAR_STARTS = 16, 3  # the same, and starts, where vectors tell no state of any
 LEAST = 32  # of each choice
 APART = 0.12  # of the unit box's diagonal: starts nearer than that lie in one basin
 BOUNDED = 1e4  # tolerances beyond which a wish is simply missed: rough looks compare designs that are close
@@ -23,6 +25,8 @@ def look(misfit: Misfit, count, seed, atlas=None):
         return np.zeros((choices, 0)), np.arange(choices)
     known = [] if atlas is None else told(atlas, misfit.wishes)
     most = ALIKE if misfit.is_quick or any(known) else ONE_BY_ONE
+    if misfit.is_quick and not space.is_source:  # what holds one is sought by many states
+        most //= 1 + sum(wish.kind in HELD for wish in misfit.wishes)
     shown = np.random.default_rng(seed).permutation(choices)[: most // LEAST]
     total = int(np.ceil(np.log2(max(most, LEAST * len(shown)))))
     draws = qmc.Sobol(free, seed=np.random.default_rng(seed)).random_base2(total)
@@ -33,6 +37,9 @@ def look(misfit: Misfit, count, seed, atlas=None):
     else:
         _, residuals = misfit.at(draws, choice, LOOKING, False)
         if not np.any(np.all(np.isfinite(residuals), axis=1)):
+            if not space.is_source:  # each by itself, for seconds
+                few, count = max(DEAR, len(shown)), min(count, DEAR_STARTS)
+                draws, choice = draws[:few], choice[:few]
             _, residuals = misfit.at(draws, choice, LOOKING)
     goals = np.abs(residuals)
     middles = np.array([np.median(some[np.isfinite(some)]) if np.any(np.isfinite(some)) else 0.0 for some in goals.T])
@@ -42,6 +49,14 @@ def look(misfit: Misfit, count, seed, atlas=None):
     order = known[np.argsort(cost[known], kind="stable")]
     picked = spread(space, draws, choice, order, count, APART)
     return draws[picked], choice[picked]
+
+
+def with_dear(misfit: Misfit, u, choice) -> Misfit:
+    """The misfit that says whether vectors tell no state of any of these starts."""
+    if misfit.space.is_source or not misfit.is_quick:
+        return misfit
+    _, residuals = misfit.at(u, choice, thorough=False)
+    return misfit._replace(is_dear=not np.any(np.all(np.isfinite(residuals), axis=1)))
 
 
 def glanced(misfit: Misfit) -> Misfit:

@@ -23,13 +23,15 @@ class Misfit(NamedTuple):
     wishes: list
     goals: int
     tolerances: np.ndarray
+    is_dear: bool = False  # vectors tell no state of any design that is near: each is solved by itself
 
     @property
     def is_quick(self) -> bool:
         """Whether vectors tell all that is wished for."""
-        from .vectors import TOLD
+        from .vectors import Kind
 
-        return self.space.is_alike and all(wish.kind == "design" or wish.output in TOLD for wish in self.wishes)
+        told = Kind.of(self.space.template).told
+        return self.space.is_alike and all(wish.kind == "design" or wish.output in told for wish in self.wishes)
 
     def residuals(self, values):
         """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""
@@ -44,9 +46,9 @@ class Misfit(NamedTuple):
             missed = np.where(np.isfinite(values), above + below, np.where(values > 0, 0.0, np.nan))
         return missed / self.tolerances
 
-    def at(self, u, choice, accuracy=POLISHING, thorough=True):
-        """``(what is predicted, residuals)`` at points u (n, p)."""
-        found = predict(self.space, self.wishes, u, choice, accuracy, thorough)
+    def at(self, u, choice, accuracy=POLISHING, thorough=True, near=None):
+        """``(what is predicted, residuals)`` at points u (n, p); ``near``: values (n, wishes) of points beside them."""
+        found = predict(self.space, self.wishes, u, choice, accuracy, thorough or self.is_dear, near=near)
         return found, self.residuals(found.values)
 
     def slopes(self, u, choice, found):
@@ -72,7 +74,13 @@ class Misfit(NamedTuple):
         step = STEP * np.eye(free)
         ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
         values = predict(
-            self.space, wishes, ends.reshape(-1, free), np.repeat(choice, 2 * free), POLISHING, thorough=False
+            self.space,
+            wishes,
+            ends.reshape(-1, free),
+            np.repeat(choice, 2 * free),
+            POLISHING,
+            thorough=False,
+            near=np.repeat(middle, 2 * free, axis=0),
         ).values.reshape(count, 2 * free, -1)
         middle, there = middle[:, None], np.isfinite(values)
         values = np.where(there, values, middle)

@@ -2,8 +2,11 @@
 
 import numpy as np
 
+from ..closed_form import uniform_state
+from ..description.strain import largest_principal
 from ..status import VALUED
 
+PLACES = 33  # stretches looked at between the end and the middle
 FOLLOWING = ("stroke", "length_change", "outer_radius")  # from what a state has
 
 
@@ -22,6 +25,11 @@ def output(name, kind, found, design):
         with np.errstate(invalid="ignore"):
             wider = derived(name, {"mid_radius": found["mid_radius"] + bound}, design)
         return value, np.maximum(np.abs(wider - value), bound)
+    if name == "largest_stretch" and "largest_stretch" not in found:
+        bound = found["mid_radius_error"]
+        with np.errstate(invalid="ignore"):
+            wider = _largest_stretch(found["mid_radius"] + bound, design)
+        return value, np.abs(wider - value) + bound / design["fiber_radius"]
     return value, found[f"{name}_error"]
 
 
@@ -33,7 +41,24 @@ def derived(name, found, design):
         return found["deformed_length"] - design["length"]
     if name == "outer_radius" and "outer_radius" not in found:
         return _outer_radius(found["mid_radius"], design)
+    if name == "largest_stretch" and "largest_stretch" not in found:
+        return _largest_stretch(found["mid_radius"], design)
     return found[name]
+
+
+def _largest_stretch(middle, design):
+    """The largest principal stretch of such a tube's wall, on its inner and outer surface: fibers that are bonded leave no
+    choice of stretch and twist where the circumferential stretch is one of those between the end's and the middle's.
+    """
+    rf, places = design["fiber_radius"], np.linspace(0.0, 1.0, PLACES)[:, None]
+    y = 1.0 + places * (middle / rf - 1.0)
+    axial, twist, *_ = uniform_state(design["alpha"], design["beta"], y, design["fiber_extension"])
+    found = 0.0
+    for rho in (design["radius"], design["radius"] + design["wall"]):
+        with np.errstate(invalid="ignore"):
+            r = np.sqrt(y**2 + ((rho / rf) ** 2 - 1.0) / axial)
+        found = np.maximum(found, largest_principal(axial, r * rf / rho, r * twist))
+    return np.max(found, axis=0)
 
 
 def _outer_radius(middle, design):

@@ -4,7 +4,7 @@ import numpy as np
 
 from .misfit import Misfit
 
-ROUNDS = 120
+ROUNDS, LATER = 120, 12  # in all; after a design met everything, where states are dear
 DAMPING, LESS, MORE, MOST = 1e-3, 0.2, 5.0, 1e9  # of the diagonal; after a step that helps, and one that does not
 DONE = 1e-3  # tolerances: closer is close enough
 STILL = 1e-9  # of the cost: no more is won
@@ -16,20 +16,25 @@ def polish(misfit: Misfit, u, choice):
     vectors cannot tell are dear: they end a step as soon as one design meets everything.
     """
     u, count, free = u.copy(), len(u), u.shape[1]
-    found, residuals = misfit.at(u, choice)
+    dear_ones = not misfit.space.is_source
+    found, residuals = misfit.at(u, choice, thorough=not dear_ones or not misfit.is_quick)
     slopes = misfit.slopes(u, choice, found)
     cost, damping = _cost(residuals), np.full(count, DAMPING)
     active = np.isfinite(cost) & (free > 0)
+    spent = 0  # rounds since a design met everything
     for _ in range(ROUNDS):
         active &= (np.sqrt(cost) > DONE) & (damping < MOST)
+        if dear_ones and np.any(cost <= DONE**2):
+            active &= spent < LATER
+            spent += 1
         rows = np.flatnonzero(active)
         if len(rows) == 0:
             break
         ahead = np.array([_ahead(u[i], residuals[i], slopes[i], damping[i]) for i in rows])
-        trial, missed = misfit.at(ahead, choice[rows], thorough=False)
+        trial, missed = misfit.at(ahead, choice[rows], thorough=False, near=found.values[rows])
         new = _cost(missed)
         dear = np.flatnonzero(~np.isfinite(new))
-        if misfit.space.is_alike and len(dear) and np.all(cost > DONE**2):
+        if misfit.space.is_source and len(dear) and np.all(cost > DONE**2):
             again, missed[dear] = misfit.at(ahead[dear], choice[rows[dear]])
             for own, other in zip(trial, again):
                 own[dear] = other

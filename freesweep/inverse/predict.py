@@ -1,6 +1,7 @@
 """What designs do: the wished-for output of each, many at a time.
 
-Tubes of the source that are the same all along are solved in vectors (``vectors``); others one by one (``singles``).
+Tubes that are the same all along are solved in vectors (``vectors``); others, and what those do not tell, one by one
+(``singles``).
 """
 
 import math
@@ -11,6 +12,7 @@ import numpy as np
 
 from ..status import INVALID, OK
 from .freedom import Space
+from .wishes import HELD
 
 
 class Predicted(NamedTuple):
@@ -49,12 +51,13 @@ def state_of(wish) -> State:
     return State(wish.kind, wish.conditions, least)
 
 
-def predict(space: Space, wishes, u, choice, accuracy, thorough=True) -> Predicted:
+def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False, near=None) -> Predicted:
     """What the designs at points u (n, p) of the ``space``, with ``choice`` (n,), do; if not ``thorough``, of those that
-    vectors can tell, where they tell any.
+    vectors can tell, where they tell any; ``sure``, as of :func:`vectors.solve_vectors`;
+    ``near``: values (n, wishes) of designs beside these.
     """
     from .singles import solve_singles
-    from .vectors import TOLD, solve_vectors
+    from .vectors import Kind, solve_vectors
 
     shape, accuracy = (len(u), len(wishes)), space.accuracy(accuracy)
     found = Predicted(
@@ -69,8 +72,12 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True) -> Predict
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # designs on the way are nobody's
-        quick = {state: names for state, names in asked.items() if space.is_alike and set(names) <= set(TOLD)}
-        answers = solve_vectors(space.template.energy, quick, columns, accuracy, thorough)
+        told = set(Kind.of(space.template).told) if space.is_alike else set()
+        quick = {state: names for state, names in asked.items() if set(names) <= told}
+        loads = (
+            {} if near is None else {s: near[:, k] for k, (w, s) in enumerate(zip(wishes, states)) if w.output in HELD}
+        )
+        answers = solve_vectors(space.template, quick, columns, accuracy, thorough, sure, loads)
         if len(quick) < len(asked):
             tubes = [space.actuator_or_none(one, k) for one, k in zip(u, choice)]
             rest = {state: names for state, names in asked.items() if state not in quick}

@@ -1,28 +1,66 @@
-"""States of the source's tubes that are the same all along: all designs and all states of a kind in one call."""
+"""States of tubes that are the same all along: all designs and all states of a kind in one call."""
+
+from typing import NamedTuple
 
 import numpy as np
 
 from ..derivative.request import SHAPE
+from ..description.families import given_by
+from ..description.tube_model import TubeModel
 from ..interpret import foretell
 from ..query.exact import solve
 from ..query.reference import COLUMNS, LENGTH_HELD, LOADED, LOCKED, ROTATION_HELD
+from ..scaling import PULLS, SLACK
 from ..status import INVALID, OK
+from .by_loads import hold_by_loads
 from .outputs import output
 from .stiff import stiffness
 from .wishes import HELD, STIFF
 
 KINDS = {"free": LOADED, "locked": LOCKED, "force": LENGTH_HELD, "torque": ROTATION_HELD, "limit": LOADED}
-TOLD = (*SHAPE, "stroke", "length_change", "outer_radius", "limit_pressure", *HELD, *STIFF)  # outputs
+ALONG = (*SLACK, *PULLS)  # what only sums along the depth tell (:mod:`freesweep.solver.lanes.quadrature`)
+WORST = ("outer_radius", "largest_stretch")
+TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tubes
+OF_SOURCE = (*WORST, "limit_pressure", *STIFF)
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
+SUMMED = 1e-6  # accuracy that such sums have nearly always
 
 
-def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
-    """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound).
-    Not ``thorough``: what vectors cannot do has no value.
+class Kind(NamedTuple):
+    """What tubes designs are: their ``energy``, ``model`` and ``families``."""
+
+    energy: str
+    model: TubeModel
+    families: tuple
+
+    @classmethod
+    def of(cls, tube):
+        """That of a tube."""
+        parts = "thick" if tube.is_thick else "membrane", "loose" if tube.is_loose else "bonded"
+        return cls(tube.energy, TubeModel("inner", *parts), given_by(tube))
+
+    @property
+    def is_source(self):
+        """Whether they are the source's: membranes with two bonded families."""
+        return not self.model.is_physical and len(self.families) == 2
+
+    @property
+    def told(self) -> tuple:
+        """Outputs that vectors tell."""
+        return TOLD + (OF_SOURCE if self.is_source else WORST if self.model.is_thick else ())
+
+
+def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, near=None) -> dict:
+    """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound);
+    ``tube`` is one of the kind that they are. Not ``thorough``: what vectors cannot do has no value. ``sure``: held states
+    of physical tubes are those that the ways from rest lead to, each by itself; ``near``: state -> loads (n,) that hold
+    tubes beside these.
     """
-    from ..solver.lanes.free import solve_lanes
+    from ..solver.lanes.free import solve_lanes, solve_physical
 
-    foretell(solve_lanes)
+    own = Kind.of(tube)
+    if asked:
+        foretell(solve_lanes if own.is_source else solve_physical)
     answers, count = {}, len(columns["radius"])
     none = np.zeros(count)  # of what makes bodies
     for kind in dict.fromkeys(state.kind for state in asked):
@@ -30,15 +68,54 @@ def solve_vectors(energy, asked, columns, accuracy, thorough=True) -> dict:
         parts = [_points(state, columns, count) for state in states]
         points = np.concatenate([np.column_stack([part.get(name, none) for name in COLUMNS]) for part in parts])
         most = max(part["pressure"].max(initial=0.0) for part in parts) if kind == "limit" else None
-        found = solve(KINDS[kind], points, energy, accuracy, most, thorough=thorough)
+        along = any(name in ALONG for state in states for name in asked[state])
+        none_near, beside = np.full(count, np.nan), near or {}
+        loads = np.concatenate([beside.get(state, none_near) for state in states])
+        found = _solved(own, kind, points, accuracy, most, thorough, sure, along, loads)
         for k, (state, part) in enumerate(zip(states, parts)):
-            own = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
-            own |= stiffness(asked[state], kind, own, part, energy)
-            answers[state] = {name: output(name, kind, own, part) for name in asked[state]}
-            limit = np.where(own["status"] == INVALID, INVALID, OK)
-            answers[state]["slack"] = np.where(kind == "limit", 0, own["slack_fiber"]).astype(np.int8)
-            answers[state]["status"] = limit if kind == "limit" else own["status"]
+            numbers = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
+            if own.is_source:
+                numbers |= stiffness(asked[state], kind, numbers, part, own.energy)
+            answers[state] = {name: output(name, kind, numbers, part) for name in asked[state]}
+            limit = np.where(numbers["status"] == INVALID, INVALID, OK)
+            answers[state]["slack"] = np.where(kind == "limit", 0, numbers["slack_fiber"]).astype(np.int8)
+            answers[state]["status"] = limit if kind == "limit" else numbers["status"]
     return answers
+
+
+def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
+    """What the exact solver tells of all points."""
+    given = {"model": own.model, "families": own.families}
+    if own.is_source and not along:
+        return solve(KINDS[kind], points, own.energy, accuracy, most, thorough=thorough, **given)
+    accuracy = max(accuracy, SUMMED)
+    if kind in HELD and not own.is_source:
+
+        def free(points):
+            return solve(LOADED, points, own.energy, accuracy, thorough=False, **given)
+
+        two = len(own.families) == 2
+
+        def like(points):
+            return solve(KINDS[kind], points, own.energy, accuracy, thorough=False)[kind] if two else 0.0
+
+        def alone(points):
+            return solve(KINDS[kind], points, own.energy, accuracy, **given)
+
+        if sure:
+            return alone(points)
+        return hold_by_loads(kind, points, free, like, alone if thorough else None, accuracy, two, near)
+    if own.is_source:  # the few that vectors leave are not worth it that scalar kernels are compiled for them
+        found = solve(KINDS[kind], points, own.energy, accuracy, thorough=False, along=True, **given)
+    else:
+        found = solve(KINDS[kind], points, own.energy, accuracy, thorough=thorough, **given)
+    if not own.model.is_thick:  # a layer without a wall around it
+        found = {name: array for name, array in found.items() if not name.startswith(WORST)}
+    if kind == "locked":  # that of the pressure c10
+        for name in PULLS:
+            for key in (name, f"{name}_error"):
+                found[key] = found[key] / points[:, COLUMNS.index("c10")]
+    return found
 
 
 def _points(state, columns, count):

@@ -79,7 +79,7 @@ class _Asked:
     """
 
     output: str
-    value: "Quantities | os.PathLike | None" = None
+    value: "Quantities | os.PathLike[str] | None" = None
     at_least: Quantities | None = None
     at_most: Quantities | None = None
     between: tuple[Quantities, Quantities] | None = None

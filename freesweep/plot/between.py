@@ -41,7 +41,7 @@ def between(dataset, variable: str, select: dict, across):
     wanted = [variable]
     if variable in EXCHANGED:  # the other family's is its mirror image; the flags are those of a state's other numbers
         wanted += [EXCHANGED[variable], "mid_radius"]
-    found = reader.answer(values, size, wanted, tolerance=EXACT)
+    found = reader.answer(values, size, wanted, tolerance=EXACT, sure=False)
     if variable in FAMILY_OF:
         found[status_of(variable)] = found[FAMILIES[FAMILY_OF[variable]].answer_status]
     made = part.isel(dict.fromkeys(asked, 0)).assign_coords(

@@ -66,7 +66,9 @@ def _words(state, shape):
     return f"{float(state['pressure']) * 1e-3:.1f} kPa    {shape.position[-1]:.1f} mm long    turned by {turned}"
 
 
-def save_motion(tube: Actuator, states: "xr.Dataset", path: str | os.PathLike, resolution: float = RESOLUTION) -> Path:
+def save_motion(
+    tube: Actuator, states: "xr.Dataset", path: str | os.PathLike[str], resolution: float = RESOLUTION
+) -> Path:
     """Writes the motion as a GIF that runs forth and back, with ``resolution`` in dots per inch, and returns its path.
 
     The file is whole or not there. Raises ValueError as :func:`frames` does and for another suffix, OSError where the path

@@ -1,7 +1,9 @@
 """A variable of a dataset on the two quadrants of fiber angles: everything but alpha and beta chosen, symmetry used.
 
 Swapping alpha and beta changes nothing; negating both mirrors the tube, so rotation and torque change sign. A node of
-the two quadrants that the dataset does not store is taken from its mirror images, if one of them is stored.
+the two quadrants that the dataset does not store is taken from its mirror images, if one of them is stored; one that lies
+between the nodes of an image, whose steps are other ones where the axes change places, is taken linear between them, as
+contours are.
 """
 
 from typing import NamedTuple
@@ -41,9 +43,10 @@ def status_of(variable: str) -> str:
     return own if own in schema.STATUS_OF else "locked_status" if variable.startswith("locked_") else "status"
 
 
-def plane(dataset, variable: str, select: dict) -> Plane:
+def plane(dataset, variable: str, select: dict, kinds: bool = False) -> Plane:
     """``variable`` of an xarray Dataset at ``select`` (name: value in stored units), between nodes as a query answers there.
 
+    ``kinds``: its values are flags, between which there is nothing: the nearest node's are taken.
     What is not selected: the largest pressure, the force and torque nearest zero, the middle of anything else. Raises
     ValueError for names that are unknown, values that are no numbers, and a dataset without a plane of angles.
     """
@@ -65,16 +68,16 @@ def plane(dataset, variable: str, select: dict) -> Plane:
     status = _sheet(dataset[status_of(variable)], index)
     free = schema.VARIABLES[variable].without
     turns = any(point.get(name, 0.0) != 0.0 and name not in free for name in ("torque", "held_rotation"))
-    alpha, beta, values, status = _unfold(dataset, values, others, status, variable in ODD, turns)
+    alpha, beta, values, status = _unfold(dataset, values, others, status, variable in ODD, turns, kinds)
 
     point = point.only(lambda name: name not in free)
     return _plane(("alpha", "beta"), alpha, beta, values, status, variable, point)
 
 
-def section(dataset, variable: str, x: str, y: str, select: dict) -> Plane:
+def section(dataset, variable: str, x: str, y: str, select: dict, kinds: bool = False) -> Plane:
     """``variable`` over any two axes of a dataset, else as :func:`plane`; over both angles it is that plane."""
     if {x, y} == {"alpha", "beta"}:
-        return plane(dataset, variable, select)
+        return plane(dataset, variable, select, kinds)
     select = read_selection(select)
     known = [name for name in schema.VARIABLES if name in dataset]
     check_name(variable, known, "variable")
@@ -105,13 +108,14 @@ def _plane(names, x, y, values, status, variable, point):
 
 
 def _parts(names, x, y, variable, point):
-    """Masks (m, n): DF is degenerate, a blocked torque has a pole on AF, so no contour may cross them."""
+    """Masks (m, n): DF is degenerate where fibers may push, a blocked torque has a pole on AF: no contour may cross them."""
     grid = dict(zip(names, np.meshgrid(x, y)))
     whole = np.ones((y.size, x.size), bool)
     alpha, beta = (grid.get(name, point.get(name)) for name in ("alpha", "beta"))
     if alpha is None or beta is None:
         return [whole]
-    parts = [whole & (alpha > beta), whole & (alpha < beta)]
+    crossed = point.model.is_loose and variable not in schema.EXCHANGED  # what the families exchange there jumps
+    parts = [whole] if crossed else [whole & (alpha > beta), whole & (alpha < beta)]
     if variable in POLE_ON_AF:
         parts = [part & half for part in parts for half in (alpha > -beta, alpha < -beta)]
     return parts
@@ -122,7 +126,7 @@ def _sheet(array, index, names=("beta", "alpha")):
     return chosen.transpose(*names).values
 
 
-def _unfold(dataset, values, others, status, odd, turns):
+def _unfold(dataset, values, others, status, odd, turns, kinds):
     """Nodes, values and status on the two quadrants; ``others`` are the values where the families change places, ``turns``:
     a torque is applied, the mirror would reverse it.
     """
@@ -137,12 +141,12 @@ def _unfold(dataset, values, others, status, odd, turns):
         raise ValueError("the dataset has fewer than two nodes of alpha or beta in 0..90 and -90..90 degrees")
     full = np.full((beta.size, alpha.size), np.nan)
     reason = np.full(full.shape, OUTSIDE)
-    for x, y, v, s in images:
-        column, has_x = _match(alpha, x)
-        row, has_y = _match(beta, y)
-        take = has_y[:, None] & has_x & (reason == OUTSIDE)
-        full = np.where(take, v[np.ix_(row, column)], full)
-        reason = np.where(take, s[np.ix_(row, column)], reason)
+    for around in (_at, _around):
+        for x, y, v, s in images:
+            columns, rows = around(alpha, x), around(beta, y)
+            take = (rows.inside[:, None] & columns.inside) & (reason == OUTSIDE)
+            found, why = _mixed(v, s, rows, columns, kinds)
+            full, reason = np.where(take, found, full), np.where(take, why, reason)
     return alpha, beta, full, reason
 
 
@@ -157,6 +161,45 @@ def _nodes(axes, window):
     return nodes + 0.0  # no negative zero
 
 
-def _match(nodes, stored):
+class Around(NamedTuple):
+    """For each node the places of two ``stored`` ones around it, the share of the second, and whether there are such."""
+
+    below: np.ndarray
+    above: np.ndarray
+    share: np.ndarray
+    inside: np.ndarray
+
+
+def _at(nodes, stored):
+    """The stored nodes that are these."""
     distance = np.abs(nodes[:, None] - stored)
-    return distance.argmin(axis=1), distance.min(axis=1) < SAME_ANGLE
+    nearest = distance.argmin(axis=1)
+    return Around(nearest, nearest, np.zeros(len(nodes)), distance.min(axis=1) < SAME_ANGLE)
+
+
+def _around(nodes, stored):
+    """The stored nodes below and above these."""
+    order = np.argsort(stored)
+    after = np.clip(np.searchsorted(stored[order], nodes - SAME_ANGLE), 1, len(order) - 1)
+    below, above = order[after - 1], order[after]
+    share = (nodes - stored[below]) / (stored[above] - stored[below])
+    exact = np.abs(nodes - stored[above]) < SAME_ANGLE
+    return Around(below, above, np.where(exact, 1.0, share), exact | ((share >= 0.0) & (share < 1.0)))
+
+
+def _mixed(values, status, rows, columns, kinds):
+    """Values linear between the nodes around, or of ``kinds`` the nearest; the status of the worst node that counts."""
+    shape = (len(rows.share), len(columns.share))
+    found, why, most = np.zeros(shape), np.full(shape, OK), np.zeros(shape)
+    for row, v in ((rows.below, 1.0 - rows.share), (rows.above, rows.share)):
+        for column, w in ((columns.below, 1.0 - columns.share), (columns.above, columns.share)):
+            weight, place = v[:, None] * w, np.ix_(row, column)
+            counts = weight > 0.0
+            if kinds:
+                found = np.where(weight > most, values[place], found)
+                most = np.maximum(weight, most)
+            else:
+                found = found + np.where(counts, weight * values[place], 0.0)
+            worse = counts & (np.isin(why, VALUED) & ((status[place] > why) | ~np.isin(status[place], VALUED)))
+            why = np.where(worse, status[place], why)
+    return found, why

@@ -58,7 +58,8 @@ def draw_lines(ax: Axes) -> Line2D:
         ax.text(x, y, name, color=colour, ha="center", va="center", weight="bold", path_effects=_halo(2.5), zorder=7)
     for name, x, y in NAMES:
         size = style.LARGE if name.startswith("(") else style.LARGE + 3.0
-        ax.text(x, y, name, fontsize=size, ha="center", va="center", path_effects=_halo(2.5), zorder=7)
+        how = {"color": style.INK, "ha": "center", "va": "center"}  # over light colours, whatever the user's style
+        ax.text(x, y, name, fontsize=size, path_effects=_halo(2.5), zorder=7, **how)
     return manifold
 
 

@@ -21,7 +21,7 @@ def flag(dataset, host, name, x, y, select):
     status = status_of(host)
     lent = {one: dataset[name].astype(float) for one in (host, EXCHANGED.get(host, host))}
     lent = dataset.assign(lent | {status: dataset[status] * 0})
-    return section(lent, host, x, y, select).values.filled(np.nan)
+    return section(lent, host, x, y, select, kinds=True).values.filled(np.nan)
 
 
 def hatch(ax, sheet, where, pattern, gid, colour=style.QUIET):

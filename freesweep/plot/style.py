@@ -175,7 +175,7 @@ DIVERGING = _colour_map("rust_teal", [(46.0, 38.0, 46.0), (97.0, 0.0, 1.0), (46.
 SEQUENTIAL = _colour_map("sand_pine", [(96.0, -2.0, 14.0), (66.0, -24.0, 8.0), (36.0, -14.0, -12.0)])
 
 
-def save(drawing: Axes | Figure, path: str | os.PathLike, resolution: float = RESOLUTION) -> Path:
+def save(drawing: Axes | Figure, path: str | os.PathLike[str], resolution: float = RESOLUTION) -> Path:
     """Writes the figure of ``drawing`` as PNG, SVG or PDF, by the suffix of ``path``; returns the path.
 
     ``resolution`` is that of a PNG, and of shaded surfaces and map cells in the others [dots per inch].

@@ -28,12 +28,17 @@ STATES = {  # what may be shown: a variable that has it, its stability, its slac
     "blocked_force": ("blocked_force", "blocked_force_stable", None),
     "blocked_torque": ("blocked_torque", "blocked_torque_stable", None),
 }
-KINDS = (  # of states that have a result: colour and words
-    ("#d3e8df", "both fiber families taut"),
-    ("#e3a0c6", r"$\alpha$ family would have to push"),
-    ("#a9b3c0", r"$\beta$ family would have to push"),
-    ("#efd9a7", "each family would have to push somewhere"),
-)
+KINDS = ("#d3e8df", "#e3a0c6", "#a9b3c0", "#efd9a7")  # colours of states that have a result
+WORDS = {  # of each, by what fibers are
+    "bonded": (
+        "both fiber families taut", r"$\alpha$ family would have to push", r"$\beta$ family would have to push",
+        "each family would have to push somewhere",
+    ),
+    "loose": (
+        "both fiber families taut", r"$\alpha$ family slack somewhere", r"$\beta$ family slack somewhere",
+        "each family slack somewhere",
+    ),
+}  # fmt: skip
 SOLVED = "a result"  # where slack fibers are not told
 UNSTABLE = ("oo", "unstable")  # hatch and words
 PANEL = 75.0  # height of a map [mm]
@@ -61,11 +66,11 @@ def validity_map(
     solved = np.isin(sheet.reason, VALUED)
     with style.context():
         ax = style.new_axes(style.PAGE * 0.6, PANEL + 40.0) if ax is None else ax
-        colours = ListedColormap([colour for colour, _ in KINDS])
+        colours = ListedColormap(KINDS)
         ax.pcolormesh(edges(sheet.x), edges(sheet.y), np.ma.array(kind, mask=~solved), cmap=colours, gid="kind", zorder=1,
                       norm=BoundaryNorm(np.arange(len(KINDS) + 1) - 0.5, len(KINDS)), rasterized=True)  # fmt: skip
         keys = {}
-        for k, (colour, words) in enumerate(KINDS):
+        for k, (colour, words) in enumerate(zip(KINDS, WORDS[sheet.point.model.fibers])):
             if np.any(solved & (kind == k)):
                 words = SOLVED if slack is None else words
                 keys[words] = Patch(facecolor=colour, edgecolor=style.QUIET, linewidth=0.4, label=words)

@@ -180,8 +180,10 @@ class Inquiry:
         worst = np.bincount(rests.argmax(axis=1)[rests.any(axis=1)], minlength=len(self.table.axes))
         coarse.extend((axis.name, count) for axis, count in zip(self.table.axes, worst.tolist()) if count)
 
-    def flags(self):
-        """Flags (n,) by name; a point whose flags cannot be told becomes NOT_INTERPOLABLE."""
+    def flags(self, sure=True):
+        """Flags (n,) by name; a point at which it is too close to say whether fibers are slack becomes NOT_INTERPOLABLE, or,
+        unless ``sure``, is taken for taut.
+        """
         table, found = self.table, {}
         if table.has_flag:
             found[table.family.flag] = np.where(self.codes == MIXED, 0, self.codes >> 4 & 1)
@@ -196,6 +198,7 @@ class Inquiry:
                 middle, _, _ = self._restored("mid_radius", places, effects, nothing, nothing)
                 told = table.predictor.slack_families(self.points[places], self.states[places], middle)
                 slack[places] = np.where(told == UNKNOWN, 0, told)
-                self.status[places[told == UNKNOWN]] = NOT_INTERPOLABLE
+                if sure:
+                    self.status[places[told == UNKNOWN]] = NOT_INTERPOLABLE
             found["slack_fiber"] = np.where(exchanged, (slack & 1) << 1 | slack >> 1 & 1, slack)
         return found

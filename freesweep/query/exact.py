@@ -24,15 +24,18 @@ SHARE = 512  # points that one thread solves at a time
 
 def solve(
     kind, points, energy, accuracy, largest_pressure=None, model=MODELS["source"], cells=CELLS, thorough=True, bodies=None,
-    families=FAMILIES,
+    families=FAMILIES, along=False,
 ):  # fmt: skip
     """States of a kind at points (n, 17) of tubes of a ``model``: name -> (n,) of numbers and ``_error`` bounds, ``status``
     and flags, on base meshes of so many ``cells``.
 
     With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``. Not ``thorough``: what
     vectors leave to the scalar kernels, a thousand times dearer, is left out. ``bodies``: the points are bodies'.
-    Without one of the ``families`` its angle says nothing.
+    Without one of the ``families`` its angle says nothing. ``along``: of free states of the source's tubes, too, slack
+    shares and least tensions are told, which physical tubes always tell: membranes whose fibers may push are such tubes.
     """
+    from ..solver.problem import PROBLEM_SIZE
+
     count = len(points)
     design = {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(COLUMNS)}
     status = np.full(count, NOT_CONVERGED, np.int8)
@@ -49,9 +52,11 @@ def solve(
     own = {name: column[good] for name, column in design.items()}
     of_lines = {"alpha": lines.alpha[good], "beta": lines.beta[good]}
     rows = problem_rows(own | of_lines, energy, model.is_thick, lines.threads[good])
+    if along and rows.shape[1] == PROBLEM_SIZE:
+        rows = np.column_stack([rows, np.zeros((len(rows), 2))])  # no thick wall, two bonded families
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
     names = ("force",) if kind == reference.LENGTH_HELD else ("torque",) if held else OUTPUTS
-    names += ALONG if model.is_physical or len(families) < 2 else ()
+    names += ALONG if along or model.is_physical or len(families) < 2 else ()
     found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
     slack, stable, limits = np.zeros(count, np.int8), np.zeros(count, np.int8), np.full((count, 2), np.nan)
     pressure = np.full(len(good), np.inf) if kind == reference.LOCKED else own["pressure"] / own["c10"]

@@ -1,7 +1,8 @@
 """A bare callable for loops and optimizers: arrays in, arrays out, gradients on request."""
 
 import operator
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from .family import FAMILY_OF, MIRRORED, TOLD, TOLD_FROM
 from .faults import QueryError
 from .query import check_names
 
+if TYPE_CHECKING:
+    from ..atlas.store import Atlas
+
 CHUNK = 1 << 18  # points answered together: their arrays stay small
 STEP = 1e-6  # relative, of central differences of the closed forms (their errors are some 1e-10)
 
@@ -30,14 +34,14 @@ class Interpolator:
     the path of its atlas and the names.
     """
 
-    def __init__(self, atlas, names):
+    def __init__(self, atlas: "Atlas", names: str | Sequence[str]) -> None:
         self.atlas, reader = atlas, atlas._reader
         self.single = isinstance(names, str)
-        self.names = check_names(reader, names)
+        self.names: list[str] = check_names(reader, names)
         wrong = [name for name in self.names if name not in FAMILY_OF]
         if wrong:
             raise QueryError([f"variable {name!r} is a formula: see freesweep.closed_form" for name in wrong])
-        self.axes = tuple(name for name in reader.needed(self.names) if name != "design")
+        self.axes: tuple[str, ...] = tuple(name for name in reader.needed(self.names) if name != "design")
         if "design" in reader.frame.values:
             raise QueryError(["a list of named designs is no grid; use query(design=...)"])
         self.reader = reader

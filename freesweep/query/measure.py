@@ -21,7 +21,6 @@ MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one fo
 BODIES = 500, 2_000  # at least and at most of bodies, each of which is followed along and solved by itself
 HELD_SHARE = 2  # held states cost more: so much fewer designs
 SHARPER = (1e-2, 0.1, 1.0)  # accuracies of the exact solutions, relative to the atlas': the first that vectors reach
-TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
 REGIONS = ("I", "IIa", "IIb")
 
 
@@ -98,7 +97,7 @@ def _family(reader, key, names, inquiry, exact):
     places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
     exact = {name: array[places] for name, array in exact.items()}
     solved = np.isin(exact[FAMILIES[key].answer_status], VALUED)
-    with ThreadPoolExecutor(TOGETHER if table.size * len(table.sides) <= MUCH else 1) as pool:
+    with ThreadPoolExecutor(table.together) as pool:
         kept = dict(
             zip(names, pool.map(lambda name: _compare(inquiry, name, places, exact[name], solved, reader), names))
         )

@@ -86,10 +86,11 @@ class Reader:
                 full[name] = np.full(size, only)
         return full
 
-    def answer(self, values, size, names, method=CUBIC, tolerance=None, coarse=None) -> dict:
+    def answer(self, values, size, names, method=CUBIC, tolerance=None, coarse=None, sure=True) -> dict:
         """Name -> (n,) of numbers, errors, statuses and flags; ``values``: axis -> (n,).
 
         ``coarse``, a list, gets the axes whose nodes lie too far apart for the tolerance: names, and at how many points.
+        ``sure``: refuse where it is too close to say whether fibers are slack; pictures take them for taut.
         """
         values = self.complete(values, size)
         tolerance = self.tolerance if tolerance is None else tolerance
@@ -97,13 +98,15 @@ class Reader:
         for key in FAMILIES:
             own = [name for name in names if FAMILY_OF.get(name) == key]
             if own:
-                found |= self._in_chunks(key, self.table(key, values), values, size, own, method, tolerance, coarse)
+                found |= self._in_chunks(
+                    key, self.table(key, values), values, size, own, method, tolerance, coarse, sure
+                )
         for name in names:
             if name in IDEAL:
                 found |= ideal_answer(self.frame, name, values)
         return found
 
-    def _in_chunks(self, key, table, values, size, names, method, tolerance, coarse):
+    def _in_chunks(self, key, table, values, size, names, method, tolerance, coarse, sure):
         bounds = [*range(0, size, CHUNK), size]
         if ALONE < size <= CHUNK:
             bounds = [0, size // 2, size]
@@ -111,20 +114,19 @@ class Reader:
 
         def one(part):
             own = {name: values[name][slice(*part)] for name in table.known}
-            return self._answer_chunk(key, table, own, names, method, tolerance, coarse)
+            return self._answer_chunk(key, table, own, names, method, tolerance, coarse, sure)
 
         if len(parts) == 1:
             return one(parts[0])
-        for name in (*names, *(("mid_radius",) if table.has_slack else ())):
-            table.make(name)  # here, not by two threads
+        table.make((*names, *(("mid_radius",) if table.has_slack else ())))  # here, not by the threads of the parts
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             answers = list(pool.map(one, parts))
         return {name: np.concatenate([answer[name] for answer in answers]) for name in answers[0]}
 
     @np.errstate(all="ignore")  # whatever a file holds: what is no number is refused
-    def _answer_chunk(self, key, table, values, names, method, tolerance, coarse):
+    def _answer_chunk(self, key, table, values, names, method, tolerance, coarse, sure):
         inquiry = Inquiry(table, values, method)
-        flags = inquiry.flags()
+        flags = inquiry.flags(sure)
         found, too_large = {}, np.zeros(inquiry.size, bool)
         for name in names:
             value, error = inquiry.answer(name, self.factors)

@@ -1,6 +1,7 @@
 """A family of stored variables in memory, ready to be interpolated: end effects, their slopes, the codes of the cells."""
 
 import functools
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
+TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
 TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
@@ -186,10 +188,21 @@ class Table:
             self._variables[key] = self._interpolant(*key)
         return self._variables[key]
 
-    def make(self, name):
-        """Make all of one variable, as a thread alone has to."""
-        for side in self.sides:
-            self.variable(name, side)
+    def make(self, names):
+        """Make what :meth:`variable` tells of several, on all sides, some at a time."""
+        each = [
+            (one, side) for one in dict.fromkeys(TOLD_FROM.get(name, name) for name in names) for side in self.sides
+        ]
+        left = [key for key in each if key not in self._variables]
+        if len(left) > 1 and self.family.kind != reference.NONE:  # what all of them share is made once
+            self.states()
+        with ThreadPoolExecutor(self.together) as pool:
+            list(pool.map(lambda key: self.variable(*key), left))
+
+    @property
+    def together(self):
+        """How many variables are made at a time."""
+        return TOGETHER if self.size * len(self.sides) <= MUCH else 1
 
     @np.errstate(all="ignore")  # whatever a file holds
     def _interpolant(self, name, side):

@@ -8,15 +8,16 @@ from numba import config
 from ..interpret import at_once
 from .along.places import NUMBERS
 from .along.profile import FIELDS
+from .by_middle.many import PIECES, follow_branches
+from .free.carried import carried_many
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
 from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
-from .status import PENDING
+from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK, PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
 NOTHING = np.empty(0)
-PIECES = 1, 2, 4, 16
 FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
@@ -56,12 +57,21 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     if lanes and len(tube[0]) == 0 and not drawn and not config.DISABLE_JIT:
         calls = _scalar_calls(problems, first, pressures, tube, accuracy, stations, found)
         solve, given = _vector_call(problems, stations)
-        if not (soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls)):
+        if soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls):
+            found.status[_doubt(problems, first, pressures, found)] = PENDING
+        if np.any(found.status == PENDING):
             _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
+        if wall_columns(problems) == PHYSICAL:
+            kinds = [(kind, some) for _, _, kind, some in _kinds(problems)]
+            follow_branches(problems, first, pressures, kinds, accuracy, found)
     for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
         left = np.count_nonzero(call[11] == PENDING)
         if left and not (soon and at_once(left, follow_many, follow_many, *call)):
             follow_many(*call)
+    if drawn and lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
+        doubtful = _doubt(problems, first, pressures, found)
+        if np.any(doubtful):
+            _replace(found, doubtful, walk_all(problems, first, pressures, tube, accuracy))
     found.bounds[limp] += MISSED * np.abs(found.values[limp])
     return found
 
@@ -82,6 +92,34 @@ def _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
             problems[own], walls, settled[own], starts, pressures[rows], *whole, accuracy,
             *(array[rows] for array in found[:4]), found.limits[own], stations, found.profiles[rows],
         )  # fmt: skip
+
+
+def _doubt(problems, first, pressures, found):
+    """Which states of physical tubes scalar kernels did not find, or found where the uniform tube does not lead: a coarse
+    mesh may pass over a small snap, which the first integral sees.
+    """
+    walls = wall_columns(problems)
+    if walls != PHYSICAL:
+        return np.zeros(len(pressures), bool)
+    carried = np.zeros(len(pressures), np.int64)
+    call = problems, walls, settling_pressure(problems), first, pressures, carried
+    if not at_once(len(pressures), carried_many, carried_many, *call):
+        carried_many(*call)
+    valued = np.isin(found.status, (OK, INACCURATE))
+    return (valued & (carried == 0)) | np.isin(found.status, (BEYOND_LIMIT, NOT_CONVERGED))
+
+
+def _replace(found, rows, better):
+    """Put what is known ``better`` into these rows. Profiles stay where they are of the same states; where there are none,
+    the status says that something is missing.
+    """
+    apart = np.abs(found.values - better.values)[:, :OUTPUTS]
+    alike = np.all(apart <= (found.bounds + better.bounds)[:, :OUTPUTS], axis=1)
+    for name in STATES[:-1]:
+        getattr(found, name)[rows] = getattr(better, name)[rows]
+    found.limits[:] = better.limits
+    found.profiles[rows & ~alike] = np.nan
+    found.status[rows & ~alike & (found.status == OK)] = INACCURATE
 
 
 def _walk_lanes(problems, first, pressures, base, accuracy, stations, found):
@@ -137,8 +175,8 @@ def _vector_call(problems, stations):
 
 
 def tries(problems, base):
-    """How fine one try after the other is: cells of the base mesh; of physical tubes, which need none, in how many pieces
-    each part of the way is summed in which the same fibers pull.
+    """How fine one try after the other is: cells of the base mesh; of physical tubes, which need none, in how many
+    pieces each part of the way is summed in which the same fibers pull.
     """
     return PIECES if wall_columns(problems) == PHYSICAL else (base, FINER * base)
 

@@ -17,6 +17,7 @@ COMPARED = 25.0  # [s] in which an atlas of bodies measures itself, each solved 
 FOLLOWED = 6e-3  # [s] of each tube that varies: its course is made of splines
 OTHER = 6e-6  # [s] of each grid point: the atlas is made, compressed, and measures itself
 LITTLE = 600.0  # [s] up to which it is not worth a sample, which takes more than a second
+AT_REST = {"force": 0.0, "torque": 0.0, "fiber_extension": 1.0}
 MUCH = 0.1  # share of the whole time, below which a kind of states is worth no sample
 SAMPLE_SECONDS, SAMPLES = 0.05, 64  # of each kind of state
 TOGETHER = 32  # problems that are solved at once, as vectors need them
@@ -26,8 +27,16 @@ def entry_points(kind, sweep) -> tuple:
     """Names of the solver's entry points for a kind of states: those of vectors, where there are any, and the scalar one."""
     if kind == FREE:
         of_vectors = ("carry_physical", "solve_physical") if sweep.is_physical else ("carry_lanes", "solve_lanes")
+        if sweep.is_physical and is_loaded(sweep):  # branches turn there
+            of_vectors += ("measure_physical",)
         return ("follow_many",) if sweep.varies else (*of_vectors, "follow_many")
     return ("hold_many",) if sweep.varies or sweep.is_physical else ("seek_lanes", "solve_lanes", "hold_many")
+
+
+def is_loaded(sweep) -> bool:
+    """Whether there are forces, torques or extended fibers in a sweep."""
+    given = sweep.fixed | sweep.axes | (sweep.designs or {}).get("columns", {})
+    return any(np.any(np.asarray(given[name]) != rest) for name, rest in AT_REST.items() if name in given)
 
 
 def time_of(sweep, tables, equilibria, sizes, threads, measured) -> str:

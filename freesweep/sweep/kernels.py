@@ -36,6 +36,7 @@ SOLVING = ("solve_lanes", "solve_physical")
 THE_REST = (
     "carry_lanes",
     "carry_physical",
+    "measure_physical",
     "seek_lanes",
     "query",
     "physical_states",
@@ -116,6 +117,7 @@ def _compile_aside(missing, rubbers):
 def compile_idle(words):
     """Compile the entry points named among the ``words``, for the families of rubbers among them; no state is solved."""
     from ..query.idle import compile_kernels, compile_physical
+    from ..solver.lanes.by_middle import measure_physical
     from ..solver.lanes.free import carry_lanes, carry_physical, solve_lanes, solve_physical
     from ..solver.lanes.held import seek_lanes
     from ..solver.problem import MOONEY_RIVLIN, PROBLEM_SIZE
@@ -130,6 +132,8 @@ def compile_idle(words):
             carry_physical(problems, first, numbers, whole, constants, 1, states, states, whole, numbers, numbers)
         if "solve_physical" in words:
             solve_physical(problems, whole, numbers, numbers, whole, constants, 1, 1, 1.0, states, states, whole, whole)
+        if "measure_physical" in words:
+            measure_physical(problems, whole, states, numbers, constants, 1, 1, states, states, states)
         if "physical_states" in words:
             compile_physical(constants)
         if "carry_lanes" in words:

@@ -1,5 +1,7 @@
 """CSV files of measured curves, and `freesweep calibrate`: what is read, printed, kept, and refused with the reason."""
 
+import json
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -142,3 +144,47 @@ def test_what_the_command_refuses(capsys):
     with open("latin.csv", "ab") as file:
         file.write(b"\n1,\xb5")
     assert "not a text in UTF-8" in refused(capsys, "calibrate", "latin.csv", *MUSCLE)
+
+
+def test_parameters_are_told_in_the_units_of_the_data_and_as_json(capsys):
+    psi = np.array([4.0, 8.0, 14.0, 20.0])
+    inches = inflate(tube(), psi * 6894.757293168361, x=0.0)["deformed_length"].values / 0.0254
+    name = written("psi.csv", "pressure [psi],deformed_length [in]", *(f"{p},{v:.9f}" for p, v in zip(psi, inches)))
+    words = (
+        "calibrate",
+        name,
+        *MUSCLE,
+        "--fit",
+        "c10",
+        "wall",
+        "--prior",
+        "wall=1.59 mm,0.1 mm",
+        "--tie",
+        "c01=0.53333333*c10",
+    )
+    assert run(*words, "--fiber-extension", "1.005") == DONE
+    rows = {line.split()[0]: line.split() for line in capsys.readouterr().out.splitlines() if line.strip()}
+    assert rows["c10"][2] == "psi"
+    assert float(rows["c10"][1]) == pytest.approx(0.15e6 / 6894.757, rel=0.05)
+    assert rows["wall"][2] == "in"
+    assert rows["deformed_length"][4] == "in"
+    assert run(*words, "--fiber-extension", "1.005", "--json") == DONE
+    found = json.loads(capsys.readouterr().out)
+    assert found["parameters"]["c10"]["value"] == pytest.approx(0.15e6, rel=0.05)
+    assert found["parameters"]["wall"]["units"] == "m"
+    assert found["material"].startswith("MooneyRivlin(c10=")
+    text = f"""[data]
+files = ["{name}"]
+[actuator]
+alpha = "30 deg"
+length = "192 mm"
+radius = "4.76 mm"
+wall = "1.59 mm"
+fiber_extension = 1.005
+[fit]
+parameters = ["c10"]
+[ties]
+c01 = "0.5*c10"
+"""
+    assert run("calibrate", written("case.toml", text)) == DONE
+    assert " psi " in capsys.readouterr().out.splitlines()[1]

@@ -82,8 +82,8 @@ def test_lock_without_a_material_gives_no_energy(capsys):
 def test_inflate_prints_a_line_for_each_pressure(capsys):
     assert run("inflate", *TUBE, *RUBBER, "--pressure", "0", "1 bar", "--steps", "3", "-o", "kept.nc") == DONE
     head, *rows, name = capsys.readouterr().out.splitlines()
-    assert head.startswith("pressure [kPa]")
-    assert [row.split()[0] for row in rows] == ["0", "50", "100"]
+    assert head.startswith("pressure [bar]  deformed length [mm]")
+    assert [row.split()[0] for row in rows] == ["0", "0.5", "1"]
     lengths = inflate(SAME, [0.0, 5e4, 1e5])["deformed_length"].values
     assert [float(row.split()[1]) for row in rows] == pytest.approx(lengths * 1e3, rel=1e-6)
     with xr.open_dataset(name) as kept:

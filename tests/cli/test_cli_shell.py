@@ -102,3 +102,32 @@ def test_a_query_answers_in_the_units_of_its_question(capsys):
     shown = dict(re.findall(r"(deformed_length|rotation)\s+(-?[0-9.]+) (?:in|rad)\b", told))
     assert float(shown["deformed_length"]) == pytest.approx(found.deformed_length.item() / 0.0254, rel=1e-4)
     assert float(shown["rotation"]) == pytest.approx(found.rotation.item() / 57.29578, rel=1e-4)
+
+
+def test_single_actuators_answer_in_the_units_of_the_question(capsys):
+    sizes = ["--alpha", "30", "--beta", "-30", "--length", "7.5 in", "--radius", "5 mm", "--wall", "1 mm"]
+    assert run("inflate", *sizes, "--c10", "0.1 MPa", "--pressure", "0", "10 psi", "--force", "1 lbf") == DONE
+    head, _, row, *_ = capsys.readouterr().out.splitlines()
+    assert head.split("  ")[0] == "pressure [psi]"
+    tube = fs.Actuator(alpha=30, beta=-30, length="7.5 in", radius=5e-3, wall=1e-3, material=fs.NeoHookean(1e5))
+    found = fs.inflate(tube, "10 psi", force="1 lbf", x=0.0)
+    assert "deformed length [in]" in head
+    assert [float(cell) for cell in row.split()[:2]] == pytest.approx(
+        [10.0, found.deformed_length.item() / 0.0254], rel=1e-6
+    )
+    assert run("block", *sizes, "--c10", "0.1 MPa", "--pressure", "1 bar", "--hold", "length", "--at", "190 mm") == DONE
+    assert "force [N]" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (("inflate", *TUBE, "--presure", "1 bar"), "no option --presure; did you mean --pressure?"),
+        (("--hepl",), "no option --hepl; did you mean --help?"),
+        (("query", ATLAS, "--alhpa=3"), "no option --alhpa; did you mean --alpha?"),
+    ],
+)
+def test_mistyped_options_are_told_before_others_are_missed(capsys, words, meant):
+    with pytest.raises(SystemExit):
+        parser().parse_args([*words])
+    assert meant in capsys.readouterr().err

@@ -22,6 +22,7 @@ from freesweep.explorer.measures import COARSE_STATUS, system_units
 from freesweep.explorer.polish import goals_of
 from freesweep.explorer.wire import pack
 from freesweep.inverse.outputs import output
+from freesweep.query.family import FAMILY_OF
 from freesweep.status import NOT_INTERPOLABLE, VALUED
 
 pytest.importorskip("bokeh", reason="the explorer draws with Bokeh")
@@ -209,6 +210,19 @@ def test_the_smaller_table_keeps_to_the_deviation_it_states(desk, monkeypatch):
     )
 
 
+def test_what_a_page_holds_is_made_step_by_step(desk, monkeypatch):
+    monkeypatch.setattr(table, "SAMPLE", 500)
+    told = []
+    table.small_table(Desk(desk.atlas), lambda: told.append(0))
+    assert len(told) == table.steps(desk)
+
+
+def test_the_first_view_is_read_while_the_browser_opens(desk):
+    own = Desk(desk.atlas)
+    own.begin()
+    assert own._made == {one.source for one in own.measures.values() if one.source in FAMILY_OF}
+
+
 def test_large_axes_are_thinned_between_their_ends():
     axes = {"alpha": np.linspace(0, 85, 35), "beta": np.linspace(-85, 85, 69), "pressure": np.linspace(0, 1, 400)}
     kept = table.thinned(axes)
@@ -239,6 +253,36 @@ def test_the_server_answers_its_own_page_alone(atlas):
                 post(**wrong)
     with pytest.raises(urllib.error.URLError):
         urllib.request.urlopen(explorer.url, timeout=1)
+
+
+def test_a_page_that_is_closed_before_its_answer_comes_says_nothing_in_the_terminal(atlas, capsys):
+    with fs.explore(atlas) as explorer:
+        for error in (BrokenPipeError(), ValueError("a fault")):
+            try:
+                raise error
+            except Exception:
+                explorer.handle_error(None, ("127.0.0.1", 1))
+            assert ("Traceback" in capsys.readouterr().err) == isinstance(error, ValueError)
+
+
+def test_a_page_that_waits_hears_how_long_the_compiler_has_been_at_work(atlas):
+    from numba import njit
+
+    with fs.explore(atlas) as explorer:
+        assert explorer.ask({"what": "busy"}) == {"compiling": None}
+        heard = []
+
+        @njit
+        def plain(x):
+            return x + 1
+
+        def listening(*args, compiled=plain._compiler.compile):
+            heard.append(explorer.ask({"what": "busy"})["compiling"])
+            return compiled(*args)
+
+        plain._compiler.compile = listening
+        plain(1)
+        assert heard[0] >= 0.0
 
 
 def test_the_page_loads_nothing_and_no_title_ends_its_script(atlas, tmp_path, capsys, monkeypatch):

@@ -77,3 +77,8 @@ def test_what_is_built_contains_what_the_commands_of_the_readme_need(tmp_path):
         "CITATION.cff",
         "tests/support/grids.py",
     } <= inside
+
+
+def test_building_needs_setuptools_alone():
+    """An isolated environment is made for each ``pip install .``: what else it holds is downloaded for nothing."""
+    assert [re.split("[<>=]", one)[0] for one in PROJECT["build-system"]["requires"]] == ["setuptools"]

@@ -21,6 +21,7 @@ from freesweep import closed_form, status
 from freesweep.atlas import schema
 from freesweep.plot import display, plane, regions, style
 from freesweep.plot.map import design_map
+from freesweep.plot.slack import flag
 
 LENGTHS, RADII, PRESSURES = [0.1, 0.15, 0.2], [4e-3, 5e-3], [2e4, 1e5]
 BEYOND = (slice(10, 13), slice(22, 26))  # of alpha, beta
@@ -129,6 +130,14 @@ def test_names_stand_in_their_regions():
     for name, alpha, beta in regions.NAMES:
         assert closed_form.region(alpha, beta) == name.strip("()")
         assert (abs(beta) > alpha) == name.startswith("(")
+
+
+def test_labels_stay_dark_over_light_maps_whatever_the_style(whole):
+    with pyplot.style.context("dark_background"):
+        texts = design_map(whole).texts
+    names = [text for text in texts if text.get_text() in ("I", "IIa", "IIb")]
+    assert len(names) == 3
+    assert all(sum(to_rgb(text.get_color())) < 1.0 for text in names)
 
 
 def test_paths_start_at_designs_and_end_locked(whole):
@@ -333,3 +342,36 @@ def test_where_the_families_change_places_a_slack_share_is_the_other_family_s():
     assert shown(10.0, -50.0) == pytest.approx(0.5 + 0.004 * 10.0)  # held as (50, -10)
     texts = design_map(data, "slack_alpha").figure.findobj(Text)
     assert any("family alpha is slack" in artist.get_text() for artist in texts)
+
+
+def test_the_half_that_symmetry_gives_has_no_comb_where_its_steps_are_wider():
+    """Beyond the nodes of beta the images stand ten degrees apart, the map's nodes five."""
+    data = atlas(step=5.0)
+    data = data.isel(beta=slice(1, None, 2))  # -80 to 80 in steps of ten; alpha to 85 in steps of five
+    sheet = plane.plane(data, "deformed_length", {"pressure": 2e4})
+    corners = np.isin(np.abs(sheet.y), 85.0)[:, None] & (sheet.x > 80.0)
+    np.testing.assert_array_equal(sheet.reason == status.OUTSIDE, corners)
+    top = sheet.values[sheet.y == 85.0].ravel()
+    held = data["deformed_length"].sel(alpha=85.0, length=0.15, radius=5e-3, pressure=2e4)
+    between = np.interp(sheet.x, held["beta"], held)
+    assert np.abs(top[:-1] - between[:-1]).max() < 1e-12
+    failed = data.copy(deep=True)
+    failed["status"].loc[{"alpha": 85.0, "beta": 40.0}] = status.BEYOND_LIMIT
+    beyond = plane.plane(failed, "deformed_length", {"pressure": 2e4})
+    assert (sheet.x[beyond.reason[sheet.y == 85.0].ravel() == status.BEYOND_LIMIT] == [35.0, 40.0, 45.0]).all()
+
+
+def test_flags_between_nodes_are_one_of_their_nodes():
+    data = atlas(step=5.0).isel(beta=slice(1, None, 2))
+    kind = xr.where(data["beta"] > 32.0, 3, xr.where(data["beta"] > 22.0, 1, 0)) + 0 * data["status"]
+    found = flag(data.assign(kind=kind), "rotation", "kind", "alpha", "beta", {"pressure": 2e4})
+    assert set(np.unique(found[np.isfinite(found)])) == {0.0, 1.0, 3.0}
+
+
+@pytest.mark.parametrize(("fibers", "parts"), [("loose", 1), ("bonded", 2)])
+def test_contours_cross_the_diagonal_where_threads_may_be_slack(fibers, parts):
+    data = atlas().assign_attrs(fibers=fibers)
+    assert len(plane.plane(data, "rotation", {}).parts) == parts
+    share = data["rotation"] * 0.0
+    data = data.assign(slack_alpha=share, slack_beta=share, slack_fiber=data["status"] * 0)
+    assert len(plane.plane(data, "slack_alpha", {}).parts) == 2  # what the families exchange jumps there

@@ -17,7 +17,7 @@ from freesweep.atlas import schema
 from freesweep.plot import fill, style
 from freesweep.plot.plane import section
 from freesweep.plot.section import multiples, section_map
-from freesweep.plot.validity import KINDS, validity_map, validity_maps
+from freesweep.plot.validity import WORDS, validity_map, validity_maps
 
 ALPHA, BETA = np.arange(0.0, 81.0, 20.0), np.arange(-80.0, 81.0, 20.0)
 LENGTHS, PRESSURES = [0.2, 0.1, 0.4], np.linspace(0.0, 1e5, 13)  # lengths in no order
@@ -138,7 +138,9 @@ def test_validity_shows_slack_families_and_swaps_images_back(data):
         there = ~np.ma.getmaskarray(kind)
         assert there.sum() > 20
         np.testing.assert_array_equal(kind.filled(-1)[there], expected[there])
-        assert KINDS[1][1] in keys
+        assert WORDS["bonded"][1] in keys
+        _, keys, _ = validity_map(stored.assign_attrs(fibers="loose"), length=0.2, pressure=0.0)
+        assert WORDS["loose"][1] in keys
         assert "unstable" not in keys
     swapped = data.rename(alpha="beta", beta="alpha").sel(beta=slice(0.0, 80.0))  # only images are seen
     swapped["slack_fiber"] = swapped["slack_fiber"].copy(data=np.array([0, 2, 1, 3])[swapped["slack_fiber"].values])

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from grids import FIXED, spec, swept
 
-from freesweep import Actuator, MooneyRivlin, closed_form, inflate, lock, run_sweep, status
+from freesweep import Actuator, MooneyRivlin, closed_form, example_atlas, inflate, lock, run_sweep, status
 from freesweep.atlas.store import Atlas
 from freesweep.query import box
 from freesweep.query.faults import QueryError
@@ -430,3 +430,17 @@ def test_a_locked_energy_that_varies_in_the_wall_is_answered_beside_what_does_no
     assert float(atlas.query(names[:1], alpha=24.5, beta=-44.5, wall=1.3e-3, c10=1.3e5)[names[0]]) == float(
         answer[names[0]]
     )
+
+
+def test_pictures_take_for_taut_where_it_is_too_close_to_say_whether_fibers_are_slack():
+    with example_atlas() as atlas:
+        reader = atlas._reader
+        draw, size = np.random.default_rng(5), 20_000
+        values = {name: draw.uniform(*reader.frame.ranges[name], size) for name in reader.needed(["rotation"])}
+        sure, drawn = (reader.answer(values, size, ["rotation"], tolerance=1e9, sure=one) for one in (True, False))
+    told = (sure["status"] == status.NOT_INTERPOLABLE) & (drawn["status"] == status.OK)
+    assert 5 < told.sum() < 0.02 * size
+    assert np.all(drawn["slack_fiber"][told] == 0)
+    assert np.all(np.isfinite(drawn["rotation"][told]))
+    for name in sure:
+        np.testing.assert_array_equal(sure[name][~told], drawn[name][~told])

@@ -18,6 +18,7 @@ KINDS = (
     "physical", "physical loads", "physical held length", "thick", "loose membrane", "yeoh",
     "varying held rotation", "physical varying", "physical varying loads", "physical held rotation",
     "body", "body held length", "body held rotation", "physical body", "physical body held length",
+    "physical body loads", "physical body held rotation", "physical varying held length", "physical varying held rotation",
 )  # fmt: skip
 C10 = 0.11e6
 LOADS = ("pressure", "force", "torque", "deformed_length", "rotation")
@@ -181,3 +182,61 @@ def test_derivatives_of_random_states_are_what_differences_tell(kind):
     print(f"{kind}: {compared} compared, {sharp} of them to 1e-5, {len(wrong)} wrong")
     assert not wrong
     assert sharp > 0.3 * compared > 0
+
+
+def lacks(way, found, state):
+    """By what share of its terms each identity is missed that derivatives by loads and by what is held keep: Maxwell's
+    symmetries of what these work on, and that the energy stored is their work.
+    """
+    held = {"blocked_force": "deformed_length", "blocked_torque": "rotation"}.get(way)
+    works = {"pressure": ("volume", 1.0), "force": ("deformed_length", 1.0), "torque": ("rotation", np.radians(1.0))}
+    given = {name: of for name, of in works.items() if of[0] != held}
+    unknown = next((name for name in works if name not in given), None)
+
+    def by(output, name):
+        return found[f"d_{output}_d_{name}"].item()
+
+    missed = []
+    names = list(given)
+    for k, one in enumerate(names):
+        for other in names[k + 1 :]:
+            (a, unit), (b, size) = given[one], given[other]
+            missed.append((unit * by(a, other), -size * by(b, one)))
+        if unknown is not None:  # the load that holds, and what it is conjugate to
+            (a, unit), (_, size) = given[one], works[unknown]
+            missed.append((size * by(unknown, one), unit * by(a, held)))
+    for name in (*names, *(() if held is None else (held,))):
+        work = [-state.get(load, 0.0) * unit * by(output, name) for load, (output, unit) in given.items()]
+        if name == held:
+            work.append(-found[unknown].item() * works[unknown][1])
+        missed.append((by("strain_energy", name), *work))
+    return [abs(sum(terms)) / (sum(map(abs, terms)) + 1e-300) for terms in missed]
+
+
+def kept(kind, count, seed):
+    """The largest of :func:`lacks` in ``count`` random states; where derivatives are lost, not a number."""
+    rng, worst = np.random.default_rng([seed, zlib.crc32(kind.encode())]), []
+    names = {"inflate": LOADS[:3], "blocked_force": ("pressure", "torque", "deformed_length")}
+    while len(worst) < count:
+        way, state = random_state(kind, rng)
+        try:
+            if int(solved(way, state)["status"]) == 0:
+                names_of = names.get(way, ("pressure", "force", "rotation"))
+                worst.append(max(lacks(way, solved(way, state, derivatives=names_of, accuracy=1e-8), state)))
+        except fs.ActuatorError:
+            continue
+    return np.max(worst)
+
+
+IDENTITIES = [kind for kind in KINDS if kind != "locked"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", IDENTITIES)
+def test_derivatives_of_random_states_keep_the_work_of_loads(kind):
+    assert kept(kind, 30, seed=18) < 1e-7
+
+
+@pytest.mark.parametrize("kind", ["held length", "varying held rotation", "physical"])
+def test_derivatives_keep_the_work_of_loads(kind):
+    assert kept(kind, 2, seed=19) < 1e-7

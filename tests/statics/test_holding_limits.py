@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from held_tubes import tube
 
-from freesweep import Actuator, MooneyRivlin, blocked_torque, closed_form
-from freesweep.status import BEYOND_LIMIT, INACCURATE, OK
+from freesweep import Actuator, MooneyRivlin, blocked_force, blocked_torque, closed_form, inflate
+from freesweep.status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, OK
 
 # angles, length/radius, wall/radius, fiber extension, C01/C10, force/(pi r^2 C10), pressure/C10, energy: each far beyond
 # its critical pressure
@@ -57,3 +57,22 @@ def test_branch_ends_at_a_turning_point_and_nothing_lies_beyond(gamma):
     steps = np.diff(held["mid_radius"].values)
     assert (steps > 0).all()
     assert 1.4 < steps[-2] / steps[-1] < 2.2  # toward 2, the root's, at quarters of the distance
+
+
+@pytest.mark.parametrize(
+    "fibers",
+    [
+        {"beta": -40, "model": "source"},
+        {"beta": [(0, -30), (1, -50)], "model": "source"},
+        {"beta": None, "model": "physical"},
+    ],
+)
+def test_straight_fibers_hold_every_length_but_their_own(fibers):
+    """No finite force pulls a bulging tube as long as its straight fibers are; shorter ones are what a force makes."""
+    tube = Actuator(alpha=0, length=0.06, radius=6e-3, wall=1e-3, material=MooneyRivlin(1e5, 5e4), **fibers)
+    for torque in (0.0, -4e-3):
+        pulled = inflate(tube, 2e4, 10.0, torque, x=0.0)
+        lengths = [pulled["deformed_length"].item(), 0.06]
+        found = blocked_force(tube, 2e4, lengths, torque, x=0.0)
+        assert found["status"].values.tolist() == [OK, HELD_IMPOSSIBLE]
+        assert found["force"].values[0] == pytest.approx(10.0, rel=1e-5)

@@ -1,5 +1,6 @@
 // The map: asked for coarsely while something is dragged, finely when it rests.
 const FINE = 4, DRAFT = 3;
+const PAUSE = 500; // [ms] without a frame: something else is moved
 let grid = null, bands = null, draftScale = 0.5, cross = null;
 
 function gridSize(drag) {
@@ -23,9 +24,10 @@ function askMap(drag) {
     grid = { ...answer, x, y, at: question.at, measure: question.measures[0], drag };
     drawMap();
     if (drag) {
-      const took = performance.now() - began; // for ten frames a second and better
-      draftScale = Math.min(Math.max(draftScale * (took > 70 ? 0.85 : took < 40 ? 1.1 : 1), 0.25), 1);
-      frames.push(performance.now());
+      const now = performance.now(), gap = now - (frames.at(-1) ?? 0); // what was drawn is painted in it, too
+      const took = gap < PAUSE ? gap : now - began;
+      draftScale = Math.min(Math.max(draftScale * (took > 75 ? 0.85 : took < 50 ? 1.05 : 1), 0.25), 1); // ten frames a second and better
+      frames.push(now);
     }
     drawWishes();
     if (!drag) drawFront();

@@ -31,6 +31,7 @@ async function request(kind, question, use) {
   if (underWay.has(kind)) { waiting.set(kind, [question, use]); return; }
   underWay.set(kind, true);
   showBusy();
+  if (SOLVER.includes(kind)) watchSolver();
   try {
     const answer = await ask(question);
     asked += 1;
@@ -49,19 +50,32 @@ async function request(kind, question, use) {
 }
 
 const SLOW = { grid: "", pins: "", exact: "solving exactly", shape: "solving the shape", polish: "looking for designs" };
-let busySince = 0;
+let busySince = 0, watching = false, compiling = null; // [s]
+
+// Ask, while the solver is at something, whether it is being compiled: that may take longer than all the rest.
+async function watchSolver() {
+  if (watching || isLocal) return;
+  watching = true;
+  while (SOLVER.some((kind) => underWay.has(kind))) {
+    await new Promise((done) => setTimeout(done, 1000));
+    try { compiling = (await ask({ what: "busy" })).compiling; } catch { break; }
+    showBusy();
+  }
+  watching = false;
+  compiling = null;
+}
 
 function showBusy() {
   const words = [...underWay.keys()].map((kind) => SLOW[kind]).filter(Boolean);
   if (!underWay.size) busySince = 0;
-  else if (!busySince) { busySince = performance.now(); setTimeout(showBusy, 1200); setTimeout(showBusy, 8000); }
+  else if (!busySince) { busySince = performance.now(); setTimeout(showBusy, 1200); }
   const long = busySince ? performance.now() - busySince : 0;
-  const first = long > 7500 && words.length ? " (the first time the solver compiles, a minute or two)" : "";
+  const first = compiling === null ? "" : ` the solver is being compiled, once for each version (${Math.round(compiling)} s so far)`;
   const text = words.length ? words.join(", ") + " …" + first : long > 1100 ? "reading the atlas …" : "";
   if (byId("busy").textContent !== text) byId("busy").textContent = text; // while something moves, nothing is laid out anew
 }
 
-const say = (text) => { byId("said").textContent = text; };
+const say = (text) => { byId("said").textContent = byId("said").title = text; };
 const SOLVER = ["shape", "exact", "polish"];
 // Whether nothing is under way; `solver` false: but for what the solver is at.
 const isIdle = (solver = true) => ![...underWay.keys(), ...waiting.keys()].some((kind) => solver || !SOLVER.includes(kind));

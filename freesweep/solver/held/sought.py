@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from ...jit import kernel
 from .. import guide
 from ..load import Load, at_pressure, by, loaded
@@ -12,9 +14,10 @@ from .ways import cylinder_multiplier
 
 HELD_LENGTH, HELD_ROTATION = 0, 1
 FROM_REST, FROM_FREE = 0, 1
-LONGER = 1e-9  # relative: than all that the fibers allow
+LONGER = 1e-9  # relative: from what the fibers allow
 RAISES = 40  # of the pressure by a half, until the wall of the starting cylinder is under tension
 WITHOUT_PRESSURE = 0.1  # times the wall's section: the pressure that is gone to first where none is asked for
+CYLINDER = 3  # numbers of a cell, of which a body has more
 MIRROR_OFFSET, MIRROR_TOLERANCE = 0.37, 1e-12  # places off jumps; of H, D and the section
 
 
@@ -82,16 +85,36 @@ def unsure(status, load):
 
 
 @kernel
+def longest_along(tube, load):
+    """The largest meridional stretch that the fibers allow, which no finite force reaches: of straight fibers that of the
+    undeformed length (the pole of Eq. 2.16). Infinite where it varies along the tube, or the meridian is longer than that.
+    """
+    course = tube.course
+    if course.shape[2] > CYLINDER:
+        return np.inf
+    places = 1 if course.shape[0] == 1 and course.shape[1] == 1 else guide.PLACES
+    most = lagrangian.longest(guide.cell_along(tube, 0.5), load.gamma, load.wall)
+    for k in range(places):
+        here = lagrangian.longest(guide.cell_along(tube, (k + MIRROR_OFFSET) / places), load.gamma, load.wall)
+        if abs(here - most) > LONGER * most:
+            return np.inf
+    return most
+
+
+@kernel
 def refused(load, target, kind, tube):
     """COMPRESSED or HELD_IMPOSSIBLE where nothing has to be solved to know it, else PENDING."""
     cell, course, places = guide.cell_along(tube, 0.5), tube.course, tube.places
     varies = course.shape[0] > 1 or course.shape[1] > 1
-    # a straight fiber cannot stretch: whatever the force, the length stays (the pole of Eq. 2.16)
-    if course.shape[0] == 1 and lagrangian.conjugate(1.0, 0.0, cell, load, unit_of(kind, 1.0))[1] == 0.0:
+    # no load turns what has alpha = -beta
+    if (
+        kind == HELD_ROTATION
+        and not varies
+        and lagrangian.conjugate(1.0, 0.0, cell, load, unit_of(kind, 1.0))[1] == 0.0
+    ):
         return HELD_IMPOSSIBLE
-    if kind == HELD_LENGTH and not varies:
-        if target > (1.0 + LONGER) * places[len(places) - 1] * lagrangian.longest(cell, load.gamma, load.wall):
-            return HELD_IMPOSSIBLE
+    if kind == HELD_LENGTH and target >= (1.0 - LONGER) * places[len(places) - 1] * longest_along(tube, load):
+        return HELD_IMPOSSIBLE
     if kind == HELD_ROTATION and not load.p + load.f > 0.0:  # at the clamped ends
         return COMPRESSED
     return PENDING
@@ -109,8 +132,10 @@ def describe(load, target, kind, tube):
         share = ((attempt // RAISES) * 0.5 / (guide.PLACES - 1) + 0.5) % 1.0
         cell = guide.cell_along(tube, share)
         raised = at_pressure(there, there.p * 1.5 ** (attempt % RAISES))
-        now = loaded(raised, unit, cylinder_multiplier(cell, raised, unit))
-        stands = lagrangian.density(1.0, 0.0, cell, now)[0] > 0.0
+        multiplier = cylinder_multiplier(cell, raised, unit)
+        stands = (
+            abs(multiplier) < np.inf and lagrangian.density(1.0, 0.0, cell, loaded(raised, unit, multiplier))[0] > 0.0
+        )
         if stands:
             break
     scale = max(there.p, abs(load.f))

@@ -2,19 +2,19 @@
 
 Toward the uniform stretch u the layer at an end falls as exp(-depth), to meet that of the other end in the middle::
 
-    y = u - (u - 1) (z + q^2/z)/(1 + q^2),    z = exp(-depth),    q = exp(-depth of the middle)
+y = u - (u - 1) (z + q^2/z)/(1 + q^2),    z = exp(-depth),    q = exp(-depth of the middle)
 
-The level of the first integral is that of the middle's uniform tube, and tells the resultant R = T/cosine of the meridian's
-angle (:mod:`..physics.first_integral`) at any other stretch. With it x along the tube, and all that is summed along it, are
-integrals of smooth functions of the depth ::
+The level of the first integral is that of the middle's uniform tube, and tells the resultant R = T/cosine of the
+meridian's angle (:mod:`..physics.first_integral`) at any other stretch. With it x along the tube, and all that is
+summed along it, are integrals of smooth functions of the depth ::
 
-    dx/d(depth) = dy/d(depth) / (sqrt(G) sine),   sine^2 = (R - T)(R + T)/R^2
+dx/d(depth) = dy/d(depth) / (sqrt(G) sine),   sine^2 = (R - T)(R + T)/R^2
 
-between the places where families go slack. Near the middle R - T has no digits: there it follows from its slope, which has
-twice as many. Depths are counted from 0 to 1, finer where the layer begins.
+between the places where families go slack. Near the middle R - T has no digits: there it follows from its slope, which
+has twice as many. Depths are counted from 0 to 1, finer where the layer begins.
 """
 
-from math import exp, sqrt
+from math import exp, log, sqrt
 from typing import NamedTuple
 
 from ...jit import kernel
@@ -29,11 +29,15 @@ APART = 1e-6  # of 2 q |u - 1|: difference of two stretches that has digits
 MEETS = 1e-9  # of q: as near to the middle as counts as there
 LEAST_RATE = 1e-12
 ALMOST = 0.99  # of one
+SHALLOW, DEPTHS = (
+    0.01,
+    30.0,
+)  # depths of a middle that is given: behind a turning point of the uniform tube there is none
 
 
 class Middle(NamedTuple):
-    """Uniform stretch u, rate of the layer, depth of the middle, q, 1/(1 + q^2); stretch and level there, and how x grows
-    with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall.
+    """Uniform stretch u, rate of the layer, depth of the middle, q, 1/(1 + q^2); stretch and level there, and how x
+    grows with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall.
     """
 
     u: float
@@ -52,14 +56,15 @@ class Middle(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Stretch and :class:`..physics.first_integral.Level` of a place, cosine of the meridian's angle there, and how x grows
-    with the share t of the depth.
+    """Stretch and :class:`..physics.first_integral.Level` of a place, cosine of the meridian's angle there, how x grows
+    with the share t of the depth, and by what share R falls short of T where no meridian leads on.
     """
 
     y: float
     at: tuple
     cosine: float
     per_share: float
+    short: float
 
 
 @kernel
@@ -102,9 +107,48 @@ def middle(u, depth, cell, load, scratch):
 
 
 @kernel
+def middle_at(y, cell, load, half, scratch):
+    """``(Middle, how much too far it is)`` of a tube whose middle has the stretch ``y``: where the drive toward it
+    falls with the stretch, the uniform stretch u is where it would be none. Too far by -1 is where there is no drive
+    left.
+
+    Half the tube grows with the logarithm of the drive; what is counted is the drive, as a share of that at which half
+    a tube is ``half`` long: evenly with it, through none.
+    """
+    zero = spread(0.0)
+    (_, L_y, _, L_yy, _, L_vv), near = lagrangian.density_beside(y, zero, cell, load, nothing_yet(zero))
+    level, G_1, psi, energy = lagrangian.level_of(y, cell, load, near)
+    T, s, reach = load.p * y * y + load.f, sqrt(1.0 + G_1), 1.0 - y
+    rise, fall = -L_y / s, max(-L_yy, -L_vv / (half * half)) / s
+    part = fall * reach / rise
+    driven = part > 0.0
+    part = select(driven, part, 1.0)
+    depth = min(max(logarithm(1.0 + part + sqrt(part * (part + 2.0)), scratch), SHALLOW), DEPTHS)
+    q = fallen(depth, scratch)
+    whole, gap = 1.0 / (1.0 + q * q), reach * 2.0 * q / ((1.0 - q) * (1.0 - q))
+    per_depth = sqrt(max(gap * T / select(driven, rise, 1.0), 0.0)) / s
+    rate = sqrt(fall * s / -L_vv)
+    far = min(max(rate * half, 1.0), DEEPEST)
+    least = fall * reach * 2.0 / (1.0 / fallen(far, scratch) - 2.0)
+    return Middle(
+        y - gap, select(driven, 1.0 / per_depth, rate), depth, q, whole, y, level, per_depth, rise,
+        -(L_yy + rise * near[7] / s) / s, s, psi, energy,
+    ), driven, rise / least - 1.0  # fmt: skip
+
+
+@kernel
+def logarithm(number, scratch):
+    """The logarithm of lanes."""
+    put(scratch, 0, number)
+    for lane in range(WIDTH):
+        scratch[0, lane] = log(scratch[0, lane])
+    return get(scratch, 0)
+
+
+@kernel
 def work_of(u, cell, load, half):
-    """What tells states that are as much work, from 0 to 1: how many families pull at the end and not in the middle, or the
-    other way round; of states that are alike in this, the depth of the middle.
+    """What tells states that are as much work, from 0 to 1: how many families pull at the end and not in the middle, or
+    the other way round; of states that are alike in this, the depth of the middle.
     """
     zero, one = spread(0.0), spread(1.0)
     (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
@@ -127,18 +171,21 @@ def look(t, mid, cell, load, near, scratch):
     at = lagrangian.at_level(y, mid.level, cell, load, near)
     T = load.p * y * y + load.f
     beyond = at.R - T
+    short = select(inside, max(-beyond / at.R - CERTAIN, 0.0), 0.0)
     near_by = on * (2.0 / 3.0 * mid.rise + at.rise / 3.0 + mid.bend * on / 6.0)
     beyond = select(beyond > CERTAIN * at.R, beyond, max(near_by, 0.0))
     sine = sqrt(beyond * (beyond + 2.0 * T)) / (T + beyond)
     turned = inside & (sine > 0.0)
     rise = abs(1.0 - mid.u) * over * (z + mid.q)  # of y by the depth
     per_depth = select(turned, rise / (sqrt(1.0 + at.G_1) * select(turned, sine, 1.0)), mid.per_depth)
-    return Place(y, at, T / (T + beyond), per_depth * per_share)
+    return Place(y, at, T / (T + beyond), per_depth * per_share, short)
 
 
 @kernel
 def handed_on(y, at, near):
-    """What the next place may start from: (kind, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), rises as from the one before."""
+    """What the next place may start from: (kind, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), rises as from the one
+    before.
+    """
     zero = spread(0.0)
     alike = (at.kind == near[0]) & (abs(y - near[1]) > APART)
     per_y = 1.0 / select(alike, y - near[1], 1.0)

@@ -25,11 +25,17 @@ def pulled(multiplier, load):
 
 
 @kernel
-def finish(mid, miss, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
-    """Write outputs, numbers and bounds; returns the largest scaled bound of the outputs, rounding left out."""
+def unmet(mid, miss, numbers):
+    """How much of half the tube's length may be missing."""
+    return get(numbers[1], DX) + abs(miss) + FAINT / mid.rate
+
+
+@kernel
+def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
+    """Write outputs, numbers and bounds, where the middle may have ``moved`` by that share of the layer; returns the largest
+    scaled bound of the outputs, rounding left out.
+    """
     sums, missed = numbers[0], numbers[1]
-    wrong = get(missed, DX) + abs(miss) + FAINT / mid.rate  # of half the tube's length
-    moved = 2.0 * mid.q * mid.rate * wrong  # of the middle, as a share of the layer
     rest = fallen(mid.rate * miss, scratch)  # how much of what is left of the layer is left in the middle itself
     outputs = (
         half * mid.s + get(sums, LENGTH), half * mid.y * mid.y * mid.s + get(sums, VOLUME),

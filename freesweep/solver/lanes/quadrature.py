@@ -1,10 +1,10 @@
-"""Free states of physical tubes by quadrature of their first integral, for a vector of designs: no mesh, no Newton's method
-but that for what the fibers leave the wall at one place.
+"""Free states of physical tubes by quadrature of their first integral, for a vector of designs: no mesh, no Newton's
+method but that for what the fibers leave the wall at one place.
 
-A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant finds
-it, first by one rule along the whole depth, then part by part between the places where families go slack
-(:mod:`slack_ends`). What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs` makes
-of the sums what is told.
+A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant
+finds it, first by one rule along the whole depth, then part by part between the places where families go slack
+(:mod:`slack_ends`). What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs`
+makes of the sums what is told.
 """
 
 from ...jit import kernel
@@ -17,7 +17,7 @@ from ..physics.wall import has_any_family, has_two_families
 from . import slack_ends
 from .extremes import widest
 from .meridian import DEEPEST, handed_on, look, middle
-from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WORST, finish, pulled
+from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WORST, finish, pulled, unmet
 from .rule import LAST, PLACES, summed
 from .vector import HUGE, WIDTH, get, mask_of, put, select, some, spread
 
@@ -30,16 +30,16 @@ SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
 
 @kernel
 def along(first, last, mid, cell, load, near, whole, rows, scratch):
-    """Look at the places of one rule between two shares of the depth. ``rows`` (15, > LAST, WIDTH) take how x grows with the
-    share of the part, pulls, and what was handed on; and as the ``whole`` also what else is to be summed and known. Returns
-    what is handed on, and the lanes that may be.
+    """Look at the places of one rule between two shares of the depth. ``rows`` (15, > LAST, WIDTH) take how x grows
+    with the share of the part, pulls, and what was handed on; and as the ``whole`` also what else is to be summed and
+    known. Returns what is handed on, the lanes that may be, and by what share R falls short of T.
     """
-    valid, width = mask_of(-1), last - first
+    valid, width, short = mask_of(-1), last - first, spread(0.0)
     for k in range(LAST + 1):
         here = look(first + width * PLACES[k], mid, cell, load, near, scratch)
         at, y = here.at, here.y
         near = handed_on(y, at, near)
-        valid = valid & (at.room > 0.0)
+        valid, short = valid & (at.room > 0.0), max(short, here.short)
         alpha, beta = slack_ends.pulls(at, load)
         dx = width * here.per_share
         put(rows[DX], k, dx)
@@ -60,23 +60,24 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
         put(rows[PUSH_BETA], k, -pulled(at.b, load))
         put(rows[SQUARE], k, places.outer_square(y, at.G_1, cell, load.wall))
         put(rows[STRAIN], k, places.strain_square(y, at.G_1, at.psi, cell, load.wall))
-    return near, valid
+    return near, valid, short
 
 
 @kernel
 def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
-    """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) limp in the
-    middle, (alpha, beta) lengths in doubt, lanes that may be)``. Brackets of the ends go to ``ends``, what may be handed on
-    to them to ``starts``, (4, MOST, WIDTH).
+    """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) limp in
+    the middle, (alpha, beta) lengths in doubt, lanes that may be, share by which R falls short of T)``. Brackets of the
+    ends go to ``ends``, what may be handed on to them to ``starts``, (4, MOST, WIDTH).
     """
     valid, near, total = mask_of(-1), nothing_yet(spread(0.0)), spread(0.0)
     limp_a, limp_b, doubt_a, doubt_b = mask_of(0), mask_of(0), spread(0.0), spread(0.0)
+    short = spread(0.0)
     for lane in range(WIDTH):
         counts[lane] = 0
     for i in range(pieces):
         left, right = i / pieces, (i + 1) / pieces
-        near, fine = along(spread(left), spread(right), mid, cell, load, near, False, rows, scratch)
-        valid, total = valid & fine, total + summed(rows[DX])[0]
+        near, fine, lack = along(spread(left), spread(right), mid, cell, load, near, False, rows, scratch)
+        valid, total, short = valid & fine, total + summed(rows[DX])[0], max(short, lack)
         limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
         doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
         doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
@@ -85,13 +86,13 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
                 left, right - left, PLACES, rows[ALPHA + family], family, LAST, rows[KIND:], ends, counts, starts
             )
     middle_limp = get(rows[ALPHA], LAST) <= 0.0, get(rows[BETA], LAST) <= 0.0
-    return total, (limp_a, limp_b), middle_limp, (doubt_a, doubt_b), valid
+    return total, (limp_a, limp_b), middle_limp, (doubt_a, doubt_b), valid, short
 
 
 @kernel
 def find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch):
-    """Write the shares of the depth between which no family goes slack to ``edges`` (> MOST + 1, WIDTH); returns how many
-    parts there are, and by how much an end may be off.
+    """Write the shares of the depth between which no family goes slack to ``edges`` (> MOST + 1, WIDTH); returns how
+    many parts there are, and by how much an end may be off.
     """
     most, zero, unsure = 0, spread(0.0), spread(0.0)
     for lane in range(WIDTH):
@@ -125,8 +126,9 @@ def is_mixed(pull):
 
 @kernel
 def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
-    """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss, behind
-    them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN. Returns the lanes that may be.
+    """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss,
+    behind them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN. Returns the lanes
+    that may be.
     """
     valid, near = mask_of(-1), nothing_yet(spread(0.0))
     for k in range(WORST + 4):
@@ -135,7 +137,7 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
     for j in range(parts):
         left, width = get(edges, j), (get(edges, j + 1) - get(edges, j)) / pieces
         for i in range(pieces):
-            near, fine = along(left + i * width, left + (i + 1) * width, mid, cell, load, near, True, rows, scratch)
+            near, fine, _ = along(left + i * width, left + (i + 1) * width, mid, cell, load, near, True, rows, scratch)
             own = width > 0.0  # others have more parts
             valid = valid & fine & ((width < NARROW) | ~(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
             dx, doubt = summed(rows[DX])
@@ -190,31 +192,36 @@ def let_go(mid, cell, load, half):
 
 @kernel
 def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
-    """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out`` (2, >
-    11, WIDTH) takes the outputs, the numbers of :mod:`..along.places`, and their bounds. Returns masks: ``(met, alpha slack
-    or pushed somewhere, beta)``.
+    """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out``
+    (2, > 11, WIDTH) takes the outputs, the numbers of :mod:`..along.places`, and their bounds. Returns masks: ``(met,
+    alpha slack or pushed somewhere, beta)``.
 
-    The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges`` (>
-    MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
+    The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges``
+    (> MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
     """
     mid = middle(u, spread(DEEPEST), cell, load, scratch)
     depth = min(mid.rate * half, DEEPEST)
     slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
     found, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
     unsure, miss, doubts, middle_limp = spread(0.0), spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
-    for _ in range(FITS):
+    rough, fine = 0, 0  # trials that each lane has had, whatever its neighbours need
+    while fine < FITS:
         mid = middle(u, depth, cell, load, scratch)
-        total, (alpha, beta), middle_limp, doubts, valid = scan(
+        total, (alpha, beta), middle_limp, doubts, valid, _ = scan(
             pieces, mid, cell, load, rows, ends, counts, starts, scratch
         )
         active = active & valid
         miss = half - total
         long = (depth >= DEEPEST) & (miss >= 0.0)  # the middle is the uniform tube
+        rough += 1
         wrong = active & ~settled & ~long & (abs(miss) * mid.rate * mid.q > ROUGH)
+        if rough == FITS:
+            active, wrong = active & ~wrong, mask_of(0)
         arrived = active & ~wrong & ~settled
         settled = settled | arrived
         before = select(arrived, depth, before[0]), before[1]
         if not some(wrong):
+            fine += 1
             parts, unsure = find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch)
             active = active & (unsure < slack_ends.ENOUGH)
             active = active & between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)
@@ -225,7 +232,8 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    largest = finish(mid, miss, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
+    moved = 2.0 * mid.q * mid.rate * unmet(mid, miss, numbers)
+    largest = finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
     if not has_any_family(load.wall):

@@ -1,0 +1,206 @@
+"""The branches of many physical tubes that are the same all along, side by side: the questions of all are answered
+together, by vectors (:mod:`..lanes.by_middle`).
+"""
+
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from ..load_path import is_loaded, settling_pressure
+from ..physics.wall import LOOSE
+from ..problem import THREADS
+from ..stability import PUSHED
+from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
+from .question import Answer
+from .states import middle_at, state_at, turning_point
+from .steps import ARRIVED, LARGEST_STEP, TURNED, Point, begin, follow
+from .ways import fading, ways_of
+
+PIECES = 1, 2, 4, 16  # in which each part of a tube is summed, one try after the other
+
+
+class Rows(NamedTuple):
+    """States of one problem that are asked for, and where they go: see :func:`..free.free_states.follow_many`."""
+
+    pressures: np.ndarray
+    values: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    slack: np.ndarray
+    limit: np.ndarray
+
+    def waiting(self):
+        """Numbers of the rows that are PENDING."""
+        return np.flatnonzero(self.status == PENDING).tolist()
+
+
+def follow_branches(problems, first, pressures, kinds, accuracy, found):
+    """Write what is PENDING of the states ``found`` of physical ``problems``, as far as their branches tell: arguments
+    as of :func:`..batch.walk_all`; ``kinds`` are pairs of what all problems of one vector share, and which problems
+    those are.
+    """
+    settled, walks = settling_pressure(problems), {}
+    for k in range(len(problems)):
+        own = slice(first[k], first[k + 1])
+        if np.any(found.status[own] == PENDING):
+            rows = Rows(pressures[own], *(array[own] for array in found[:4]), found.limits[k])
+            walks[k] = walk(problems[k], settled[k], rows, accuracy)
+    with np.errstate(all="ignore"):  # of what is no tube nothing can be told
+        asked = {k: next(steps, None) for k, steps in walks.items()}
+        while asked := {k: asked_of for k, asked_of in asked.items() if asked_of is not None}:
+            answers = answered(problems, kinds, asked, found.values.shape[1])
+            asked = {k: _next(walks[k], answer) for k, answer in answers.items()}
+
+
+def _next(steps, answer):
+    try:
+        return steps.send(answer)
+    except StopIteration:
+        return None
+
+
+def answered(problems, kinds, asked, columns):
+    """Answers to what is ``asked`` of problems, pairs of a way and a question, by their number."""
+    from ..lanes import by_middle
+
+    owners = np.array(list(asked), np.int64)
+    ways, questions = zip(*asked.values())
+    middles, shares, fineness = np.array(questions).T
+    given, fineness = np.array([way.load_at(share) for way, share in zip(ways, shares.tolist())]), fineness.astype(int)
+    answers = {}
+    for kind, some in kinds:
+        for fine in range(len(PIECES)):
+            rows = np.flatnonzero(some[owners] & (fineness == fine))
+            if not len(rows):
+                continue
+            values, bounds = np.empty((2, len(rows), columns))
+            told = np.empty((len(rows), by_middle.COUNT))
+            by_middle.measure_physical(
+                problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, told
+            )
+            scales = np.column_stack([told[:, by_middle.SCALES :], np.ones(len(rows))])
+            for n, k in enumerate(owners[rows].tolist()):
+                miss, doubt, slack = told[n, : by_middle.SCALES].tolist()
+                answers[k] = Answer(miss, doubt, values[n], bounds[n], scales[n], int(slack))
+    return answers
+
+
+def on(way, steps):
+    """The questions of ``steps``, each with the ``way`` that it belongs to."""
+    answer = None
+    while True:
+        try:
+            question = steps.send(answer)
+        except StopIteration as end:
+            return end.value
+        answer = yield way, question
+
+
+def walk(problem, settled, rows, accuracy):
+    """Write the rows of a problem whose loads have ``settled`` at that pressure."""
+    locked = [i for i in rows.waiting() if rows.pressures[i] == np.inf]
+    if locked and problem[THREADS] <= LOOSE:  # a single family locks nothing
+        yield from on(fading(problem), lock(locked, rows, accuracy))
+    asked = [i for i in rows.waiting() if rows.pressures[i] < np.inf]
+    if not asked:
+        return
+    rise, pressure = ways_of(problem, settled)
+    if not is_loaded(problem[None])[0]:
+        point = yield from on(pressure, begin())
+        if point is not None:
+            later = [i for i in asked if pressure.share_of(rows.pressures[i]) >= point.share]
+            yield from on(pressure, along(pressure, point, 1.0, later, rows, accuracy))
+        return
+    status, middle = yield from on(rise, settle(rise))
+    if status != OK:
+        rows.status[asked] = status
+        return
+    for sense in (1.0, -1.0):
+        own = [i for i in asked if (rows.pressures[i] - settled) * sense >= 0.0 and rows.status[i] == PENDING]
+        start = Point(middle, pressure.share_of(settled), 0.5 * pi * sense, 0.0, 0.0, sense)
+        yield from on(pressure, along(pressure, start, sense, own, rows, accuracy))
+
+
+def nothing(here, there):
+    """What is asked for on a step of a way of which the end counts alone."""
+    yield from ()
+
+
+def settle(way):
+    """``(status, stretch in the middle)`` at the end of the way of loads."""
+    point = yield from begin()
+    if point is None:
+        return PENDING, np.nan
+    what, points = yield from follow(point, 1.0, 1.0, nothing)
+    if what != ARRIVED:
+        return BEYOND_LIMIT if what == TURNED else lost(way, points[-1]), np.nan
+    middle = yield from middle_at(1.0, *points[-2:])
+    return (PENDING, np.nan) if middle is None else (OK, middle)
+
+
+def lock(asked, rows, accuracy):
+    """Write locked shapes, at the end of the way on which the wall fades."""
+    point = yield from begin()
+    if point is None:
+        return
+    what, points = yield from follow(point, 1.0, 1.0, nothing)
+    if what == ARRIVED:
+        for i in asked:
+            yield from write(1.0, *points[-2:], i, rows, accuracy)
+
+
+def lost(way, point):
+    """Why no step leads on from a point: nothing is left to keep the tube round, or nobody knows."""
+    pressure, force, *_ = way.load_at(point.share)
+    part = pressure * point.middle**2
+    return COMPRESSED if part + force < PUSHED * max(part, abs(force)) else PENDING
+
+
+def along(way, point, sense, asked, rows, accuracy):
+    """Write the rows ``asked`` for of a branch of the pressure, from a point on in this ``sense``."""
+    if not asked:
+        return
+    shares = {i: way.share_of(rows.pressures[i]) for i in asked}
+
+    def answer(here, there):
+        for i, share in shares.items():
+            if rows.status[i] == PENDING and sense * share <= sense * there.share:
+                yield from write(share, here, there, i, rows, accuracy)
+
+    what, points = yield from follow(point, sense, max(sense * share for share in shares.values()), answer)
+    waiting = {i: share for i, share in shares.items() if rows.status[i] == PENDING}
+    if what == TURNED:
+        yield from end_at(way, points, sense, waiting, rows, accuracy)
+    elif what != ARRIVED:
+        rows.status[list(waiting)] = lost(way, points[-1])
+
+
+def end_at(way, points, sense, shares, rows, accuracy):
+    """Write the rows that wait at these ``shares``, of a branch that turns back behind the last but one of its
+    ``points``.
+    """
+    far = sense * points[-2].share + LARGEST_STEP  # it turns nearer than a step
+    beyond = [i for i, share in shares.items() if sense * share > far]
+    rows.status[beyond] = BEYOND_LIMIT
+    if sense < 0.0 and len(beyond) == len(shares):  # a limit pressure is one of rising pressures
+        return
+    share, bound, top = yield from turning_point(points, sense)
+    if sense > 0.0:
+        rows.limit[:] = way.pressure_for(share, bound)
+    for i, own in shares.items():
+        if sense * own >= sense * share - bound:
+            rows.status[i] = BEYOND_LIMIT
+        else:
+            near = points[-2] if sense * own > sense * points[-2].share else points[-3]
+            yield from write(own, near, top, i, rows, accuracy)
+
+
+def write(share, near, far, i, rows, accuracy):
+    """Write the state at a ``share`` between two points to row ``i``, if it is met."""
+    found = yield from state_at(share, near, far, accuracy)
+    if found is None:
+        return
+    answer, bounds = found
+    rows.values[i], rows.bounds[i], rows.slack[i] = answer.values, bounds, answer.slack
+    rows.status[i] = OK if np.max(bounds[: len(answer.scales)] / answer.scales) <= accuracy else INACCURATE

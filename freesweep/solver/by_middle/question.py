@@ -1,0 +1,91 @@
+"""By how much two numbers miss being a state of a branch: the stretch in the middle, and the share of a way along which
+loads change.
+
+What a state is comes from whoever is asked: all functions of this room but those of :mod:`many` are generators that
+yield a :class:`Question` and are sent an :class:`Answer`, so that many branches are followed side by side, their
+questions answered together. To each pair of numbers belongs by how much it misses being a state, times the strain in
+the middle, a smooth number: a branch is where that is none.
+"""
+
+from math import isnan
+from typing import NamedTuple
+
+import numpy as np
+
+STILL = 1e-9  # strain beside which the middle is not looked at: the miss is a ratio of two small numbers there
+CLOSE = 1e-11  # a miss that is none
+FAINT = 0.1  # share of a doubt that cannot be told from none
+MOST_HALVINGS, ROUNDING = 60, 4e-16  # of a bracket, and its width where it ends
+TRIES = 4
+# tries, and a doubt of the miss that needs no more of them: along a branch, where a point counts, and where it turns
+ALONG, SHARPLY, FINEST = (range(TRIES), 1e-2), (range(TRIES), 1e-7), (range(TRIES - 1, TRIES), 0.0)
+WIDER = 3.0  # times as far away is looked next for a change of sign
+
+
+class Question(NamedTuple):
+    """A stretch in the middle, a share of the way, and how fine the answer shall be: the number of its try."""
+
+    middle: float
+    share: float
+    fineness: int
+
+
+class Answer(NamedTuple):
+    """By how much a question misses being a state (NaN: no tube at all), and what may be missing of that, both times
+    the strain; outputs, what may be missing of them, and by what they are measured; families that are slack.
+    """
+
+    miss: float
+    doubt: float
+    values: np.ndarray
+    bounds: np.ndarray
+    scales: np.ndarray
+    slack: int
+
+
+def ask(middle, share, tries=ALONG):
+    """The answer, from the first of the ``tries`` that leaves so little doubt."""
+    if abs(middle - 1.0) < STILL:
+        middle = 1.0 + (STILL if middle >= 1.0 else -STILL)
+    answer = None
+    for fineness in tries[0]:
+        answer = yield Question(middle, share, fineness)
+        if not answer.doubt > tries[1]:
+            break
+    strain = middle - 1.0
+    return answer._replace(miss=answer.miss * strain, doubt=answer.doubt * abs(strain))
+
+
+def crossing(place, low, high, width=0.0, tries=ALONG):
+    """``(t, answer, other)`` where the miss changes its sign along ``place(t)``, a stretch and a share, between two
+    pairs of a t and its answer, as exactly as that ``width``; ``other`` is a pair beside it. None where the way there
+    leads through what is no tube.
+
+    By the regula falsi of Illinois; a bracket that it does not halve is halved.
+    """
+    weights, wide = [1.0, 1.0], abs(high[0] - low[0])
+    for trial in range(MOST_HALVINGS):
+        below, above = weights[0] * low[1].miss, weights[1] * high[1].miss
+        t = (low[0] * above - high[0] * below) / (above - below)
+        if trial % 3 == 2:
+            if abs(high[0] - low[0]) > 0.5 * wide or not min(low[0], high[0]) < t < max(low[0], high[0]):
+                t = 0.5 * (low[0] + high[0])
+            wide = abs(high[0] - low[0])
+        answer = yield from ask(*place(t), tries)
+        if isnan(answer.miss):
+            return None
+        same = answer.miss * low[1].miss > 0.0
+        other = low if abs(low[1].miss) < abs(high[1].miss) else high
+        if same:
+            low, weights = (t, answer), [1.0, 0.5 * weights[1]]
+        else:
+            high, weights = (t, answer), [0.5 * weights[0], 1.0]
+        none = max(CLOSE * abs(place(t)[0] - 1.0), FAINT * answer.doubt)
+        if abs(answer.miss) <= none or abs(high[0] - low[0]) <= max(width, ROUNDING * (1.0 + abs(t))):
+            break
+    return t, answer, other
+
+
+def slope_of(t, answer, other):
+    """How fast the miss changes beside a :func:`crossing`."""
+    return abs((answer.miss - other[1].miss) / (t - other[0])) if answer.miss != other[1].miss else np.inf

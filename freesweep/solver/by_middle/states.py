@@ -1,0 +1,142 @@
+"""What is told of a branch between its points: turning points, and the states that are asked for."""
+
+from math import isnan
+
+import numpy as np
+
+from .question import ALONG, FAINT, FINEST, TRIES, WIDER, ask, crossing, slope_of
+
+CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turning point stands out from its neighbours
+SLIGHT, LEAST_ASIDE = 1e-3, 1e-13  # a miss, and a stretch, by which a state is moved to see what changes
+GOLDEN, PEAK_STEPS, FLAT, THIN = 0.381966, 40, 1e-9, 1e-7  # to a turning point; how exactly share and stretch are met
+NUDGE, NUDGES = 0.01, 4  # of the way between the outer ones of three points
+NEAR = 1e-2  # of the way between two points: where a state is looked for first
+
+
+def middle_at(share, near, far):
+    """The stretch in the middle at a ``share`` of the way, between two points of the branch, as exactly as they are."""
+    met = yield from met_at(
+        share, near, far, near.middle + part_of(share, near, far) * (far.middle - near.middle), ALONG
+    )
+    return None if met is None else met[0]
+
+
+def part_of(share, near, far):
+    """How far between two points a share of the way is met."""
+    return (share - near.share) / (far.share - near.share)
+
+
+def met_at(share, near, far, first, tries, aside=None):
+    """``(middle, answer, other)`` at a ``share`` of the way, near a ``first`` guess of the stretch in the middle, see
+    :func:`crossing`; it is looked for ``aside`` first.
+    """
+    reach = abs(far.middle - near.middle) + abs(far.share - near.share)
+    distance = NEAR * reach if aside is None else aside
+    rising = 1.0 if far.share > near.share else -1.0
+
+    def place(t):
+        return first + t, share
+
+    answer = yield from ask(*place(0.0), tries)
+    before, below = (
+        (0.0, answer),
+        answer.miss * near.left * rising > 0.0,
+    )  # to the left of what rises stretches are smaller
+    while distance < 2.0 * reach:
+        t = distance if below else -distance
+        answer = yield from ask(*place(t), tries)
+        if (answer.miss * near.left * rising > 0.0) != below:
+            met = yield from crossing(place, before, (t, answer), tries=tries)
+            return None if met is None else (first + met[0], met[1], (first + met[2][0], met[2][1]))
+        before, distance = (t, answer), WIDER * distance
+    return None
+
+
+def state_at(share, near, far, accuracy):
+    """``(answer, bounds)`` of the state at a ``share`` of the way, between two points of the branch; None where it is
+    not met. What no try tells to the ``accuracy`` is told by the last.
+    """
+    middle, stays, aside = near.middle + part_of(share, near, far) * (far.middle - near.middle), None, None
+    for fineness in range(TRIES):
+        tries = range(fineness, fineness + 1), np.inf
+        met = yield from met_at(share, near, far, middle, tries, aside)
+        if met is None:
+            return stays
+        middle, answer, other = met
+        slope = slope_of(middle, answer, other)
+        moved = max(min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle)), LEAST_ASIDE)
+        other = yield from ask(middle + moved, share, tries)
+        change = np.abs(other.values - answer.values) / max(abs(other.miss - answer.miss), 1e-300)
+        bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
+        stays = answer, bounds
+        if np.max(bounds[: len(answer.scales)] / answer.scales) <= accuracy:
+            break
+        aside = max(FAINT * answer.doubt / slope, LEAST_ASIDE)
+    return stays
+
+
+def turning_point(points, sense):
+    """``(share, bound, point)`` of the largest share, in this ``sense``, of a branch that passes three ``points``, the
+    middle one of which lies farther than the others; None where it is not found.
+
+    At a turning point the branch runs across the way: to each stretch between the outer points belongs one share.
+    """
+    (a, fa), (b, fb), (c, fc) = ((point.middle, sense * point.share) for point in points)
+    doubt, reach = 0.0, max(abs(fb - fa), abs(fb - fc)) + FLAT
+    for trial in range(PEAK_STEPS):
+        left, right = (b - a) * (fb - fc), (b - c) * (fb - fa)
+        t = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right) if left != right else b
+        if not min(a, c) < t < max(a, c) or abs(t - b) < FLAT or trial % 3 == 2:
+            t = b + GOLDEN * ((c - b) if abs(c - b) > abs(b - a) else (a - b))
+        t, met = yield from clear(t, sense * fb, sense, reach, NUDGE * (c - a))
+        if met is None:
+            break
+        share, own = met
+        if sense * share > fb + own + doubt:  # what hardly differs is no larger
+            doubt = own
+            (a, fa), (c, fc) = ((a, fa), (b, fb)) if (t - b) * (c - b) < 0.0 else ((b, fb), (c, fc))
+            b, fb = t, sense * share
+        elif (t - b) * (c - b) > 0.0:
+            c, fc = t, sense * share
+        else:
+            a, fa = t, sense * share
+        if max(fb - fa, fb - fc) < FLAT or abs(c - a) < THIN:
+            break
+    return sense * fb, doubt + STANDS_OUT * max(fb - fa, fb - fc, 0.0), points[1]._replace(middle=b, share=sense * fb)
+
+
+def clear(middle, share, sense, reach, nudge):
+    """A stretch near that of the ``middle``, and what :func:`across` tells of it: some places are in more doubt than
+    others, as fibers go slack now here, now there between those that are summed.
+    """
+    best = middle, None
+    for k in range(NUDGES):
+        met = yield from across(middle + k * nudge, share, sense, reach)
+        if met is not None and (best[1] is None or met[1] < best[1][1]):
+            best = middle + k * nudge, met
+        if met is None or met[1] < FLAT:
+            break
+    return best
+
+
+def across(middle, share, sense, reach):
+    """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than
+    ``reach``.
+    """
+
+    def place(t):
+        return middle, share + t
+
+    answer = yield from ask(middle, share, FINEST)
+    distance, first = FAINT**3 * reach, (0.0, answer)
+    while distance < 4.0 * reach and not isnan(answer.miss):
+        for t in (-sense * distance, sense * distance):
+            other = yield from ask(*place(t), FINEST)
+            if other.miss * answer.miss < 0.0:
+                met = yield from crossing(place, first, (t, other), tries=FINEST)
+                if met is None:
+                    return None
+                t, found, _ = met
+                return share + t, (found.doubt + abs(found.miss)) / slope_of(*met) + FLAT * FAINT
+        distance *= WIDER
+    return None

@@ -1,0 +1,175 @@
+"""A branch, step by step, in the two numbers of :mod:`question`.
+
+To its left the miss is of one sign all along, to its right of the other. From a point of it the branch goes on where
+the sign changes on a circle: round a corner, where fibers go slack, or a fold as sharp as a needle no less than where
+it is smooth, and never to another branch beside it, which has its signs the other way round.
+"""
+
+from math import atan2, cos, exp, hypot, isnan, pi, sin
+from typing import NamedTuple
+
+from .question import SHARPLY, WIDER, ask, crossing
+
+FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
+SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
+STRAY, CALM = 0.3, 0.1  # turns of a step [radian]: above the first it is shortened, below the second doubled
+SHORTER = 0.3
+SPREAD = 0.01  # the first angle at which the change of sign is looked for
+KEPT = 5  # points, of which the last may tell that the first lay farther
+SMALL = 0.1  # of the step before: a step for which a point has to be known to rounding
+SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be known along it
+FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
+MOST_STEPS = 2000
+BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed
+LEAST_SHARE, EARLY = 1e-9, 0.05  # of the way, where it is looked for, and up to where it has hardly begun
+ARRIVED, TURNED, LOST = range(3)
+
+
+class Point(NamedTuple):
+    """A state of a branch: stretch in the middle, share of the way; direction [radian] and length of the step that led
+    there, how fast the direction turns, and the sign of the miss to the left. A first point has no step; its direction
+    is one from which that of the branch is less than a right angle away.
+    """
+
+    middle: float
+    share: float
+    chord: float
+    step: float
+    turn: float
+    left: float
+
+
+def begin():
+    """The first :class:`Point` of a branch from rest, where the load is small enough to have one state only; None where no
+    strain is seen on the way.
+    """
+    first = None
+    for strain in BEGINNINGS:
+        for middle in (1.0 + strain, 1.0 - strain):
+            share = yield from strained(middle)
+            if share is not None and (first is None or share < first.share):
+                first = Point(middle, share, atan2(share, middle - 1.0), hypot(share, middle - 1.0), 0.0, 1.0)
+                if share < EARLY:
+                    return first
+    return first
+
+
+def strained(middle):
+    """The share of the way at which a middle is first strained that much; None where it never is."""
+    share, before = LEAST_SHARE, None
+    while share <= 1.0:
+        answer = yield from ask(middle, share)
+        if answer.miss * (middle - 1.0) >= 0.0:
+            break
+        before, share = (share, answer), WIDER * share
+    else:
+        return None
+    if before is None:
+        return None
+    met = yield from crossing(lambda t: (middle, t), before, (share, answer), SHARP * share)
+    return None if met is None else met[0]
+
+
+def follow(point, sense, far, answer):
+    """Follow a branch from a point on in this ``sense``, until the share ``far`` is passed; ``answer(here, there)``
+    answers what is asked for on each step. Returns ``(ARRIVED, TURNED or LOST, the last points)``: where
+    the branch has TURNED three, between the outer ones of which its turning point lies.
+    """
+    step, points = FIRST_STEP, [point]
+    for _ in range(MOST_STEPS):
+        if len(points) > 1 and sense * points[-1].share >= far:
+            return ARRIVED, points
+        points[-1], ahead, longer = yield from advance(points[-1], step)
+        if ahead is None:
+            return LOST, points
+        points = [*points[1 - KEPT :], ahead]
+        if (yield from goes_on(points, sense)):
+            yield from answer(*points[-2:])
+            step = longer
+        elif len(points) > 2:
+            return TURNED, (yield from around_top(points, sense))
+        else:  # a turning point has a point before it
+            points, step = points[:1], SHORTER * step
+            if step < SMALLEST_STEP:
+                return LOST, points
+    return LOST, points
+
+
+def advance(here, step):
+    """``(here, point, step)``: the point, as exactly as was needed, the next one of the branch, and how long the step
+    after it may be; no next one where what lies ahead is no tube.
+    """
+    sharp = False
+    while True:
+        fresh = here.step == 0.0
+        toward = here.chord + 0.5 * here.turn * (here.step + step)
+
+        def place(angle, here=here, step=step, toward=toward):
+            return here.middle * exp(step * cos(toward + angle)), here.share + step * sin(toward + angle)
+
+        angle = yield from leaves(here, place, pi if step <= SHORT_STEP else 0.5 * pi if fresh else STRAY)
+        if angle is not None:
+            smooth = abs(angle) < STRAY and not fresh
+            turn = (toward + angle - here.chord) / (0.5 * (here.step + step)) if smooth else 0.0
+            point = Point(*place(angle), toward + angle, step, turn, here.left)
+            return here, point, min(2.0 * step if fresh or abs(angle) < CALM else step, LARGEST_STEP)
+        if step <= SMALLEST_STEP:
+            return here, None, step
+        step *= SHORTER if step > SHORT_STEP / SHORTER or step <= SHORT_STEP else SHORT_STEP / step
+        if not sharp and not fresh and step < SMALL * here.step:
+            here, sharp = (yield from sharpened(here)), True
+
+
+def leaves(here, place, widest):
+    """The angle, not wider than the ``widest``, at which a branch leaves a circle round ``here``; None where it is not
+    met.
+    """
+    answer = yield from ask(*place(0.0))
+    if isnan(answer.miss):
+        return None
+    rightward = answer.miss * here.left > 0.0  # the branch lies to the right
+    angle, before = SPREAD, (0.0, answer)
+    while True:
+        angle = min(angle, widest)
+        t = -angle if rightward else angle
+        answer = yield from ask(*place(t))
+        if isnan(answer.miss):
+            return None
+        if (answer.miss * here.left > 0.0) != rightward:
+            break
+        if angle == widest:
+            return None
+        before, angle = (t, answer), WIDER * angle
+    met = yield from crossing(place, before, (t, answer), SHARP)
+    return None if met is None else met[0]
+
+
+def around_top(points, sense):
+    """The three of the ``points``, made exact, of which the middle one has the largest share in this ``sense``."""
+    exact = []
+    for point in points:
+        exact.append((yield from sharpened(point)))
+    top = max(range(1, len(exact) - 1), key=lambda k: sense * exact[k].share)
+    return exact[top - 1 : top + 2]
+
+
+def goes_on(points, sense):
+    """Whether the last step of a branch led on, in this ``sense``; where it hardly did, its ends are first made exact."""
+    here, there = points[-2:]
+    if abs(there.share - here.share) < FLAT * SHARP * (here.step + there.step):
+        points[-2], points[-1] = (yield from sharpened(here)), (yield from sharpened(there))
+    return sense * points[-1].share > sense * points[-2].share
+
+
+def sharpened(here):
+    """The same point, to rounding."""
+
+    def place(t):
+        return here.middle * exp(-t * sin(here.chord)), here.share + t * cos(here.chord)
+
+    far = 2.0 * SHARP * here.step
+    low, high = (-far, (yield from ask(*place(-far), SHARPLY))), (far, (yield from ask(*place(far), SHARPLY)))
+    if not low[1].miss * high[1].miss < 0.0:
+        return here
+    met = yield from crossing(place, low, high, tries=SHARPLY)
+    return here if met is None else here._replace(middle=place(met[0])[0], share=place(met[0])[1])

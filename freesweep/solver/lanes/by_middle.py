@@ -1,0 +1,91 @@
+"""Half tubes of given stretch in the middle, for a vector of designs: how much too long each is, and all that is told
+of it. What the branch of a physical tube is made of (:mod:`..constant.branch_by_middle`).
+"""
+
+from math import exp
+
+import numpy as np
+
+from ...jit import entry_point, kernel
+from ..numerics.nested import SMALLEST_TOLERANCE
+from ..physics import lagrangian
+from ..problem import FORCE, GAMMA, PHYSICAL, TORQUE
+from . import slack_ends
+from .meridian import DEEPEST, middle_at
+from .outputs import DX, finish, unmet
+from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
+from .quadrature import between_ends, find_ends, scan
+from .rule import LAST
+from .vector import WIDTH, bits, get, mask_of, put, select, spread
+
+OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
+TOLD = MISS, DOUBT, SLACK, SCALES = range(4)  # what is told beside outputs: three numbers, and from the last on four
+COUNT = SCALES + 4
+AT_LEAST = 0.1  # of a depth
+ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middle
+
+
+@kernel
+def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numbers, scratch, counts, out, told):
+    """What is told of half tubes whose middles have the stretch ``y``, in the ``active`` lanes: outputs, and what sums
+    may miss, to ``out`` as :func:`.quadrature.solve` does; to ``told`` (COUNT, WIDTH) how much the drive of the middle
+    is too large for a tube of that ``half`` length (:func:`.meridian.middle_at`), what may be missing of that, and by
+    what outputs are measured. Returns masks: (alpha slack or pushed somewhere, beta).
+    """
+    zero = spread(0.0)
+    mid, driven, lack = middle_at(y, cell, load, half, scratch)
+    active = active & driven
+    _, (alpha, beta), middle_limp, doubts, valid, short = scan(
+        pieces, mid, cell, load, rows, ends, counts, starts, scratch
+    )
+    parts, unsure = find_ends(mid, cell, load, active & valid, ends, counts, starts, edges, scratch)
+    fine = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch) & (unsure < slack_ends.ENOUGH)
+    miss = half - get(numbers[0], DX)
+    put(scratch, 0, min(max(min(mid.rate * miss, DEEPEST - mid.depth), -DEEPEST), DEEPEST))
+    for lane in range(WIDTH):
+        scratch[0, lane] = exp(scratch[0, lane])
+    lack = select(driven, select(short > 0.0, -1.0 - short, get(scratch, 0) - 1.0), min(lack, -1.0))
+    put(told, MISS, select(driven & ~valid, np.nan, lack))
+    doubt = select(fine, unmet(mid, zero, numbers) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)), np.inf)
+    put(told, DOUBT, select(driven & valid, doubt, 0.0))
+    rest = select(mid.depth >= DEEPEST - AT_LEAST, max(miss, 0.0), 0.0)  # what is left of a long tube is uniform
+    finish(mid, rest, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
+    outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
+    scale, _ = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
+    put(told, SCALES, scale[0])
+    put(told, SCALES + 1, scale[1])
+    put(told, SCALES + 2, scale[2])
+    put(told, SCALES + 3, scale[3])
+    return alpha, beta
+
+
+@entry_point
+def measure_physical(problems, owners, given, middles, constants, layers, pieces, values, bounds, told):
+    """:func:`measure` half of each physical tube ``problems[owners[i]]`` under the load ``given[i]``, the columns
+    OF_LOAD, whose middle has the stretch ``middles[i]``, in so many ``pieces``; other arguments as of
+    :func:`.free.solve`. Rows of ``values``, ``bounds`` and ``told`` (n, COUNT) take what is told.
+    """
+    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
+    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(4, COLUMNS)
+    columns, start, scratch, own = small[0], small[1], small[2], small[3]
+    counts = np.zeros(WIDTH, np.int64)
+    for group in range(0, len(owners), WIDTH):
+        count = min(WIDTH, len(owners) - group)
+        for lane in range(WIDTH):
+            row = group + min(lane, count - 1)
+            enter(lane, problems[owners[row]], columns)
+            start[0, lane] = middles[row]
+            for k in range(len(OF_LOAD)):
+                columns[OF_LOAD[k], lane] = given[row, k]
+        cell, _, load = loads(columns, constants, PHYSICAL, layers)
+        alpha, beta = measure(
+            get(start, 0), cell, load, get(columns, LENGTH), mask_of((1 << count) - 1), pieces, room, ends[:5], ends[5:],
+            edges, numbers[:2], scratch, counts, numbers[2:], own,
+        )  # fmt: skip
+        for lane in range(count):
+            row = group + lane
+            for k in range(values.shape[1]):
+                values[row, k], bounds[row, k] = numbers[2, k, lane], numbers[3, k, lane]
+            for k in range(COUNT):
+                told[row, k] = own[k, lane]
+            told[row, SLACK] = ((bits(alpha) >> lane) & 1) | (((bits(beta) >> lane) & 1) << 1)
