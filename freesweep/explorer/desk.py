@@ -164,7 +164,7 @@ class Desk:
         for source in dict.fromkeys(one.source for one in wanted if one.source in FAMILY_OF):
             if source not in self._made:
                 with self._making:
-                    self.reader.table(FAMILY_OF[source]).variable(source)
+                    self.reader.table(FAMILY_OF[source]).make([source])
                     self._made.add(source)
         return wanted
 

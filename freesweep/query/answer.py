@@ -5,6 +5,7 @@ import numpy as np
 from ..atlas.schema import EXCHANGED
 from ..status import DEGENERATE, INACCURATE, NOT_INTERPOLABLE, OK
 from . import errors, reference, spline
+from .calibration import CLEAR, FILLED, NEAR_HOLES
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED, TOLD, TOLD_FROM
 from .locate import place
@@ -34,6 +35,7 @@ class Inquiry:
             table.strides, table.codes, table.cells, self.points, self.pieces, self.shares, self.marks,
         )  # fmt: skip
         self.states = table.predictor.states(table.family.kind, self.points)
+        self.sides = table.side_of(self.states) if len(table.sides) > 1 else None
         self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
         self.node = self.marks[:, 4]
         self.exact = self.node >= 0
@@ -60,28 +62,51 @@ class Inquiry:
 
     def effects(self, name, orders, order=None):
         """Interpolated end effects (n,); only at the places ``order`` if they are given."""
-        table, found = self.table, np.empty(self.size)
+        table, found = self.table, np.full(self.size, np.nan)
         order = self.order if order is None else order
-        args = (table.knots, table.windows, table.labels, table.strides, self.pieces, self.shares, order, orders, found)
-        spline.interpolate(table.variable(name).values, *args)
+        places = table.knots, table.windows, table.labels, table.strides, self.pieces, self.shares
+        for side, some in self._by_side(order):
+            spline.interpolate(table.variable(name, side).values, *places, some, orders, found)
         return found
 
-    def estimate(self, name, scales):
+    def _by_side(self, order):
+        """The places ``order`` (k,) by the sides of the table that they lie on: (side, places)."""
+        if len(self.table.sides) == 1:
+            return [(self.table.sides[0], order)]
+        return [(side, order[self.sides[order] == side]) for side in self.table.sides]
+
+    def known(self, name, places=None):
+        """What is known of the cells that places (k,) lie in, (k, ROUGH + d): of all, if none are given."""
+        places = self.order if places is None else places
+        found = np.zeros((self.size, ROUGH + len(self.table.axes)), np.float32)
+        for side, some in self._by_side(places):
+            found[some] = self.table.variable(name, side).cells.at(self.cell[some])
+        return found
+
+    def interpolated(self, name):
+        """End effects of one variable (n,), and what is known of the cells that they lie in (n, ROUGH + d)."""
+        name = TOLD_FROM.get(name, name)
+        return self.effects(name, self.orders()), self.known(name)
+
+    def estimate(self, name, scales, interpolated=None):
         """``(value, estimate, bound, beside)``: interpolated, what the next order would add, what was stored wrongly, and
-        whether beside a hole; ``scales`` (d, RANKS) of the estimate.
+        how it lies to holes, as :mod:`calibration` has it; ``scales`` (d, RANKS) of the estimate. What was ``interpolated``
+        is taken if it is given.
         """
         if name in TOLD_FROM:
             if self._told is None:  # one calculation tells all of them
-                *told, beside = self.estimate(TOLD_FROM[name], scales)
+                *told, beside = self.estimate(TOLD_FROM[name], scales, interpolated)
                 self._told = *self.table.predictor.worst_places(self.points, *told), beside
             *told, beside = self._told
             return *(array[list(TOLD).index(name)] for array in told), beside
-        effects, known = self.effects(name, self.orders()), self.table.variable(name).cells[self.cell]
-        rest = known[:, DOUBT] + self.rests(known, scales).sum(axis=1)
+        effects, known = interpolated or self.interpolated(name)
+        doubt, rest = known[:, DOUBT].astype(float), self.rests(known, scales).sum(axis=1)
+        beside = np.where(known[:, BESIDE] > 0.0, np.where(doubt > rest, FILLED, NEAR_HOLES), CLEAR)
+        rest += doubt
         if self.method == LINEAR:
             rest += np.abs(effects - self.effects(name, np.zeros(len(self.table.axes), np.int64)))
         noise = known[:, NOISE].astype(float)
-        return *self._restored(name, slice(None), effects, rest, noise), known[:, BESIDE] > 0.0
+        return *self._restored(name, slice(None), effects, rest, noise), beside
 
     def rests(self, known, scales, places=slice(None)):
         """What the next order would add along each axis (k, d) at some places, from what is ``known`` of their cells.
@@ -151,7 +176,7 @@ class Inquiry:
         places = np.flatnonzero(refused)
         if not len(places):
             return
-        rests = self.rests(self.table.variable(name).cells[self.cell[places]], scales, places)
+        rests = self.rests(self.known(name, places)[places], scales, places)
         worst = np.bincount(rests.argmax(axis=1)[rests.any(axis=1)], minlength=len(self.table.axes))
         coarse.extend((axis.name, count) for axis, count in zip(self.table.axes, worst.tolist()) if count)
 

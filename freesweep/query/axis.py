@@ -83,28 +83,14 @@ def make_axis(name: str, values) -> Axis:
         middle = 0.125 * (left[i] - right[i])
         middle[i - first[i] : i - first[i] + 2] += 0.5
         best = np.zeros(WINDOW)
-        best[:window] = _lagrange(nodes[places], nodes[i] + 0.5 * width)
+        best[:window] = lagrange(nodes[places], nodes[i] + 0.5 * width)
         if window <= SLOPE:  # slopes know all nodes, there is no better: what would be without the farthest one?
             far = np.argmax(np.abs(nodes[places] - nodes[i] - 0.5 * width))
             others = np.delete(np.arange(window), far)
             best[:] = 0.0
-            best[others] = _lagrange(nodes[places[others]], nodes[i] + 0.5 * width)
+            best[others] = lagrange(nodes[places[others]], nodes[i] + 0.5 * width)
         remainder[i] = best - middle
     return Axis(name, values, kind, nodes, first, left, right, remainder)
-
-
-def extrapolation(axis: Axis) -> np.ndarray:
-    """Weights (2, n, 6) of what a node differs by from those beyond the piece: its right one from the three nearest to the
-    left, its left one from those to the right. Both sizes together are the change of slope times the width.
-    """
-    weights = np.zeros((2, len(axis.nodes), WINDOW))
-    for i in range(len(axis.nodes) - 1):
-        first, last = axis.first[i], axis.first[i] + axis.window
-        sides = np.arange(max(i - 2, first), i + 1), np.arange(i + 1, min(i + 4, last))
-        for side, at, own in zip(sides, (i + 1, i), weights):
-            own[i, side - first] = -_lagrange(axis.nodes[side], axis.nodes[at])
-            own[i, at - first] += 1.0
-    return weights
 
 
 def part_of(axis: Axis, start, stop) -> Axis:
@@ -146,6 +132,6 @@ def _slope(nodes, i, places):
     return weights
 
 
-def _lagrange(x, at):
+def lagrange(x, at):
     """Weights of the polynomial through all nodes ``x`` at one place."""
     return np.array([np.prod([(at - x[k]) / (x[j] - x[k]) for k in range(len(x)) if k != j]) for j in range(len(x))])

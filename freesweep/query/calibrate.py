@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import calibration, errors
-from .calibration import CLASSES, RANKS
+from .calibration import CLASSES, CLEAR, LYING, RANKS
 from .cells import ROUGH
 from .family import TOLD_FROM
 from .reference import MID_RADIUS
@@ -45,10 +45,10 @@ def calibrate(error, estimate, bound, size, beside, allowed) -> calibration.Fact
 
 
 def _by_class(needed, classes, beside):
-    """Largest factor but a few of each class, beside holes or not; classes with few designs ask their neighbours."""
+    """Largest factor but a few of each class, as it lies to holes; classes with few designs ask their neighbours."""
     known = np.isfinite(needed)
-    lists = [[needed[known & (classes == k) & (beside == kind)] for k in range(CLASSES)] for kind in (False, True)]
-    found = np.empty((2, CLASSES))
+    lists = [[needed[known & (classes == k) & (beside == kind)] for k in range(CLASSES)] for kind in range(LYING)]
+    found = np.empty((LYING, CLASSES))
     for kind, own in enumerate(lists):
         for k in range(CLASSES):
             for reach in range(CLASSES):
@@ -56,7 +56,7 @@ def _by_class(needed, classes, beside):
                 if sum(map(len, near)) >= ENOUGH:
                     break
             else:  # too few of the kind: all designs
-                near = [*lists[0], *lists[1]]
+                near = [numbers for other in lists for numbers in other]
             found[kind, k] = float(f"{max(SMALLEST, _high(np.concatenate(near))):.3g}")
     return found
 
@@ -69,20 +69,20 @@ def _high(numbers):
     return few * np.quantile(numbers, 1.0 - BEYOND)
 
 
-def piece_scales(inquiry, name, places, exact):
+def piece_scales(inquiry, name, interpolated, places, exact):
     """Scales (d, RANKS) of what the next order would add, so that errors reach the same share of it on all pieces.
 
-    ``exact`` (k,) solutions at ``places`` of the inquiry, NaN where there is none.
+    ``interpolated`` at all points of the inquiry; ``exact`` (k,) solutions at ``places``, NaN where there is none.
     """
     table = inquiry.table
     scales = np.ones((len(table.axes), RANKS))
-    value, estimate, bound, beside = (array[places] for array in inquiry.estimate(name, scales))
+    value, estimate, bound, beside = (array[places] for array in inquiry.estimate(name, scales, interpolated))
     pieces, shares = inquiry.pieces[places], inquiry.shares[places]
-    parts = table.variable(name).cells[inquiry.cell[places], ROUGH:] * (shares * (1.0 - shares))
+    parts = interpolated[1][places][:, ROUGH:] * (shares * (1.0 - shares))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(value - exact) / estimate
         alone = parts > ALONE * parts.sum(axis=1, keepdims=True)
-    use = np.isfinite(ratio) & ~beside & (estimate > PLAIN * bound)
+    use = np.isfinite(ratio) & (beside == CLEAR) & (estimate > PLAIN * bound)
     summed = table.family.variables[name] != MID_RADIUS and name not in TOLD_FROM
     if use.sum() < SPEAK or not summed:  # an estimate that is no sum over axes
         return scales

@@ -2,8 +2,9 @@
 
 The estimate is what the next order would add, and a share of the bounds of what is stored, which hold but are far from
 sharp. Where the grid resolves the physics well it is sharp; where not, it falls short by factors that the measurement finds:
-one for each decade of the estimate relative to the value, beside holes or where fibers go slack between the nodes, and
-elsewhere. The ends of an axis have scales of their own, measured as well.
+one for each decade of the estimate relative to the value, where all nodes that tell it are there, where some are holes, as
+those on the other side of where fibers go slack, and where most is told from what fills these. The ends of an axis have
+scales of their own, measured as well.
 """
 
 import json
@@ -11,20 +12,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..description.tube_model import model_of
-
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
-ESTIMATES, OF_PHYSICAL = 2, 3  # which estimates were measured, of physical tubes too: of others, factors say nothing
+ESTIMATES = 5  # which estimates were measured: of others, factors say nothing
 DEFAULT_TOLERANCE = 1e-4
 DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
 CLASSES = len(DECADES) + 1
 RANKS = 5  # of the pieces of an axis: the first, the next, those between, the last but one, the last
+CLEAR, NEAR_HOLES, FILLED = range(LYING := 3)  # told from nodes that are there; not all; more from what was put in
 UNMEASURED = 12.0  # factor of an atlas that was not measured, or of a class with too few samples
 
 
 class Factors(NamedTuple):
-    """Of one variable: ``classes`` (2, CLASSES), elsewhere and beside holes, the share of stored ``bound`` that counts, and
+    """Of one variable: ``classes`` (LYING, CLASSES), by how it lies to holes, the share of stored ``bound`` that counts, and
     ``scales`` (d, RANKS) of what the next order would add.
     """
 
@@ -35,7 +35,7 @@ class Factors(NamedTuple):
 
 def cautious(count) -> Factors:
     """Factors of a variable over ``count`` axes that was not measured: bounds hold as they are."""
-    return Factors(np.full((2, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS)))
+    return Factors(np.full((LYING, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS)))
 
 
 def factors(data, name, axes=()) -> Factors:
@@ -45,7 +45,7 @@ def factors(data, name, axes=()) -> Factors:
         found = found[name]
         numbers, share = np.array(found["factors"], float), float(found["bound"])
         scales = np.array([found["scales"].get(axis, [1.0] * RANKS) for axis in axes], float).reshape(-1, RANKS)
-        shapes = numbers.shape == (2, CLASSES) and scales.shape == (len(axes), RANKS)
+        shapes = numbers.shape == (LYING, CLASSES) and scales.shape == (len(axes), RANKS)
         if shapes and np.all(numbers > 0.0) and share > 0.0 and np.all(scales > 0.0):
             return Factors(numbers, share, scales)
     except (AttributeError, KeyError, TypeError, ValueError):
@@ -61,12 +61,7 @@ def read(data) -> dict:
         return {}
     if not isinstance(found, dict) or not isinstance(found.get("variables", {}), dict):
         return {}
-    return found if found.get("estimates") == estimates(data) else {}
-
-
-def estimates(data) -> int:
-    """Which estimates answers of an atlas are told from."""
-    return OF_PHYSICAL if model_of(data.attrs).is_physical else ESTIMATES
+    return found if found.get("estimates") == ESTIMATES else {}
 
 
 def tolerance(data) -> float:

@@ -1,155 +1,149 @@
 """What each cell knows of its neighbourhood: bounds of what is stored there, how rough it is, whether it has holes.
 
-A cell has the index of its first node. What is known of it lies in one row of (nodes, ROUGH + d). Grids are gone through
-slab by slab along the first axis, as much as a cache holds; an extent is (count, step) of an axis within a slab.
+A cell has the index of its first node. It is looked at when a point in it is first asked for: along each axis from each of
+its corners, a line of nodes at a time. What is known of a cell is the worst of those lines.
 """
+
+import math
+from threading import Lock
 
 import numpy as np
 
-from .axis import LABEL, WINDOW, extrapolation
-from .missing_nodes import weigh
-from .phases import remainders_within
+from ..jit import entry_point, kernel
+from .axis import LABEL, WINDOW
+from .spline import FIRST, LEFT, RIGHT
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
-KINK = (0.25, 0.04, 0.01)  # of a change of slope times the width: what cubics miss in its piece, and one and two beside
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
+STEEPEST = 4.0 / 27.0  # largest weight of a slope in a cubic, times the width
+FIRST_ROWS = 1 << 10  # there is room for; twice as many where they are too few
 
 
-def describe(values, noise, doubt, bad, phases, axes, stored):
-    """What is known of all cells (nodes, ROUGH + d) of a grid over ``axes``.
+class Cells:
+    """What is known of the cells of a grid over ``axes``, with their ``knots`` as :mod:`.spline` takes them.
 
-    ``values`` (nodes,) are end effects, holes filled; ``noise`` (nodes,) their bounds; ``doubt`` (nodes,) how far numbers
-    that were put in may be off; ``bad`` (nodes,) marks nodes that had none; ``phases`` (nodes,) are alike where numbers are
-    smooth, or None if they are everywhere. ``stored`` (2, nodes) are the slopes along the two inner axes.
+    ``values`` (nodes,) are end effects, holes filled; ``noise`` (nodes,) are their bounds; ``doubt`` (nodes,) says how far
+    numbers that were put in may be off, 0 where there was one.
     """
-    shape = [len(axis.nodes) for axis in axes]
-    slabs, size = shape[0], len(values) // shape[0]
-    kept = {a: (shape[a], int(np.prod(shape[a + 1 :]))) for a in range(len(axes)) if axes[a].kind != LABEL}
-    inner = {a: extent for a, extent in kept.items() if a > 0}
-    own = np.zeros((ROUGH + len(axes), slabs, size), np.float32)
-    first_reached = np.zeros((slabs, size), bool)
-    if 0 in kept:
-        _remainders(values, axes[0], kept[0], own[ROUGH].reshape(-1))
-        if phases is not None:
-            _kinks(values, np.zeros(len(values), bool), phases, axes[0], kept[0], own[ROUGH].reshape(-1))
-        _reach(bad, kept[0], axes[0].first, first_reached.reshape(-1))
-    for slab in range(slabs):
-        here = slice(slab * size, (slab + 1) * size)
-        own[NOISE, slab], own[DOUBT, slab] = noise[here], doubt[here]
-        for extent in inner.values():
-            _weigh_beside(own[NOISE, slab], extent)
-            _over_corners(own[DOUBT, slab], extent)
-            _over_corners(first_reached[slab], extent)
-        own[BESIDE, slab] = _reached(bad[here], inner, axes)
-        for a in kept:
-            rough = own[ROUGH + a, slab]
-            if a > 0:
-                _remainders(values[here], axes[a], inner[a], rough)
-                within = np.zeros(size, bool)
-                if phases is not None and a >= len(axes) - len(stored):
-                    slopes = stored[a - len(axes)][here]
-                    remainders_within(values[here], slopes, phases[here], axes[a].nodes, inner[a][1], rough, within)
-                _smooth_over(rough, inner[a])
-                if phases is not None:
-                    _kinks(values[here], within, phases[here], axes[a], inner[a], rough)
-            for extent in (extent for other, extent in inner.items() if other != a):
-                _over_corners(rough, extent)
-    if 0 in kept:
-        _weigh_beside(own[NOISE], kept[0])
-        _smooth_over(own[ROUGH], kept[0])
-        for column in (BESIDE, DOUBT, *(ROUGH + a for a in inner)):
-            _over_corners(own[column], kept[0])
-        own[BESIDE] += first_reached
-    if phases is not None:
-        own[BESIDE] += _differ(phases.reshape(shape), kept).reshape(slabs, size)
-    cells = np.empty((slabs, size, len(own)), np.float32)
-    for slab in range(slabs):
-        cells[slab] = own[:, slab].T
-    return cells.reshape(-1, len(own))
+
+    def __init__(self, values, noise, doubt, axes, knots):
+        shape = np.array([len(axis.nodes) for axis in axes], np.int64)
+        strides = np.array([int(np.prod(shape[k + 1 :])) for k in range(len(shape))], np.int64)
+        windows = np.array([0 if axis.kind == LABEL else axis.window for axis in axes], np.int64)
+        weights = np.zeros((len(axes), knots.shape[1], WINDOW))  # of what the next order would add
+        for own, axis in zip(weights, axes):
+            own[: len(axis.nodes)] = axis.remainder
+        self._grid = values, noise, doubt, shape, strides, windows, knots, weights
+        self._slots = np.zeros(len(values), np.int32)  # of each cell in what is known; 0: nothing yet
+        self._rows, self._count = np.empty((FIRST_ROWS, ROUGH + len(axes)), np.float32), 1
+        self._lock = Lock()
+
+    def at(self, cells) -> np.ndarray:
+        """What is known of cells (n,): (n, ROUGH + d)."""
+        slots = self._slots[cells]
+        if not slots.all():
+            self._look_at(np.unique(cells[slots == 0]))
+            slots = self._slots[cells]
+        return self._rows[slots]
+
+    def _look_at(self, cells):
+        rows = np.empty((len(cells), self._rows.shape[1]), np.float32)
+        _describe(cells, *self._grid, rows)
+        with self._lock:
+            begin, self._count = self._count, self._count + len(cells)
+            if self._count > len(self._rows):
+                grown = np.empty((2 * self._count, rows.shape[1]), np.float32)
+                grown[:begin] = self._rows[:begin]
+                self._rows = grown
+            self._rows[begin : self._count] = rows
+            self._slots[cells] = np.arange(begin, self._count)  # last: another thread may ask for the same
 
 
-def _remainders(values, axis, extent, rough):
-    """Size of what the next order would add in the middle of each piece along one axis (nodes,); infinite where unknown."""
-    out = np.empty(len(values))
-    weigh(values, *extent, axis.first, axis.remainder, out)
-    np.abs(out, out=out)
-    rough[:] = np.where(out < np.inf, out, np.inf)
+@entry_point
+def _describe(cells, values, noise, doubt, shape, strides, windows, knots, weights, rows):
+    """Into ``rows`` (k, ROUGH + d) what is known of ``cells`` (k,)."""
+    d = len(shape)
+    lines, out = np.empty(1 << d, np.int64), np.empty(ROUGH + d)
+    around, sums = np.empty((3, WINDOW + 2)), np.empty(3)
+    for n in range(len(cells)):
+        cell = cells[n]
+        for k in range(ROUGH + d):
+            out[k] = 0.0
+        for a in range(d):
+            if windows[a] == 0:  # labels have nothing beside them
+                continue
+            count, step = shape[a], strides[a]
+            piece = (cell // step) % count
+            many, lines[0] = 1, cell
+            for b in range(d):
+                if b != a and windows[b] > 0:
+                    for k in range(many):
+                        lines[many + k] = lines[k] + strides[b]
+                    many *= 2
+            low, high = all_around(around, knots[a], weights[a], windows[a], piece, count)
+            first = int(knots[a, piece, FIRST])
+            worst, loudest, doubtful = 0.0, out[NOISE], out[DOUBT]
+            for k in range(many):
+                at = lines[k]
+                begin = at - piece * step
+                for i in range(3):
+                    sums[i] = 0.0
+                for j in range(high - low):
+                    number = values[begin + (low + j) * step]
+                    for i in range(3):
+                        sums[i] += around[i, j] * number
+                if not math.isfinite(
+                    sums[0] + sums[1] + sums[2]
+                ):  # numbers of weight zero do not count, whatever they are
+                    for i in range(3):
+                        sums[i] = 0.0
+                        for j in range(high - low):
+                            if around[i, j] != 0.0:
+                                sums[i] += around[i, j] * values[begin + (low + j) * step]
+                        sums[i] = sums[i] if math.isfinite(sums[i]) else math.inf
+                worst = max(worst, smoothed(sums, piece, count))
+                for j in range(windows[a]):
+                    lacks = doubt[begin + (first + j) * step]
+                    if lacks > 0.0:
+                        share = STEEPEST * (abs(knots[a, piece, LEFT + j]) + abs(knots[a, piece, RIGHT + j]))
+                        out[BESIDE], doubtful = 1.0, max(doubtful, share * lacks)
+                for j in range(2):
+                    doubtful = max(doubtful, doubt[at + j * step])
+                    loudest = max(loudest, noise[at + j * step])
+                if piece > 0:
+                    loudest = max(loudest, WEIGHT * noise[at - step])
+                if piece + 2 < count:
+                    loudest = max(loudest, WEIGHT * noise[at + 2 * step])
+            out[ROUGH + a], out[NOISE], out[DOUBT] = worst, loudest, doubtful
+        for k in range(ROUGH + d):
+            rows[n, k] = out[k]
 
 
-def _kinks(values, within, phases, axis, extent, rough):
-    """Where phases (nodes,) change along one axis, at least what a kink leaves there, and in the pieces that it reaches: not
-    those that know nodes ``within`` their phase only.
+@kernel
+def all_around(around, knots, weights, window, piece, count):
+    """Into ``around`` (3, WINDOW + 2) the weights of what the next order would add in the piece before, in a piece, and in
+    the one after it; returns which nodes of the axis they are of: (first, last + 1).
     """
-    nodes = phases.reshape(-1, *extent)
-    changes = nodes[:, :-1] != nodes[:, 1:]
-    if not changes.any():
-        return
-    jump, part = np.zeros(len(values)), np.empty(len(values))
-    for weights in extrapolation(axis):
-        weigh(values, *extent, axis.first, weights, part)
-        jump += np.abs(part)
-    pieces = rough.reshape(-1, *extent)[:, :-1]
-    jump = np.where(changes, np.where(jump < np.inf, jump, np.inf).reshape(-1, *extent)[:, :-1], 0.0)
-    np.maximum(pieces, KINK[0] * jump, out=pieces)
-    reached = ~within.reshape(-1, *extent)[:, :-1]
-    for apart, share in enumerate(KINK[1:], 1):
-        for to, by in ((slice(apart, None), slice(None, -apart)), (slice(None, -apart), slice(apart, None))):
-            np.maximum(pieces[:, to], np.where(reached[:, to], share * jump[:, by], 0.0), out=pieces[:, to])
+    low = int(knots[max(piece - 1, 0), FIRST])
+    high = int(knots[min(piece + 1, count - 2), FIRST]) + window
+    for i in range(3):
+        for j in range(high - low):
+            around[i, j] = 0.0
+        other = piece - 1 + i
+        if 0 <= other < count - 1:
+            for j in range(window):
+                around[i, int(knots[other, FIRST]) + j - low] = weights[other, j]
+    return low, high
 
 
-def _over_corners(numbers, extent):
-    """Put into each cell the larger of its two nodes along one axis."""
-    nodes = numbers.reshape(-1, *extent)
-    np.maximum(nodes[:, :-1], nodes[:, 1:], out=nodes[:, :-1])
-
-
-def _weigh_beside(numbers, extent):
-    """The same, and WEIGHT of the nodes beside the cell."""
-    nodes = numbers.reshape(-1, *extent)
-    before = nodes.copy()
-    np.maximum(nodes[:, :-1], before[:, 1:], out=nodes[:, :-1])
-    np.maximum(nodes[:, 1:-1], WEIGHT * before[:, :-2], out=nodes[:, 1:-1])
-    np.maximum(nodes[:, :-2], WEIGHT * before[:, 2:], out=nodes[:, :-2])
-
-
-def _smooth_over(rough, extent):
+@kernel
+def smoothed(sums, piece, count):
     """A remainder may vanish by chance in one piece: it is no less than in both beside it.
 
     Not the larger of those: a coarse or wild piece says nothing of a fine one beside it.
     """
-    pieces = rough.reshape(-1, *extent)[:, :-1]
-    if pieces.shape[1] < 2:
-        return
-    before = pieces.copy()
-    np.maximum(before[:, :1], before[:, 1:2], out=pieces[:, :1])
-    np.maximum(before[:, -1:], before[:, -2:-1], out=pieces[:, -1:])
-    np.maximum(before[:, 1:-1], np.minimum(before[:, :-2], before[:, 2:]), out=pieces[:, 1:-1])
-
-
-def _reached(bad, extents, axes):
-    """Cells (nodes,) whose corners or slopes look at nodes that had no number, along the axes of some extents."""
-    near = np.zeros(len(bad), bool)
-    for axis in extents if bad.any() else ():
-        reached = np.zeros(len(bad), bool)
-        _reach(bad, extents[axis], axes[axis].first, reached)
-        for extent in (extent for other, extent in extents.items() if other != axis):
-            _over_corners(reached, extent)
-        near |= reached
-    return near
-
-
-def _differ(phases, axes):
-    """Cells whose corners are not of one phase, shape as ``phases``."""
-    least, most = phases.copy(), phases.copy()
-    for a in axes:
-        for kept, choose in ((least, np.minimum), (most, np.maximum)):
-            nodes = np.moveaxis(kept, a, 0)
-            choose(nodes[:-1], nodes[1:], out=nodes[:-1])
-    return least != most
-
-
-def _reach(bad, extent, first, reached):
-    """Cells (nodes,) whose window along one axis holds a node that had no number."""
-    nodes, pieces = bad.reshape(-1, *extent), reached.reshape(-1, *extent)
-    for piece in range(extent[0] - 1):
-        np.any(nodes[:, first[piece] : first[piece] + WINDOW], axis=1, out=pieces[:, piece])
+    if piece == 0 or piece == count - 2:
+        beside = abs(sums[0] + sums[2]) if count > 2 else 0.0  # one of them is not there
+    else:
+        beside = min(abs(sums[0]), abs(sums[2]))
+    return max(abs(sums[1]), beside)

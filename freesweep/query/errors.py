@@ -8,7 +8,9 @@ EDGES = 10.0**DECADES  # of the classes, relative to the value
 
 
 def stated(factors, estimate, bound, size, beside):
-    """Stated errors (n,) from estimates of the interpolation and bounds of what was stored; ``beside`` holes or not."""
+    """Stated errors (n,) from estimates of the interpolation and bounds of what was stored; ``beside``: how they lie to
+    holes.
+    """
     total = estimate + factors.bound * bound
     return factors.classes[np.asarray(beside, int), classes(total, size)] * total
 

@@ -1,9 +1,12 @@
 """The points of a grid, slab by slab along its first axis, without a list of all of them."""
 
+import math
+
 import numpy as np
 
+from ..jit import entry_point, kernel
 from .axis import LABEL
-from .reference import COLUMNS, FIBERS, HELD, LENGTH, RADIUS, WALL
+from .reference import ALPHA, BETA, COLUMNS, FIBERS, HELD, LENGTH, PRESSURE, RADIUS, WALL, end_effect, reference
 
 
 class GridPoints:
@@ -51,10 +54,70 @@ class GridStates:
         own = GridPoints(axes, columns, fixed, points.fiber_share, points.by_length)
         found = [predictor.states(kind, slab) for slab in own.slabs()]
         self.states = np.concatenate(found).reshape(*self.shape, found[0].shape[1])
-        self.whole = points.shape
+        self.points, self.whole = points, points.shape
 
     def slab(self, k):
         """States (slab, UNIFORM) of one slab of the whole grid."""
         states = self.states[min(k, self.shape[0] - 1)]
         width = states.shape[-1]
         return np.ascontiguousarray(np.broadcast_to(states, (*self.whole[1:], width))).reshape(-1, width)
+
+    def end_effects(self, variable, kind, terms, stored, errors, good, apart, effects, noise):
+        """Stored numbers (nodes,) and their bounds as end effects and their bounds; NaN and 0 where nodes are not ``good``,
+        or where both angles are one, though they are to be ``apart``.
+
+        ``terms`` (nodes, 3) are those of :func:`reference.reference`, (0, 3) where they are to be found.
+        """
+        points, d = self.points, len(self.whole)
+        values = np.zeros((d, max(self.whole)))
+        for own, axis in zip(values, points.axes):
+            own[: len(axis.values)] = axis.values
+        steps = [int(np.prod(self.shape[a + 1 :])) if self.shape[a] > 1 else 0 for a in range(d)]
+        of_axes = values, np.array(points.columns, np.int64), np.array(self.whole, np.int64), np.array(steps, np.int64)
+        of_points = points.fixed, points.axes[0].kind == LABEL, float(points.fiber_share), bool(points.by_length)
+        # arrays that may not be written to, as those of a file, are a type of their own
+        stored, errors = (np.require(array, requirements="W") for array in (stored, errors))
+        states = self.states.reshape(-1, self.states.shape[-1])
+        _end_effects(variable, kind, *of_axes, *of_points, states, terms, stored, errors, good, apart, effects, noise)
+
+
+@entry_point
+def _end_effects(
+    variable, kind, values, columns, shape, steps, fixed, labelled, fiber_share, by_length, states, terms, stored, errors,
+    good, apart, effects, noise,
+):  # fmt: skip
+    index, point = np.zeros(len(shape), np.int64), np.empty(fixed.shape[1])
+    for k in range(len(stored)):
+        effects[k], noise[k] = math.nan, 0.0
+        if good[k]:
+            row = put(point, index, values, columns, steps, fixed, labelled, fiber_share, by_length)
+        if good[k] and not (apart and point[ALPHA] == point[BETA]):
+            if len(terms) > 0:
+                term = terms[k, 0], terms[k, 1], terms[k, 2]
+            else:
+                term = reference(variable, point, states[row])
+            args = point[PRESSURE], states[row, 0], states[row, 3], term, stored[k], errors[k]
+            effects[k], noise[k] = end_effect(variable, kind, *args)
+        a = len(shape) - 1
+        index[a] += 1
+        while index[a] == shape[a] and a > 0:
+            index[a] = 0
+            a -= 1
+            index[a] += 1
+
+
+@kernel
+def put(point, index, values, columns, steps, fixed, labelled, fiber_share, by_length):
+    """Put into ``point`` (17,) the node with an ``index`` along each axis; returns which uniform state is its own."""
+    row, design = 0, index[0] if labelled else 0
+    for i in range(len(point)):
+        point[i] = fixed[design, i]
+    for a in range(len(index)):
+        row += steps[a] * index[a]
+        if columns[a] >= 0:
+            point[columns[a]] = values[a, index[a]]
+    if fiber_share >= 0.0:
+        point[FIBERS] = point[RADIUS] + (fiber_share * point[WALL] if fiber_share > 0.0 else 0.0)
+    if by_length:
+        point[HELD] /= point[LENGTH]
+    return row

@@ -7,25 +7,20 @@ import numpy as np
 
 from .. import closed_form
 from ..scaling import ACCURACIES
-from ..status import VALUED
+from ..status import NOT_CONVERGED, VALUED
 from . import calibration, errors
 from .answer import Inquiry
 from .calibrate import calibrate, piece_scales
 from .family import FAMILIES, FAMILY_OF
 from .query import Reader
 from .reference import ALPHA, BETA
-from .refine import exact_answers
+from .refine import solved_states, told_of
 
 SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
-FEWEST, FEW = 2_000, 10_000  # at least, and at most, of physical tubes, which take a thousand times as long
-FEWEST_BODIES = 500  # of bodies, each of which is followed along and solved by itself
-HELD_SHARE, SLACK_SHARE = (
-    2,
-    4,
-)  # held states cost more, shares and tensions are solved for once more: so much fewer designs
-SHARPER = 1e-2  # accuracy of the exact solutions, relative to that of the atlas
-LOOSE_SHARPER = 1.0  # where fibers go slack digits are dear, and what lies between nodes errs by far more
+BODIES = 500, 2_000  # at least and at most of bodies, each of which is followed along and solved by itself
+HELD_SHARE = 2  # held states cost more: so much fewer designs
+SHARPER = (1e-2, 0.1, 1.0)  # accuracies of the exact solutions, relative to the atlas': the first that vectors reach
 REGIONS = ("I", "IIa", "IIb")
 
 
@@ -46,24 +41,42 @@ def measured(data, designs=None) -> dict:
     reader = Reader(data)
     if not reader.frame.in_numbers:
         return {}
-    answered, variables = {}, {}
-    least, most = (FEWEST, FEW) if reader.frame.model.is_physical else (LEAST, MOST)
-    if reader.frame.bodies is not None:
-        least, most = FEWEST_BODIES, FEWEST
+    answered, variables, solved = {}, {}, {}
+    least, most = (LEAST, MOST) if reader.frame.bodies is None else BODIES
     count = designs or int(np.clip(data["status"].size // EACH, least, most))
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data and FAMILY_OF[name] == key]
         names.sort(key=lambda name: name != "mid_radius")
         if key == "limit" or not names or not reader.table(key).names:
             continue
-        again = key.endswith("slack") or key == "tension"
-        own = count // (HELD_SHARE if key.startswith("blocked") else SLACK_SHARE if again else 1)
-        drawn = _draw(reader, reader.table(key), own)
-        share, results = _family(reader, key, names, drawn)
-        answered[key] = share
+        table = reader.table(key)
+        inquiry = Inquiry(table, _draw(reader, table, count // (HELD_SHARE if key.startswith("blocked") else 1)))
+        inquiry.flags()
+        kind = family.kind, tuple(table.names)
+        if kind not in solved:  # once for all that is told of it
+            solved[kind] = _solved(reader, key, inquiry)
+        answered[key], results = _family(reader, key, names, inquiry, told_of(reader, key, names, solved[kind]))
         variables |= results
-    head = {"designs": count, "seed": SEED, "estimates": calibration.estimates(data)}
+    head = {"designs": count, "seed": SEED, "estimates": calibration.ESTIMATES}
     return head | {"answered": answered, "variables": variables}
+
+
+def _solved(reader, key, inquiry):
+    """Exact states (n,) by name where numbers are given: what vectors do not find is not solved, but for held physical
+    tubes, of which they know nothing.
+    """
+    thorough = reader.frame.model.is_physical and key.startswith("blocked")
+    found, left = {}, np.flatnonzero(inquiry.valued & ~inquiry.exact)
+    for sharper in SHARPER:
+        accuracy = max(sharper * reader.frame.accuracy, ACCURACIES[0])
+        states = solved_states(reader, key, inquiry.points[left], accuracy, thorough)
+        for name, array in states.items():
+            found.setdefault(
+                name, np.full(inquiry.size, np.nan if array.dtype.kind == "f" else NOT_CONVERGED, array.dtype)
+            )
+            found[name][left] = array
+        left = left[states["status"] == NOT_CONVERGED]
+    return found
 
 
 def _draw(reader, table, count):
@@ -78,14 +91,11 @@ def _draw(reader, table, count):
     return reader.complete(values, count)
 
 
-def _family(reader, key, names, values):
-    table = reader.table(key)
-    inquiry = Inquiry(table, values)
-    inquiry.flags()
+def _family(reader, key, names, inquiry, exact):
+    """Share answered of one family, and what was measured of its variables, from ``exact`` answers (n,) by name."""
+    table = inquiry.table
     places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
-    sharper = LOOSE_SHARPER if reader.frame.model.is_loose else SHARPER
-    accuracy = max(sharper * reader.frame.accuracy, ACCURACIES[0])
-    exact = exact_answers(reader, key, inquiry.points[places], names, accuracy)
+    exact = {name: array[places] for name, array in exact.items()}
     solved = np.isin(exact[FAMILIES[key].answer_status], VALUED)
     with ThreadPoolExecutor(table.together) as pool:
         kept = dict(
@@ -112,8 +122,9 @@ def _family(reader, key, names, values):
 
 def _compare(inquiry, name, places, exact, solved, reader):
     """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared."""
-    scales = piece_scales(inquiry, name, places, np.where(solved, exact, np.nan))
-    value, estimate, bound, beside = inquiry.estimate(name, scales)
+    interpolated = inquiry.interpolated(name)
+    scales = piece_scales(inquiry, name, interpolated, places, np.where(solved, exact, np.nan))
+    value, estimate, bound, beside = inquiry.estimate(name, scales, interpolated)
     size = inquiry.natural_size(name, value)[places]
     value, estimate, bound, beside = value[places], estimate[places], bound[places], beside[places]
     allowed = reader.tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size

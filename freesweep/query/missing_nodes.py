@@ -5,17 +5,20 @@ neighbours. It helps to weigh the cells beside it and never answers a point itse
 """
 
 import math
+from itertools import product
 
 import numpy as np
 
 from ..jit import entry_point, kernel
 from ..status import INACCURATE, OK
-from .axis import WINDOW
+from .axis import lagrange
+from .spline import FIRST, LEFT, RIGHT, product_term
 
 SWEEPS = 6  # how far from good nodes numbers are put, in steps along the axes: windows reach two nodes beyond a cell
 REACH = 4  # nodes along an axis that a hole looks at, on either side
 BETWEEN = 3  # of those it takes the nearest on each side,
 BEYOND = 4  # or so many where one side has none
+LEAST = 1e-30  # square of what a number is off at least
 MIXED = 255  # code of a cell whose nodes do not agree
 
 
@@ -34,106 +37,171 @@ def _through(xs, fs, found, x, left_out):
 
 
 @entry_point
-def fill_once(values, bad, shape, strides, nodes, numbers, doubts):
+def fill_once(values, doubt_of, bad, shape, strides, nodes, beyond, numbers, doubts):
     """Numbers for the NaN of ``values`` (nodes,) at ``bad`` (k,) that lie beside numbers, into ``numbers`` (k,).
 
-    Between nodes rather than beyond them; NaN where nothing is beside. ``doubts`` (k,): what the farthest node changes.
+    Between nodes rather than beyond them; NaN where nothing is beside. Of several axes the surer count more. ``doubts``
+    (k,): what the farthest node changes, by how much axes differ, and what is inherited of ``doubt_of`` (nodes,) numbers
+    that were put in before. ``beyond``: see :func:`weights_beyond`.
     """
-    xs, fs = np.empty(2 * BETWEEN), np.empty(2 * BETWEEN)
+    xs, fs, given = np.empty(2 * BETWEEN), np.empty(2 * BETWEEN), np.empty(2 * REACH + 1)
+    found_along, weights = np.empty((2, len(shape)))
     for k in range(len(bad)):
         at, most, many = bad[k], 0, 0
-        total, doubt = 0.0, 0.0
         for a in range(len(shape)):
             count, step = shape[a], strides[a]
             index = (at // step) % count
-            below = above = beside = False
-            for j in range(max(0, index - REACH), min(count, index + REACH + 1)):
-                if math.isfinite(values[at + (j - index) * step]):
-                    below, above, beside = below or j < index, above or j > index, beside or abs(j - index) == 1
-            sides = (1 if below else 0) + (1 if above else 0) if beside else 0
-            found, before = np.int64(0), np.int64(0)
-            for place in range(2 * REACH):
-                far = place // 2 + 1
-                side = -1 if place % 2 == 0 else 1
-                i = index + side * far
-                room = before < BETWEEN if side < 0 else found - before < BETWEEN
-                if sides == 1:  # polynomials of high degree are wild beyond their nodes
-                    room = found < BEYOND
-                if room and 0 <= i < count and math.isfinite(values[at + side * far * step]):
-                    xs[found], fs[found] = nodes[a, i], values[at + side * far * step]
-                    found += 1
-                    before += 1 if side < 0 else 0
-            if sides == 0 or found < 3 or sides < most:
+            below = above = 0
+            for far in range(1, REACH + 1):
+                given[REACH - far] = values[at - far * step] if index >= far else math.nan
+                given[REACH + far] = values[at + far * step] if index + far < count else math.nan
+                below += 1 if math.isfinite(given[REACH - far]) else 0
+                above += 1 if math.isfinite(given[REACH + far]) else 0
+            beside = math.isfinite(given[REACH - 1]) or math.isfinite(given[REACH + 1])
+            sides = (1 if below > 0 else 0) + (1 if above > 0 else 0) if beside else 0
+            if sides == 0 or sides < most:
                 continue
-            if sides > most:
-                most, many, total, doubt = sides, 0, 0.0, 0.0
-            farthest = np.int64(0)
-            for j in range(found):
-                if abs(xs[j] - nodes[a, index]) > abs(xs[farthest] - nodes[a, index]):
-                    farthest = j
             value, other = 0.0, 0.0
-            for turn in range(2):
-                left_out = -1 if turn == 0 else farthest
-                value, other = other, _through(xs, fs, found, nodes[a, index], left_out)
-            total += value
+            if sides == 1 and below + above == BEYOND:  # as most do
+                side = 0 if below > 0 else 1
+                for j in range(BEYOND):
+                    number = given[REACH - 1 - j if side == 0 else REACH + 1 + j]
+                    value += beyond[a, index, side, 0, j] * number
+                    other += beyond[a, index, side, 1, j] * number
+            else:
+                found, before = np.int64(0), np.int64(0)
+                for place in range(2 * REACH):
+                    far = place // 2 + 1
+                    side = -1 if place % 2 == 0 else 1
+                    room = before < BETWEEN if side < 0 else found - before < BETWEEN
+                    if sides == 1:  # polynomials of high degree are wild beyond their nodes
+                        room = found < BEYOND
+                    if room and math.isfinite(given[REACH + side * far]):
+                        xs[found], fs[found] = nodes[a, index + side * far], given[REACH + side * far]
+                        found += 1
+                        before += 1 if side < 0 else 0
+                if found < 3:
+                    continue
+                farthest = np.int64(0)
+                for j in range(found):
+                    if abs(xs[j] - nodes[a, index]) > abs(xs[farthest] - nodes[a, index]):
+                        farthest = j
+                value = _through(xs, fs, found, nodes[a, index], -1)
+                other = _through(xs, fs, found, nodes[a, index], farthest)
+            inherited = 0.0
+            if math.isfinite(given[REACH - 1]):
+                inherited = max(inherited, doubt_of[at - step])
+            if math.isfinite(given[REACH + 1]):
+                inherited = max(inherited, doubt_of[at + step])
+            many = many if sides == most else 0
+            most, doubt = sides, abs(value - other) + inherited
+            found_along[many], weights[many] = value, 1.0 / (doubt * doubt + LEAST)
             many += 1
-            doubt = max(doubt, abs(value - other))
-        numbers[k] = total / many if many > 0 else math.nan
-        doubts[k] = doubt
+        numbers[k], doubts[k] = weighed(found_along, weights, many)
+
+
+@kernel
+def weighed(numbers, weights, many):
+    """The mean of numbers with weights, inverse squares of what they may be off, and how far it may be off."""
+    whole, total, spread = 0.0, 0.0, 0.0
+    for j in range(many):
+        whole += weights[j]
+        total += weights[j] * numbers[j]
+    mean = total / whole if many > 0 else math.nan
+    for j in range(many):
+        spread += weights[j] * (numbers[j] - mean) ** 2
+    return mean, math.sqrt(many / whole) + math.sqrt(spread / whole) if many > 0 else 0.0
+
+
+def weights_beyond(nodes, shape):
+    """Weights (d, n, 2, 2, BEYOND) of the nearest nodes below a node of each axis, and above, from near to far: of the
+    polynomial through them all, and without the farthest.
+    """
+    found = np.zeros((*nodes.shape, 2, 2, BEYOND))
+    for a, count in enumerate(shape):
+        for index, side, out in product(range(count), (0, 1), (0, 1)):
+            near = index + np.arange(1, BEYOND + 1 - out) * (1 if side else -1)
+            if 0 <= near[-1] < count:
+                found[a, index, side, out, : BEYOND - out] = lagrange(nodes[a, near], nodes[a, index])
+    return found
+
+
+@entry_point
+def beside_numbers(values, around, shape, strides, seen, found):
+    """Put the nodes without numbers that lie beside nodes ``around`` (k,), and were not ``seen`` (nodes,) before, into
+    ``found`` (nodes,); returns how many.
+    """
+    many = 0
+    for k in range(len(around)):
+        for a in range(len(shape)):
+            index = (around[k] // strides[a]) % shape[a]
+            for side in (-1, 1):
+                at = around[k] + side * strides[a]
+                if 0 <= index + side < shape[a] and not seen[at] and not math.isfinite(values[at]):
+                    seen[at] = True
+                    found[many] = at
+                    many += 1
+    return many
 
 
 def fill(values, shape, strides, nodes):
     """Put numbers on the NaN of ``values`` (nodes,) that lie beside numbers; returns how doubtful each is (nodes,)."""
-    bad, doubt = np.flatnonzero(~np.isfinite(values)), np.zeros(len(values), np.float32)
+    doubt = np.zeros(len(values), np.float32)
+    numbered = np.isfinite(values)
+    if numbered.all() or not numbered.any():
+        return doubt
+    beyond, seen = weights_beyond(nodes, shape), np.zeros(len(values), bool)
+    new, left, beside = np.flatnonzero(numbered), np.empty(0, np.int64), np.empty(len(values), np.int64)
     for _ in range(SWEEPS):
+        bad = np.concatenate([left, beside[: beside_numbers(values, new, shape, strides, seen, beside)]])
         if not len(bad):
             break
         numbers, doubts = np.empty((2, len(bad)))
-        fill_once(values, bad, shape, strides, nodes, numbers, doubts)
+        fill_once(values, doubt, bad, shape, strides, nodes, beyond, numbers, doubts)
         put = np.isfinite(numbers)
-        values[bad[put]], doubt[bad[put]] = numbers[put], doubts[put]
-        bad = bad[~put]
-        if put.sum() == 0:
-            break
+        new, left = bad[put], bad[~put]
+        values[new], doubt[new] = numbers[put], doubts[put]
     return doubt
 
 
-def slopes(values, axis, step, out):
-    """Slopes of ``values`` (nodes,) along an axis with nodes ``step`` apart, into ``out`` (nodes,).
+@entry_point
+def slopes(table, source, column, nodes, knots, window, step):
+    """Put slopes of a column of ``table`` (nodes, NODE) into another, along an axis with ``nodes`` that are ``step`` apart.
 
     Where the window of a node has holes, from the nodes next to it.
     """
-    count, widths = len(axis.nodes), np.append(np.diff(axis.nodes), 1.0)
-    weights = axis.left / widths[:, None]
-    weights[-1] = axis.right[-2] / widths[-2]
-    first = np.append(axis.first[:-1], axis.first[-2])
-    weigh(values, count, step, first, weights, out)
-    lost = np.flatnonzero(~np.isfinite(out))
-    index = (lost // step) % count
-    here, h, k = values[lost], widths[index - 1], widths[index]
-    before = np.where(index > 0, (here - values[lost - step]) / h, np.nan)
-    after = np.where(index + 1 < count, (values[np.minimum(lost + step, len(values) - 1)] - here) / k, np.nan)
-    both = (k * before + h * after) / (h + k)
-    out[lost] = np.where(np.isfinite(both), both, np.where(np.isfinite(before), before, after))
+    count, weights = len(nodes), np.empty(window)
+    for block in range(len(table) // (count * step)):
+        for index in range(count):
+            own = min(index, count - 2)
+            side, width = LEFT if own == index else RIGHT, nodes[own + 1] - nodes[own]
+            for j in range(window):
+                weights[j] = knots[own, side + j] / width
+            begin = (block * count + int(knots[own, FIRST])) * step
+            for at in range((block * count + index) * step, (block * count + index + 1) * step):
+                total = 0.0
+                for j in range(window):
+                    total += weights[j] * table[begin + j * step, source]
+                if not math.isfinite(total):  # nodes of weight zero do not count
+                    total = 0.0
+                    for j in range(window):
+                        total += product_term(weights[j], table[begin + j * step, source])
+                table[at, column] = total if math.isfinite(total) else beside(table, source, nodes, at, index, step)
+                begin += 1
 
 
-@entry_point
-def weigh(values, count, step, first, weights, out):
-    """Sums over the windows of the pieces of an axis, weighed, into ``out`` (nodes,); ``weights`` (count, WINDOW).
-
-    Numbers of weight zero do not count, whatever they are.
-    """
-    size = min(WINDOW, count)
-    for block in range(len(values) // (count * step)):
-        for piece in range(count):
-            at = (block * count + piece) * step
-            for k in range(at, at + step):
-                out[k] = 0.0
-            for j in range(size):
-                weight, apart = weights[piece, j], (first[piece] + j - piece) * step
-                if weight != 0.0:
-                    for k in range(at, at + step):
-                        out[k] += weight * values[k + apart]
+@kernel
+def beside(table, source, nodes, at, index, step):
+    """The slope at a node from those next to it."""
+    before = after = math.nan
+    if index > 0:
+        before = (table[at, source] - table[at - step, source]) / (nodes[index] - nodes[index - 1])
+    if index + 1 < len(nodes):
+        after = (table[at + step, source] - table[at, source]) / (nodes[index + 1] - nodes[index])
+    if math.isfinite(before) and math.isfinite(after):
+        h, k = nodes[index] - nodes[index - 1], nodes[index + 1] - nodes[index]
+        return (k * before + h * after) / (h + k)
+    return before if math.isfinite(before) else after
 
 
 @kernel

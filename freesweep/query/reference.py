@@ -184,26 +184,33 @@ def _restore(variable, points, states, terms, effects, rests, noise, values, est
 
 @entry_point
 def _end_effects(variable, kind, points, states, terms, stored, errors, effects, noise):
+    for k in range(len(stored)):
+        term = terms[k, 0], terms[k, 1], terms[k, 2]
+        args = points[k, PRESSURE], states[k, 0], states[k, 3], term, stored[k], errors[k]
+        effects[k], noise[k] = end_effect(variable, kind, *args)
+
+
+@kernel
+def end_effect(variable, kind, pressure, turn, q, term, stored, error):
+    """One end effect and its bound, where the uniform state has H = ``turn`` and q; ``term`` is :func:`reference`'s."""
+    offset, base, scale = term
     slack = variable == SLACK_ALPHA or variable == SLACK_BETA
     shape = variable != PLAIN and variable != HOLDING_FORCE and variable != HOLDING_TORQUE and not slack
-    for k in range(len(stored)):
-        offset, base, scale = terms[k, 0], terms[k, 1], terms[k, 2]
-        q = states[k, 3]
-        effect, bound = math.nan, 0.0
-        if kind == LOADED and points[k, PRESSURE] == 0.0 and q == 1.0 and shape:
-            # at rest; the width of the end layer goes with the square root of pressure
-            effect = math.log(TINY) if variable == MID_RADIUS else 0.0
-        elif kind == LOADED and points[k, PRESSURE] == 0.0 and q == 1.0 and slack:
-            effect = math.nan  # nothing pulls, and nothing is slack: there is no telling what comes with the least load
-        elif not (shape and abs(q - 1.0) < LEAST) and not (variable == ROTATION and abs(states[k, 0]) < LEAST):
-            slope = scale
-            if base == 0.0:
-                effect = (stored[k] - offset) / scale
-            else:
-                part = (stored[k] - offset) / base
-                effect = math.log(part) / scale if part > 0.0 else math.nan
-                slope = base if variable == MID_RADIUS else scale * part * base
-            bound = errors[k] / abs(slope)
-            if not (math.isfinite(effect) and math.isfinite(bound)):
-                effect, bound = math.nan, 0.0
-        effects[k], noise[k] = effect, bound
+    effect, bound = math.nan, 0.0
+    if kind == LOADED and pressure == 0.0 and q == 1.0 and shape:
+        # at rest; the width of the end layer goes with the square root of pressure
+        effect = math.log(TINY) if variable == MID_RADIUS else 0.0
+    elif kind == LOADED and pressure == 0.0 and q == 1.0 and slack:
+        effect = math.nan  # nothing pulls, and nothing is slack: there is no telling what comes with the least load
+    elif not (shape and abs(q - 1.0) < LEAST) and not (variable == ROTATION and abs(turn) < LEAST):
+        slope = scale
+        if base == 0.0:
+            effect = (stored - offset) / scale
+        else:
+            part = (stored - offset) / base
+            effect = math.log(part) / scale if part > 0.0 else math.nan
+            slope = base if variable == MID_RADIUS else scale * part * base
+        bound = error / abs(slope)
+        if not (math.isfinite(effect) and math.isfinite(bound)):
+            effect, bound = math.nan, 0.0
+    return effect, bound

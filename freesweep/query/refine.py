@@ -49,19 +49,26 @@ def as_points(reader, key, values):
 
 def exact_answers(reader, key, points, names, accuracy=None) -> dict:
     """Exact answers of one family at points (n, 17): name -> (n,), as :meth:`Reader.answer` gives them."""
-    family, frame = FAMILIES[key], reader.frame
+    return told_of(reader, key, names, solved_states(reader, key, points, accuracy))
+
+
+def solved_states(reader, key, points, accuracy=None, thorough=True) -> dict:
+    """States of the kind of a family at points (n, 17), as :func:`exact.solve` gives them."""
+    frame, limit = reader.frame, key == "limit"
     accuracy = frame.accuracy if accuracy is None else accuracy
-    limit = key == "limit"
     most = frame.ranges["pressure"][1] if limit else None
-    kind = reference.LOADED if limit else family.kind
-    solved = solve(
-        kind, points, frame.energy, accuracy, most, frame.model, bodies=frame.bodies, families=frame.families
-    )
-    found = {}
+    kind = reference.LOADED if limit else FAMILIES[key].kind
+    of = {"thorough": thorough, "bodies": frame.bodies, "families": frame.families}
+    return solve(kind, points, frame.energy, accuracy, most, frame.model, **of)
+
+
+def told_of(reader, key, names, solved) -> dict:
+    """What one family tells of states ``solved``: name -> (n,)."""
+    family, frame, found = FAMILIES[key], reader.frame, {}
     for name in names:
         of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, plain(name))
         found[name], found[f"{name}_error"] = solved[of], solved[f"{of}_error"]
-    if limit:
+    if key == "limit":
         found["limit_found"] = np.isfinite(solved["limit_pressure"]).astype(np.int8)
         known = np.isin(solved["status"], VALUED) | np.isfinite(solved["limit_pressure"])
         found["limit_pressure_status"] = np.where(known, 0, solved["status"]).astype(np.int8)

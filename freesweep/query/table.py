@@ -1,5 +1,6 @@
 """A family of stored variables in memory, ready to be interpolated: end effects, their slopes, the codes of the cells."""
 
+import functools
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
@@ -9,12 +10,11 @@ from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, make_axis, part_of, ranks
-from .cells import describe
+from .cells import Cells
 from .family import TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
 from .missing_nodes import cell_codes, fill, slopes
-from .phases import slopes_within
 from .predictor import Predictor
 from .reference import COLUMNS
 from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
@@ -26,10 +26,10 @@ TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
 class Interpolant(NamedTuple):
-    """End effects of one variable: ``values`` and slopes (4 nodes,); what is known of each cell (nodes, ROUGH + d)."""
+    """End effects of one variable: ``values`` and slopes (NODE nodes,), and what is known of each cell."""
 
     values: np.ndarray
-    cells: np.ndarray
+    cells: Cells
 
 
 class Table:
@@ -58,7 +58,7 @@ class Table:
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
         self.knots, self.windows, self.coordinates = self._packed()
         self._place()
-        self._variables, self._stored, self._errors, self._states, self._phases = {}, {}, {}, None, None
+        self._variables, self._stored, self._errors, self._states, self._taut = {}, {}, {}, None, None
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
@@ -121,7 +121,9 @@ class Table:
         part = {name: slice(*self.box[name]) if name in self.names else 0 for name in variable.dims}
         array = np.asarray(variable.isel(part).values)
         array = array[tuple(slice(None) if name in variable.dims else None for name in self.names)]
-        array = np.broadcast_to(array.reshape(array.shape + (1,) * self.padding), self.shape)
+        array = array.reshape(array.shape + (1,) * self.padding)
+        if array.size < self.size:
+            array = np.broadcast_to(array, self.shape)
         return np.ascontiguousarray(array).ravel()
 
     def _codes(self):
@@ -133,7 +135,8 @@ class Table:
         if self.has_flag:
             codes |= self._grid(flag).astype(np.uint8) << 4
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
-            codes |= self.phases() << 4
+            some = [(self._grid(name) > 0.0).astype(np.uint8) for name in self.family.variables]
+            codes |= (self._beyond_rest(self._taut_nodes() | some[0] << 2 | some[1] << 3)) << 4
         return codes
 
     def _beyond_rest(self, slack):
@@ -173,44 +176,48 @@ class Table:
 
     def forget(self, name):
         """Let go of the arrays of one variable."""
-        for kept in (self._variables, self._stored, self._errors):
+        for side in self.sides:
+            self._variables.pop((name, side), None)
+        for kept in (self._stored, self._errors):
             kept.pop(name, None)
 
-    def variable(self, name):
-        """The :class:`Interpolant` of one variable, or of the one that it is told from."""
-        name = TOLD_FROM.get(name, name)
-        if name not in self._variables:
-            self._variables[name] = self._interpolant(name)
-        return self._variables[name]
+    def variable(self, name, side) -> Interpolant:
+        """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
+        key = TOLD_FROM.get(name, name), side
+        if key not in self._variables:
+            self._variables[key] = self._interpolant(*key)
+        return self._variables[key]
 
     def make(self, names):
-        """Make what :meth:`variable` tells of several, some at a time."""
-        left = [one for one in dict.fromkeys(TOLD_FROM.get(name, name) for name in names) if one not in self._variables]
-        if len(left) > 1:  # what all of them share is made once
-            if self.family.kind != reference.NONE:
-                self.states()
-            self.phases()
+        """Make what :meth:`variable` tells of several, on all sides, some at a time."""
+        each = [
+            (one, side) for one in dict.fromkeys(TOLD_FROM.get(name, name) for name in names) for side in self.sides
+        ]
+        left = [key for key in each if key not in self._variables]
+        if len(left) > 1 and self.family.kind != reference.NONE:  # what all of them share is made once
+            self.states()
         with ThreadPoolExecutor(self.together) as pool:
-            list(pool.map(self.variable, left))
+            list(pool.map(lambda key: self.variable(*key), left))
 
     @property
     def together(self):
         """How many variables are made at a time."""
-        return TOGETHER if self.size <= MUCH else 1
+        return TOGETHER if self.size * len(self.sides) <= MUCH else 1
 
     @np.errstate(all="ignore")  # whatever a file holds
-    def _interpolant(self, name):
+    def _interpolant(self, name, side):
         effects, noise = self._end_effects(name)
+        if len(self.sides) > 1:
+            effects[self._sides_of_nodes() != side] = np.nan
         bad = ~np.isfinite(effects)
         doubt = fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
-        along, phases = np.empty((3, len(effects))), self.phases()
-        for column, source, axis in ((0, effects, -1), (1, effects, -2), (2, along[0], -2)):
-            slopes(source, self.axes[axis], int(self.strides[axis]), along[column])
-            if phases is not None:
-                slopes_within(source, phases, self.axes[axis].nodes, int(self.strides[axis]), along[column])
+        doubt[bad], noise[bad] = np.maximum(doubt[bad], np.finfo(np.float32).tiny), 0.0
         table = np.empty((len(effects), NODE))
-        table[:, 0], table[:, 1:] = effects, along.T
-        return Interpolant(table.ravel(), describe(effects, noise, doubt, bad, phases, self.axes, along[1::-1]))
+        table[:, 0] = effects
+        for column, source, axis in ((1, 0, -1), (2, 0, -2), (3, 1, -2)):
+            nodes, knots, step = self.axes[axis].nodes, self.knots[axis], int(self.strides[axis])
+            slopes(table, source, column, nodes, knots, int(self.windows[axis]), step)
+        return Interpolant(table.ravel(), Cells(effects, noise, doubt, self.axes, self.knots))
 
     def states(self) -> GridStates:
         """Uniform states of the grid."""
@@ -220,36 +227,46 @@ class Table:
             self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
         return self._states
 
-    def phases(self):
-        """Which fibers are slack, in the middle of a long tube and anywhere, (nodes,): where it changes, numbers have kinks.
-        None where they have none.
+    @functools.cached_property
+    def sides(self) -> list:
+        """Which families pull in the middle of a long tube, all such codes (as :data:`reference.TAUT`) that there are: where
+        it changes, what the ends add has a kink, and nodes on one side say nothing of the other. ``[None]``: no kinks.
         """
-        if not self.tells_slack and not (self.has_slack and self.frame.model.is_loose):
-            return None
-        if self._phases is None:
-            size = int(self.strides[0])
-            kinds = [self.states().slab(k)[:, reference.TAUT] for k in range(self.size // size)]
-            kinds = np.nan_to_num(np.concatenate(kinds), nan=3.0).astype(np.uint8)
-            if self.tells_slack:
-                some = [(self._grid(name) > 0.0).astype(np.uint8) for name in self.family.variables]
-                self._phases = self._beyond_rest(kinds | some[0] << 2 | some[1] << 3)
-            else:
-                self._phases = self._beyond_rest(kinds) | self.codes[1]
-        return self._phases
+        if not self.frame.model.is_loose or self.family.kind != reference.LOADED:
+            return [None]
+        found = np.unique(self._sides_of_nodes()).tolist()
+        return found if len(found) > 1 else [None]
+
+    def side_of(self, states) -> np.ndarray:
+        """Which of the ``sides`` points with such uniform states (n, UNIFORM) lie on, (n,)."""
+        return np.nan_to_num(states[:, reference.TAUT], nan=3.0).astype(np.uint8)
+
+    def _sides_of_nodes(self):
+        return self._beyond_rest(self._taut_nodes())
+
+    def _taut_nodes(self):
+        """Which fibers pull in the middle of long tubes (nodes,)."""
+        if self._taut is None:
+            slabs = range(self.size // int(self.strides[0]))
+            self._taut = np.concatenate([self.side_of(self.states().slab(k)) for k in slabs])
+        return self._taut
 
     def _end_effects(self, name):
         """End effects of the stored numbers and their bounds, (nodes,)."""
         stored, errors = self._grid(name), self._bounds(name)
-        number = self.is_number(self.codes[0])
         if self.family.kind == reference.NONE:
-            return np.where(number, stored, np.nan), errors.astype(np.float32)
+            return np.where(self.is_number(self.codes[0]), stored, np.nan), errors.astype(np.float32)
         effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
-        kinds, size = (self.family.variables[name], self.family.kind), int(self.strides[0])
-        for k, points in enumerate(self._points().slabs()):
-            here = slice(k * size, (k + 1) * size)
-            args = (stored[here], errors[here], effects[here], noise[here])
-            self.predictor.end_effects(*kinds, points, self.states().slab(k), *args)
-        effects[~number], noise[~number] = np.nan, 0.0
+        variable, kind = self.family.variables[name], self.family.kind
+        terms = np.empty((0, 3))
+        if self.predictor.bodies is not None:
+            points = self._points().slabs()
+            slabs = [self.predictor.terms(variable, some, self.states().slab(k)) for k, some in enumerate(points)]
+            terms = np.concatenate(slabs)
+        good = self.is_number(self.codes[0])
+        # a design of one angle has one family where others have two: what ends add to it says nothing of those beside it
+        apart = not {"alpha", "beta"}.isdisjoint(self.names)
+        self.states().end_effects(variable, kind, terms, stored, errors, good, apart, effects, noise)
         return effects, noise
 
     def _points(self):

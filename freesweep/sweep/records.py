@@ -63,14 +63,15 @@ class Records:
     def _read(self, numbers, edges, dtype, starts):
         """Records of that type with those ``numbers``; a shard holds those between two ``edges``, from a byte on."""
         wanted, index = np.unique(numbers, return_inverse=True)
-        found = np.empty(len(wanted), dtype)
+        whole = np.dtype((np.void, dtype.itemsize))  # records move as a whole: field by field takes ten times as long
+        found = np.empty(len(wanted), whole)
         cuts = np.searchsorted(wanted, edges)
         for shard in np.flatnonzero(np.diff(cuts)).tolist():
             mine = slice(cuts[shard], cuts[shard + 1])
             if self.paths[shard] is None:
-                found[mine] = unsolved(dtype, NOT_CONVERGED)
+                found[mine] = unsolved(dtype, NOT_CONVERGED).view(whole)
                 continue
             count = int(edges[shard + 1] - edges[shard])
             content = self.contents[self.paths[shard]]
-            found[mine] = np.frombuffer(content, dtype, count, int(starts[shard]))[wanted[mine] - edges[shard]]
-        return found[index.reshape(np.shape(numbers))]
+            found[mine] = np.frombuffer(content, whole, count, int(starts[shard]))[wanted[mine] - edges[shard]]
+        return found[index.reshape(np.shape(numbers))].view(dtype)

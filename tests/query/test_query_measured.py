@@ -160,13 +160,13 @@ def test_what_was_stored_wrongly_does_not_pass_for_roughness():
     cells[:, ROUGH] = rough
     knots = np.zeros((2, 5, KNOT))
     knots[:, :, RANK] = np.arange(5)
-    table = SimpleNamespace(axes=(0, 1), knots=knots, variable=lambda name: SimpleNamespace(cells=cells))
+    table = SimpleNamespace(axes=(0, 1), knots=knots)
     table.family = SimpleNamespace(variables={"volume": VOLUME})
     true = rough * draw.uniform(0.0, 1.0, count) * np.where(pieces[:, 0] == 0, 0.3, 1.0)
     noise = 0.15 * bound * draw.uniform(-1.0, 1.0, count)
-    inquiry = SimpleNamespace(table=table, pieces=pieces, shares=share, cell=np.arange(count))
-    inquiry.estimate = lambda name, scales: (true, rough, bound, np.zeros(count, bool))
-    scales = piece_scales(inquiry, "volume", np.arange(count), noise)
+    inquiry = SimpleNamespace(table=table, pieces=pieces, shares=share)
+    inquiry.estimate = lambda name, scales, interpolated: (true, rough, bound, np.zeros(count, bool))
+    scales = piece_scales(inquiry, "volume", (None, cells), np.arange(count), noise)
     assert scales[0, 0] / scales[0, 2] == pytest.approx(0.3, rel=0.15)
 
 
@@ -205,9 +205,10 @@ def test_ends_of_an_axis_have_estimates_of_their_own(made):
     assert (calibration.factors(made.data, "volume", ("torque",)).scales == 1.0).all()
 
 
-@pytest.mark.parametrize(
-    "text", ["", "{", "[]", '{"estimates": 2, "variables": {"rotation": {"factors": [1], "bound": 0}}}']
-)
+OF_OTHER_FORM = {"estimates": calibration.ESTIMATES, "variables": {"rotation": {"factors": [1], "bound": 0}}}
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", json.dumps(OF_OTHER_FORM)])
 def test_what_cannot_be_read_of_a_measurement_is_replaced_by_caution(made, text):
     data = made.data.assign_attrs({calibration.ATTRIBUTE: text})
     assert (calibration.factors(data, "rotation").classes == calibration.UNMEASURED).all()

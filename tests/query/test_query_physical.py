@@ -8,12 +8,14 @@ from freesweep import Atlas, status
 from freesweep.closed_form import uniform_state
 from freesweep.description.tube_model import MODELS, TubeModel
 from freesweep.query import reference
-from freesweep.query.cells import BESIDE
+from freesweep.query.cells import DOUBT
 from freesweep.query.exact import solve
 from freesweep.query.family import TOLD
+from freesweep.query.missing_nodes import fill
 from freesweep.query.predictor import Predictor
 from freesweep.query.refine import as_points, exact_answers
 from freesweep.query.slack import UNKNOWN
+from freesweep.query.spline import NODE
 from freesweep.sweep.spec import parse
 
 PHYSICAL = MODELS["physical"]
@@ -117,15 +119,48 @@ def test_where_fibers_go_slack_between_nodes_answers_keep_their_bounds_or_say_wh
         gap = np.abs(found[name].values - exact[name]) - exact[f"{name}_error"]
         assert (gap <= found[f"{name}_error"].values)[given].all(), name
     np.testing.assert_array_equal(found["slack_fiber"].values[given], exact["slack_fiber"][given])
-    # where flags of both nodes differ, or those of the uniform tube behind them, errors are told by other factors
+    # where what pulls in the middle of the tube differs between both nodes, errors are told by other factors
     cells = np.searchsorted(crossed["pressure"].values, pressure) - 1
-    flags = crossed["slack_fiber"].values.ravel()
-    assert len(set(flags[1:].tolist())) > 1
-    changes = (flags[cells] != flags[cells + 1]) & (cells > 0)
     table = reader.table("state")
-    known = table.variable("rotation").cells[cells * table.strides[0], BESIDE] > 0.0
-    assert known[changes].all()
-    assert not known.all()
+    assert len(table.sides) > 1
+    sides = table.side_of(table.predictor.states(reference.LOADED, asked))
+    alike = np.zeros(len(pressure), bool)
+    for side in table.sides:
+        own = sides == side
+        known = table.variable("rotation", side).cells.at(cells * table.strides[0])[:, DOUBT] > 0.0
+        values = table.variable("rotation", side).values[:: NODE * table.strides[0]]
+        assert own.any()
+        assert np.isfinite(values).any()
+        alike |= own & ~known
+    assert alike.any()
+    assert not alike.all()
+
+
+def test_nodes_on_one_side_of_a_kink_say_nothing_of_the_other():
+    """Where loose fibers go slack in the middle a number has a kink: on each side it is told from the nodes there."""
+    nodes = np.linspace(0.0, 1.0, 11)
+    line = np.where(nodes < 0.53, np.sin(nodes), np.cos(nodes))
+    for own, true in ((nodes < 0.53, np.sin(nodes)), (nodes > 0.53, np.cos(nodes))):
+        values = np.repeat(np.where(own, line, np.nan), 2)  # the kernels see two axes at least
+        fill(values, np.array([11, 2]), np.array([2, 1]), np.stack([nodes, nodes]))
+        beside = np.flatnonzero(~own & (np.convolve(own, [1, 1, 1], "same") > 0))
+        np.testing.assert_allclose(values[::2][beside], true[beside], atol=2e-4)
+
+
+def test_designs_of_one_angle_say_nothing_of_those_of_two(tmp_path):
+    """What ends add to a design of one family is measured by another formula: it must not get into windows beside it."""
+    grid = {
+        "alpha": np.linspace(40.0, 65.0, 6).tolist(),
+        "beta": np.linspace(40.0, 65.0, 6).tolist(),
+        "length": [0.131],
+    }
+    sweep = parse(spec(grid | {"pressure": [2e4]}).replace("[actuator]", '[actuator]\nmodel = "physical"'))
+    atlas = Atlas(make(tmp_path / "atlas.nc", sweep), "diagonal.nc")
+    table = atlas._reader.table("state")
+    assert (atlas.data["status"] == status.OK).all()
+    for side in table.sides:
+        doubt = table.variable("rotation", side).cells._grid[2].reshape(6, 6)
+        assert (np.diagonal(doubt) > 0.0).all()
 
 
 def test_at_nodes_and_at_rest_numbers_are_those_stored(crossed):

@@ -10,6 +10,8 @@ import zlib
 import h5py
 import numpy as np
 
+from freesweep.query.calibration import ESTIMATES
+
 SECRET = b"not yours"
 MAKERS = {}
 
@@ -365,7 +367,7 @@ def measurement_nested_without_end(data):
 
 @content("not what an atlas measures of itself")
 def measurement_of_other_form(data):
-    return data.assign_attrs(interpolation_measured=json.dumps({"estimates": 2, "variables": {"rotation": 1}}))
+    return data.assign_attrs(interpolation_measured=json.dumps({"estimates": ESTIMATES, "variables": {"rotation": 1}}))
 
 
 @content("status is missing")
