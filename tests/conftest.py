@@ -39,7 +39,7 @@ TAUT = """
 fs.blocked_force(alike, 1e4)
 fs.inflate(varying, 1e4)
 fs.inflate(alike, np.linspace(1e4, 2e4, 70), derivatives="alpha")
-kernels.compile_idle(["Mooney-Rivlin", "seek_lanes"])
+kernels.compile_idle(["Mooney-Rivlin", "seek_lanes", "measure_physical"])
 """
 PHYSICAL = """
 fs.inflate(physical, 1e4)
@@ -59,7 +59,7 @@ def pytest_configure():
 
 
 DEAREST = """
-verify inverse branch thesis_claims calibration_scalars calibration first_integral lanes newton loose_states lanes_physical
+verify inverse branch physical_branches thesis_claims calibration_scalars calibration first_integral lanes newton loose_states lanes_physical
 docs notebooks explorer_browser atlas_objects hard_states profiles explorer sweep_faults hostile_files calibration_campaign
 plot_map sweep_resume statics_shape holding_states types interpret elastomer sweep_kernels derivatives holding_buckled yeoh
 """

@@ -189,6 +189,7 @@ def test_an_undeformed_tube_with_a_taper_is_as_wide_as_its_parameters_say():
     assert found["d_mid_radius_d_taper"].attrs["units"] == "m"
 
 
+@pytest.mark.long  # compiles the derivatives of physical bodies
 def test_a_body_whose_thick_wall_takes_several_rules_keeps_its_derivatives():
     """Five Gauss points across the wall at one end, six at the other: the force differs by 1.6e-6 from that of six all
     along, which is no other state. Maxwell's symmetry, and a bound that says so.
