@@ -60,8 +60,9 @@ def pytest_configure():
 
 DEAREST = """
 verify inverse branch physical_branches thesis_claims calibration_scalars calibration first_integral lanes newton
-loose_states lanes_physical docs notebooks explorer_browser atlas_objects hard_states profiles explorer sweep_faults hostile_files calibration_campaign
-plot_map sweep_resume statics_shape holding_states types interpret elastomer sweep_kernels derivatives holding_buckled yeoh
+loose_states lanes_physical docs notebooks explorer_browser atlas_objects hard_states profiles explorer sweep_faults
+hostile_files calibration_campaign plot_map sweep_resume statics_shape holding_states types interpret elastomer
+sweep_kernels derivatives holding_buckled yeoh
 """
 ORDER = {f"test_{name}": place for place, name in enumerate(DEAREST.split())}
 
