@@ -79,6 +79,7 @@ def test_every_state_is_solved_or_has_a_physical_reason(many):
     assert np.count_nonzero(walks.status == INACCURATE) <= 2
     valued = np.isin(walks.status, (OK, INACCURATE))
     assert np.all(np.isfinite(walks.values[valued]))
+    assert np.all(walks.bounds[valued, :2] <= 0.02 * walks.values[valued, :2])  # lengths, volumes
     assert np.all(np.isnan(walks.values[~valued]))
 
 

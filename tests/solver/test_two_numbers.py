@@ -8,7 +8,7 @@ import pytest
 
 from freesweep.solver.by_middle.question import Answer
 from freesweep.solver.by_middle.states import middle_at, state_at, turning_point
-from freesweep.solver.by_middle.steps import ARRIVED, LOST, TURNED, advance, begin, follow
+from freesweep.solver.by_middle.steps import ARRIVED, LOST, TURNED, Point, advance, begin, follow
 
 RISE, TOP = 1.2, 0.36  # the hill's
 
@@ -63,9 +63,16 @@ def test_state_between_two_points_is_met_to_rounding():
     _, _, seen, _ = branch(over_the_hill)
     near, far = next(pair for pair in pairwise(seen) if pair[0].share < 0.2 <= pair[1].share)
     exact = 1.0 + 0.5 * (RISE - np.sqrt(RISE**2 - 0.8))
-    (answer, bounds), _ = answered(state_at(0.2, near, far, 1e-9), over_the_hill)
+    (answer, bounds, _), _ = answered(state_at(0.2, near, far, 1e-9), over_the_hill)
     assert abs(answer.values[0] - exact) <= bounds[0] + 1e-14 < 1e-9
     assert answered(middle_at(0.2, near, far), over_the_hill)[0] == pytest.approx(exact, abs=1e-9)
+
+
+def test_jump_of_the_miss_is_no_state():
+    """The sign changes, and nowhere is the miss none: of such a number no state is told."""
+    near, far = (Point(middle, share, 0.5, 0.1, 0.0, 1.0) for middle, share in ((1.1, 0.1), (1.3, 0.3)))
+    state, _ = answered(state_at(0.2, near, far, 1e-6), lambda middle, share: 1.0 if middle < 1.2 + 1e-3 else -1.0)
+    assert state is None
 
 
 def test_smooth_branch_takes_few_questions():

@@ -201,6 +201,6 @@ def write(share, near, far, i, rows, accuracy):
     found = yield from state_at(share, near, far, accuracy)
     if found is None:
         return
-    answer, bounds = found
+    answer, bounds, largest = found
     rows.values[i], rows.bounds[i], rows.slack[i] = answer.values, bounds, answer.slack
-    rows.status[i] = OK if np.max(bounds[: len(answer.scales)] / answer.scales) <= accuracy else INACCURATE
+    rows.status[i] = OK if largest <= accuracy else INACCURATE

@@ -4,7 +4,7 @@ from math import isnan
 
 import numpy as np
 
-from .question import ALONG, FAINT, FINEST, TRIES, WIDER, ask, crossing, slope_of
+from .question import ALONG, FAINT, FINEST, ROUGH, TRIES, WIDER, ask, crossing, slope_of
 
 CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turning point stands out from its neighbours
 SLIGHT, LEAST_ASIDE = 1e-3, 1e-13  # a miss, and a stretch, by which a state is moved to see what changes
@@ -38,10 +38,8 @@ def met_at(share, near, far, first, tries, aside=None):
         return first + t, share
 
     answer = yield from ask(*place(0.0), tries)
-    before, below = (
-        (0.0, answer),
-        answer.miss * near.left * rising > 0.0,
-    )  # to the left of what rises stretches are smaller
+    before = 0.0, answer
+    below = answer.miss * near.left * rising > 0.0  # to the left of what rises stretches are smaller
     while distance < 2.0 * reach:
         t = distance if below else -distance
         answer = yield from ask(*place(t), tries)
@@ -53,8 +51,9 @@ def met_at(share, near, far, first, tries, aside=None):
 
 
 def state_at(share, near, far, accuracy):
-    """``(answer, bounds)`` of the state at a ``share`` of the way, between two points of the branch; None where it is
-    not met. What no try tells to the ``accuracy`` is told by the last.
+    """``(answer, bounds, largest of the bounds by which accuracy counts)`` of the state at a ``share`` of the way, between
+    two points of the branch; None where it is not met, as at a jump of the miss. What no try tells to the ``accuracy`` is
+    told by the last that tells it at all.
     """
     middle, stays, aside = near.middle + part_of(share, near, far) * (far.middle - near.middle), None, None
     for fineness in range(TRIES):
@@ -63,13 +62,17 @@ def state_at(share, near, far, accuracy):
         if met is None:
             return stays
         middle, answer, other = met
+        if not abs(answer.miss) <= ROUGH * abs(middle - 1.0):
+            return stays
         slope = slope_of(middle, answer, other)
         moved = max(min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle)), LEAST_ASIDE)
         other = yield from ask(middle + moved, share, tries)
         change = np.abs(other.values - answer.values) / max(abs(other.miss - answer.miss), 1e-300)
         bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
-        stays = answer, bounds
-        if np.max(bounds[: len(answer.scales)] / answer.scales) <= accuracy:
+        largest = np.max(bounds[: len(answer.scales)] / answer.scales)
+        if largest <= ROUGH:
+            stays = answer, bounds, largest
+        if largest <= accuracy:
             break
         aside = max(FAINT * answer.doubt / slope, LEAST_ASIDE)
     return stays
@@ -77,7 +80,7 @@ def state_at(share, near, far, accuracy):
 
 def turning_point(points, sense):
     """``(share, bound, point)`` of the largest share, in this ``sense``, of a branch that passes three ``points``, the
-    middle one of which lies farther than the others; None where it is not found.
+    middle one of which lies farther than the others.
 
     At a turning point the branch runs across the way: to each stretch between the outer points belongs one share.
     """

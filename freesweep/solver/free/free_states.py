@@ -244,7 +244,7 @@ def follow_many(
         physical tubes (n, 11), with the numbers of :mod:`..along.places`
     status, slack : (n,) codes; rows that are not PENDING are passed over; values are NaN unless the status is OK or
         INACCURATE
-    limits : (k, 2) limit pressure and its bound, NaN if none was met
+    limits : (k, 2) limit pressure and its bound; what is there stays if none is met
     stations, profiles : (m,), (n, FIELDS, m): see :func:`..along.profile.at_stations`; m = 0 for none
     """
     same = len(course) == 0
@@ -255,7 +255,6 @@ def follow_many(
     own_course, own_places = (of_problems(course), np.zeros(2)) if same else (course, places)
     for k in range(len(problems)):
         own = slice(first[k], first[k + 1])
-        limits[k, 0], limits[k, 1] = np.nan, np.nan
         if not np.any(status[own] == PENDING):
             continue
         if same:
