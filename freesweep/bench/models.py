@@ -24,7 +24,7 @@ def as_model(problems, thick, threads) -> np.ndarray:
     return rows
 
 
-def models(chosen, accuracy, cells, clocked) -> list:
+def models(chosen, accuracy, clocked) -> list:
     """Seconds for each state of a sample by each model, along the pressures as in a sweep, times the source's, and the share
     of states that vectors solve; ``clocked(run)`` gives seconds and what ``run`` returned.
     """
@@ -34,10 +34,8 @@ def models(chosen, accuracy, cells, clocked) -> list:
     found = []
     for name, (thick, threads) in MODELS.items():
         rows = problems if name == SOURCE else as_model(problems, thick, threads)
-        walk_by_vectors(
-            rows[:1], first[:2], pressures[: first[1]], cells, accuracy
-        )  # compiles, or loads what is compiled
-        seconds, walks = clocked(lambda rows=rows: walk_by_vectors(rows, first, pressures, cells, accuracy))
+        walk_by_vectors(rows[:1], first[:2], pressures[: first[1]], accuracy)  # compiles, or loads what is compiled
+        seconds, walks = clocked(lambda rows=rows: walk_by_vectors(rows, first, pressures, accuracy))
         found.append({"model": name, "seconds": seconds / len(pressures), "solved": float(np.mean(walks.status == OK))})
     for row in found:
         row["times_source"] = row["seconds"] / found[0]["seconds"]

@@ -49,7 +49,7 @@ def measure(quick=False, say=lambda text: None) -> dict:
         row["times_scipy"] = row["rate"] / peer
     if not quick:  # other kernels, which take half a minute to compile
         say("models")
-    asked = [] if quick else models(chosen, WANTED, BASE_CELLS, lambda run: _median(run, repeats))
+    asked = [] if quick else models(chosen, WANTED, lambda run: _median(run, repeats))
     say("scaling")
     return {
         "designs": designs, "pressures": pressures, "repeats": repeats, "machine": _machine(), "rows": rows,

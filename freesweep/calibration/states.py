@@ -8,7 +8,7 @@ from numba import config
 
 from ..description.tube_model import TubeModel
 from ..query import reference
-from ..query.exact import CELLS, solve
+from ..query.exact import solve
 from ..query.reference import COLUMNS, FIBERS, FORCE, HELD, LENGTH, LENGTH_HELD, LOADED, PRESSURE, ROTATION_HELD
 from ..scaling import problem_rows
 from ..status import VALUED
@@ -130,7 +130,7 @@ def _by_vectors(points, energy, model):
     rows = problem_rows(design, energy, model.is_thick, model.is_loose)
     pressures = points[:, PRESSURE] / points[:, reference.C10]
     each = np.arange(len(rows) + 1)
-    found = walk_by_vectors(np.ascontiguousarray(rows), each, pressures, CELLS, ACCURACY[model.is_physical])
+    found = walk_by_vectors(np.ascontiguousarray(rows), each, pressures, ACCURACY[model.is_physical])
     there = np.isin(found.status, VALUED)
     return np.where(there, 2.0 * points[:, FIBERS] * found.values[:, 0], np.nan)
 

@@ -1,4 +1,4 @@
-"""Many designs at once: vectors go the quick way, once more on a finer mesh; the scalar walk goes on where that ends."""
+"""Many designs at once: vectors go the quick way, branches are followed where that ends; tubes that vary go by meshes."""
 
 from typing import NamedTuple
 
@@ -18,7 +18,6 @@ from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK, PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
 NOTHING = np.empty(0)
-FINER = 2  # times the cells of the base mesh, for states that vectors left: the same machine code solves nearly all
 
 
 class Walks(NamedTuple):
@@ -53,15 +52,14 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     )  # others would be compiled for anew
     found = _nothing(problems, len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
-    drawn = len(stations) > 0 and wall_columns(problems) == PHYSICAL  # vectors draw no profiles of such tubes
+    drawn = len(stations) > 0
     if lanes and len(tube[0]) == 0 and not drawn and not config.DISABLE_JIT:
         calls = _scalar_calls(problems, first, pressures, tube, accuracy, stations, found)
-        solve, given = _vector_call(problems, stations)
+        solve, given = _vector_call(problems)
         if soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls):
             found.status[_doubt(problems, first, pressures, found)] = PENDING
         if np.any(found.status == PENDING):
-            _walk_lanes(problems, first, pressures, int(tube[1][-1]), accuracy, stations, found)
-        if wall_columns(problems) == PHYSICAL:
+            _walk_lanes(problems, first, pressures, accuracy, found)
             kinds = [(kind, some) for _, _, kind, some in _kinds(problems)]
             follow_branches(problems, first, pressures, kinds, accuracy, found)
     for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
@@ -76,11 +74,11 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     return found
 
 
-def walk_by_vectors(problems, first, pressures, cells, accuracy) -> Walks:
+def walk_by_vectors(problems, first, pressures, accuracy) -> Walks:
     """:func:`walk_all` of tubes that do not vary: what vectors find, PENDING where they leave it open."""
     found = _nothing(problems, len(pressures), NOTHING)
     pressures, _ = next_to_nothing(problems, first, pressures)
-    _walk_lanes(problems, first, pressures, cells, accuracy, NOTHING, found)
+    _walk_lanes(problems, first, pressures, accuracy, found)
     return found
 
 
@@ -122,18 +120,18 @@ def _replace(found, rows, better):
     found.status[rows & ~alike & (found.status == OK)] = INACCURATE
 
 
-def _walk_lanes(problems, first, pressures, base, accuracy, stations, found):
+def _walk_lanes(problems, first, pressures, accuracy, found):
     """Solve what vectors can of tubes that do not vary. A loaded one's stretch is carried up and down from the state at
     which its loads have settled.
     """
     if not np.any(is_loaded(problems)):
-        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), base, accuracy, stations, found)
+        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), accuracy, found)
         return
     own = legs(problems, first, pressures)
     asked = own.rows >= 0
-    on_the_way = _nothing(problems[own.owners], len(own.pressures), stations)
-    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, base, accuracy, stations, on_the_way)
-    for name in STATES:
+    on_the_way = _nothing(problems[own.owners], len(own.pressures), NOTHING)
+    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, accuracy, on_the_way)
+    for name in STATES[:-1]:
         getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
 
 
@@ -146,39 +144,25 @@ def _nothing(problems, states, stations):
     )  # fmt: skip
 
 
-def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, found):
+def _solve_lanes(problems, first, pressures, asked, accuracy, found):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
     # what shares a vector should need much the same work: as many pressures, and likeness tells the rest
     steps = np.diff(first)
     owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
     stretches, likeness = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
-    drawn = (stations, found.profiles) if len(stations) else (None, None)
     for carry, solve, kind, some in _kinds(problems):
         carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness)
         carried = some[owners] & asked & np.isfinite(stretches)
-        for fineness in tries(problems, base):
+        for pieces in PIECES:
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_in_order(likeness[rows]), kind="stable")
-            solve(
-                problems, owners, pressures, stretches, rows[alike], *kind, fineness, accuracy, *found[:4],
-                *(drawn if len(kind) == 1 else ()),
-            )  # fmt: skip
+            solve(problems, owners, pressures, stretches, rows[alike], *kind, pieces, accuracy, *found[:4])
 
 
-def _vector_call(problems, stations):
+def _vector_call(problems):
     """The entry point by which vectors solve such problems as the first, and arguments of the kinds that it is given."""
     (_, solve, kind, _), whole, states = next(_kinds(problems[:1])), np.empty(0, np.int64), np.empty((0, OUTPUTS))
-    drawn = () if len(kind) > 1 else (NOTHING, np.empty((0, FIELDS, 0))) if len(stations) else (None, None)
-    return solve, (
-        problems, whole, NOTHING, NOTHING, whole, *kind, 1, 1.0, states, states, whole, whole, *drawn
-    )  # fmt: skip
-
-
-def tries(problems, base):
-    """How fine one try after the other is: cells of the base mesh; of physical tubes, which need none, in how many
-    pieces each part of the way is summed in which the same fibers pull.
-    """
-    return PIECES if wall_columns(problems) == PHYSICAL else (base, FINER * base)
+    return solve, (problems, whole, NOTHING, NOTHING, whole, *kind, 1, 1.0, states, states, whole, whole)
 
 
 def _kinds(problems):

@@ -15,6 +15,7 @@ from numba import config
 from ..interpret import at_once
 from .along.places import NUMBERS
 from .along.profile import FIELDS
+from .by_middle.many import PIECES
 from .halves import one_by_one
 from .held.held_states import hold_many
 from .held.sought import HELD_LENGTH
@@ -81,7 +82,7 @@ def hold_all(problems, targets, kind, first, pressures, tube, accuracy, lanes=Tr
             *np.empty((4, 0)),
         )
         if not (soon and at_once(count, seek_lanes, hold_many, *next(scalar()), instead=given)):
-            _hold_lanes(problems, targets, kind, first, pressures, int(tube[1][-1]), accuracy, found)
+            _hold_lanes(problems, targets, kind, first, pressures, accuracy, found)
     for call in scalar():
         left = np.count_nonzero(call[STATUS] == PENDING)
         if left and not (soon and at_once(left, hold_many, hold_many, *call)):
@@ -106,7 +107,7 @@ def _scalar_calls(problems, targets, kind, first, pressures, tube, accuracy, fou
         )  # fmt: skip
 
 
-def _hold_lanes(problems, targets, kind, first, pressures, base, accuracy, found):
+def _hold_lanes(problems, targets, kind, first, pressures, accuracy, found):
     """Hold what vectors can of tubes that do not vary."""
     owners = np.repeat(np.arange(len(problems)), np.diff(first))
     yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)[owners]
@@ -114,7 +115,7 @@ def _hold_lanes(problems, targets, kind, first, pressures, base, accuracy, found
         rows = np.flatnonzero(some & (pressures > 0.0))
         if len(rows):
             _hold(
-                problems, 0.5 * targets, kind == HELD_LENGTH, owners, pressures, rows, constants, base, accuracy, found
+                problems, 0.5 * targets, kind == HELD_LENGTH, owners, pressures, rows, constants, accuracy, found
             )
 
 
@@ -144,7 +145,7 @@ def _constants(problem):
     return YEOH if np.any(problem[[SECOND, THIRD]] != 0.0) else MOONEY_RIVLIN
 
 
-def _hold(problems, targets, length_held, owners, pressures, rows, constants, base, accuracy, found):
+def _hold(problems, targets, length_held, owners, pressures, rows, constants, accuracy, found):
     """The states of ``rows`` that vectors find; ``targets`` (k,) are of half the tube."""
     from .lanes.free import solve_lanes
     from .lanes.held import seek_lanes
@@ -166,10 +167,9 @@ def _hold(problems, targets, length_held, owners, pressures, rows, constants, ba
             size = len(part)
             free = np.full((2, size, 5), np.nan)
             status, slack = np.full(size, PENDING), np.zeros(size, np.int64)
-            solve_lanes(
-                own, part, p[part], stretches[part], np.arange(size), constants, base, asked, free[0], free[1], status,
-                slack, None, None,
-            )  # fmt: skip
+            for pieces in PIECES:
+                left = np.flatnonzero(status == PENDING)
+                solve_lanes(own, part, p[part], stretches[part], left, constants, pieces, asked, *free, status, slack)
             c[part], bound[part] = np.where(status == OK, free[:, :, column], np.nan)
         with np.errstate(all="ignore"):
             gain = c - before[1]

@@ -36,6 +36,7 @@ SOLVING = ("solve_lanes", "solve_physical")
 THE_REST = (
     "carry_lanes",
     "carry_physical",
+    "measure_lanes",
     "measure_physical",
     "seek_lanes",
     "query",
@@ -117,7 +118,7 @@ def _compile_aside(missing, rubbers):
 def compile_idle(words):
     """Compile the entry points named among the ``words``, for the families of rubbers among them; no state is solved."""
     from ..query.idle import compile_kernels, compile_physical
-    from ..solver.lanes.by_middle import measure_physical
+    from ..solver.lanes.by_middle import measure_lanes, measure_physical
     from ..solver.lanes.free import carry_lanes, carry_physical, solve_lanes, solve_physical
     from ..solver.lanes.held import seek_lanes
     from ..solver.problem import MOONEY_RIVLIN, PROBLEM_SIZE
@@ -139,10 +140,9 @@ def compile_idle(words):
         if "carry_lanes" in words:
             carry_lanes(problems, first, numbers, whole, constants, states, states, whole, numbers, numbers)
         if "solve_lanes" in words:
-            solve_lanes(
-                problems, whole, numbers, numbers, whole, constants, BASE_CELLS, 1.0, states, states, whole, whole, None,
-                None,
-            )  # fmt: skip
+            solve_lanes(problems, whole, numbers, numbers, whole, constants, 1, 1.0, states, states, whole, whole)
+        if "measure_lanes" in words:
+            measure_lanes(problems, whole, states, numbers, constants, 1, states, states, states)
         if "seek_lanes" in words:
             seek_lanes(problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four)
     if "query" in words:

@@ -125,10 +125,10 @@ def test_states_do_not_depend_on_what_else_is_asked(many):
 def test_which_hard_states_share_a_vector_does_not_change_a_bit():
     """A lane that never fits may not cost its neighbours their trials."""
     problems, first, pressures = designs(range(128))
-    both = batch.walk_by_vectors(problems, first, pressures, 24, ACCURACY)
+    both = batch.walk_by_vectors(problems, first, pressures, ACCURACY)
     left = np.unique(np.flatnonzero(both.status < 0) // 4)[::2]
     rows = (4 * left[:, None] + np.arange(4)).ravel()
-    alone = batch.walk_by_vectors(problems[left], 4 * np.arange(len(left) + 1), pressures[rows], 24, ACCURACY)
+    alone = batch.walk_by_vectors(problems[left], 4 * np.arange(len(left) + 1), pressures[rows], ACCURACY)
     assert len(left) > 10
     assert np.array_equal(alone.status, both.status[rows])
     assert np.array_equal(alone.values, both.values[rows], equal_nan=True)

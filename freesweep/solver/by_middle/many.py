@@ -1,4 +1,4 @@
-"""The branches of many physical tubes that are the same all along, side by side: the questions of all are answered
+"""The branches of many tubes that are the same all along, side by side: the questions of all are answered
 together, by vectors (:mod:`..lanes.by_middle`).
 """
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from ..load_path import is_loaded, settling_pressure
 from ..physics.wall import LOOSE
-from ..problem import THREADS
+from ..problem import PROBLEM_SIZE, THREADS
 from ..stability import PUSHED
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
 from .question import Answer
@@ -36,7 +36,7 @@ class Rows(NamedTuple):
 
 
 def follow_branches(problems, first, pressures, kinds, accuracy, found):
-    """Write what is PENDING of the states ``found`` of physical ``problems``, as far as their branches tell: arguments
+    """Write what is PENDING of the states ``found`` of the ``problems``, as far as their branches tell: arguments
     as of :func:`..batch.walk_all`; ``kinds`` are pairs of what all problems of one vector share, and which problems
     those are.
     """
@@ -76,7 +76,8 @@ def answered(problems, kinds, asked, columns):
                 continue
             values, bounds = np.empty((2, len(rows), columns))
             told = np.empty((len(rows), by_middle.COUNT))
-            by_middle.measure_physical(
+            measure = by_middle.measure_lanes if len(kind) == 1 else by_middle.measure_physical
+            measure(
                 problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, told
             )
             scales = np.column_stack([told[:, by_middle.SCALES :], np.ones(len(rows))])
@@ -100,7 +101,7 @@ def on(way, steps):
 def walk(problem, settled, rows, accuracy):
     """Write the rows of a problem whose loads have ``settled`` at that pressure."""
     locked = [i for i in rows.waiting() if rows.pressures[i] == np.inf]
-    if locked and problem[THREADS] <= LOOSE:  # a single family locks nothing
+    if locked and (len(problem) == PROBLEM_SIZE or problem[THREADS] <= LOOSE):  # a single family locks nothing
         yield from on(fading(problem), lock(locked, rows, accuracy))
     asked = [i for i in rows.waiting() if rows.pressures[i] < np.inf]
     if not asked:

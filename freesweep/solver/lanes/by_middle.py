@@ -1,5 +1,5 @@
 """Half tubes of given stretch in the middle, for a vector of designs: how much too long each is, and all that is told
-of it. What the branch of a physical tube is made of (:mod:`..constant.branch_by_middle`).
+of it. What branches are made of (:mod:`..by_middle`).
 """
 
 from math import exp
@@ -9,7 +9,7 @@ import numpy as np
 from ...jit import entry_point, kernel
 from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
-from ..problem import FORCE, GAMMA, PHYSICAL, TORQUE
+from ..problem import FORCE, GAMMA, PHYSICAL, SOURCE, TORQUE
 from . import slack_ends
 from .meridian import DEEPEST, middle_at
 from .outputs import DX, finish, unmet
@@ -39,7 +39,10 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
         pieces, mid, cell, load, rows, ends, counts, starts, scratch
     )
     parts, unsure = find_ends(mid, cell, load, active & valid, ends, counts, starts, edges, scratch)
-    fine = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch) & (unsure < slack_ends.ENOUGH)
+    fine, limps = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)
+    fine = fine & (unsure < slack_ends.ENOUGH)
+    if len(load.wall) == 1:
+        alpha, beta = limps
     miss = half - get(numbers[0], DX)
     put(scratch, 0, min(max(min(mid.rate * miss, DEEPEST - mid.depth), -DEEPEST), DEEPEST))
     for lane in range(WIDTH):
@@ -59,9 +62,9 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     return alpha, beta
 
 
-@entry_point
-def measure_physical(problems, owners, given, middles, constants, layers, pieces, values, bounds, told):
-    """:func:`measure` half of each physical tube ``problems[owners[i]]`` under the load ``given[i]``, the columns
+@kernel
+def measure_many(problems, owners, given, middles, constants, walls, layers, pieces, values, bounds, told):
+    """:func:`measure` half of each tube ``problems[owners[i]]`` under the load ``given[i]``, the columns
     OF_LOAD, whose middle has the stretch ``middles[i]``, in so many ``pieces``; other arguments as of
     :func:`.free.solve`. Rows of ``values``, ``bounds`` and ``told`` (n, COUNT) take what is told.
     """
@@ -77,7 +80,7 @@ def measure_physical(problems, owners, given, middles, constants, layers, pieces
             start[0, lane] = middles[row]
             for k in range(len(OF_LOAD)):
                 columns[OF_LOAD[k], lane] = given[row, k]
-        cell, _, load = loads(columns, constants, PHYSICAL, layers)
+        cell, _, load = loads(columns, constants, walls, layers)
         alpha, beta = measure(
             get(start, 0), cell, load, get(columns, LENGTH), mask_of((1 << count) - 1), pieces, room, ends[:5], ends[5:],
             edges, numbers[:2], scratch, counts, numbers[2:], own,
@@ -89,3 +92,15 @@ def measure_physical(problems, owners, given, middles, constants, layers, pieces
             for k in range(COUNT):
                 told[row, k] = own[k, lane]
             told[row, SLACK] = ((bits(alpha) >> lane) & 1) | (((bits(beta) >> lane) & 1) << 1)
+
+
+@entry_point
+def measure_lanes(problems, owners, given, middles, constants, pieces, values, bounds, told):
+    """:func:`measure_many` of the source's tubes."""
+    measure_many(problems, owners, given, middles, constants, SOURCE, 1, pieces, values, bounds, told)
+
+
+@entry_point
+def measure_physical(problems, owners, given, middles, constants, layers, pieces, values, bounds, told):
+    """:func:`measure_many` of physical tubes."""
+    measure_many(problems, owners, given, middles, constants, PHYSICAL, layers, pieces, values, bounds, told)

@@ -1,19 +1,18 @@
 """Free states of tubes that are the same all along, a vector of designs at a time.
 
 First each design's uniform tube is carried along its pressures, as far as it rises without a turning point. Then the
-states are solved, in vectors of states that are alike, whichever designs they belong to: each begins with the shape of a
-long tube, so none needs another one. No lane's numbers depend on its neighbours.
+states are solved, in vectors of states that are alike, whichever designs they belong to: each begins as a long tube, so
+none needs another one. No lane's numbers depend on its neighbours.
 """
 
 import numpy as np
 
 from ...jit import entry_point, kernel
 from ..load import Load
-from ..numerics.properties_along import Tube
 from ..physics import lagrangian
-from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H, rubber_of
-from . import first_guess, layer, meridian, nested, quadrature, slack_ends
-from .pack import BEFORE, COLUMNS, PRESSURE, aligned, draw_profiles, enter, is_clamped, loads, lock, record, settle
+from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H
+from . import first_guess, meridian, quadrature, slack_ends
+from .pack import BEFORE, COLUMNS, PRESSURE, aligned, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
 from .rule import LAST
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
@@ -29,18 +28,10 @@ def first_leg(before, fresh):
 
 @kernel
 def locked(problem):
-    """Uniform stretch of the locked tube, and its end's cosine."""
+    """Uniform stretch of the locked tube, and what tells how much work it is."""
     cell, gamma = (problem[H], problem[D], problem[AREA]), problem[GAMMA]
     u = lagrangian.locked_stretch(cell, gamma)
-    return u, layer.end_cosine(u, cell, Load(gamma, rubber_of(problem), (0.0,), 1.0, 0.0, 0.0, 0.0))
-
-
-@kernel
-def work_of(u, cell, load, half, walls):
-    """What tells states that are as much work: the steepness of the source's tubes at their ends."""
-    if len(walls) == 1:
-        return layer.end_cosine(u, cell, load)
-    return meridian.work_of(u, cell, load, half)
+    return u, 1.0
 
 
 @kernel
@@ -88,7 +79,7 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
             u = select(arrived, ahead, u)
             put(columns, BEFORE, select(arrived, now.p, get(columns, BEFORE)))
             put(found, 0, ahead)
-            put(found, 1, work_of(ahead, cell, now, get(columns, HALF), walls))
+            put(found, 1, meridian.work_of(ahead, cell, now, get(columns, HALF)))
             for lane in range(count):
                 if (bits(arrived) >> lane) & 1:
                     stretches[rows[lane]], likeness[rows[lane]] = found[0, lane], found[1, lane]
@@ -112,41 +103,25 @@ def seat_states(group, count, order, problems, owners, pressures, stretches, row
 
 @kernel
 def solve(
-    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack, stations,
-    profiles,
+    problems, owners, pressures, stretches, order, constants, walls, layers, pieces, accuracy, values, bounds, status, slack
 ):  # fmt: skip
-    """Solve the rows of the source's tubes in the given ``order``, WIDTH at a time: row i belongs to problem ``owners[i]``
-    and has the uniform stretch ``stretches[i]``. Other arguments as of :func:`follow_many`; rows that a lane could not do
-    keep the status that they have. Without ``stations`` and ``profiles`` (None) no machine code that draws profiles is made.
+    """Solve the rows in the given ``order``, WIDTH at a time, by :mod:`quadrature`, each part in so many ``pieces``: row i
+    belongs to problem ``owners[i]`` and has the uniform stretch ``stretches[i]``. Other arguments as of :func:`carry` and
+    :func:`..free.free_states.follow_many`; rows that a lane could not do keep the status that they have.
     """
-    size = (base << nested.LANE_DOUBLINGS) + 2
-    space = aligned(26, size)
-    meshes, work, table, out, found = space[:7], space[7:14], space[14:22], space[22:24], space[24:]
-    shape, small = aligned(2, base + 1), aligned(3, COLUMNS)
-    x, y = shape[0], shape[1]
-    columns, sizes, start = small[0], small[1], small[2]
-    doublings = np.zeros(WIDTH, np.int64)
-    if stations is None:
-        kept = None
-    else:
-        kept, nodes = np.zeros((WIDTH, 5, size)), np.zeros((5, size))
-        tube = Tube(np.zeros((1, 1, 3, 4)), np.array([0, base]), np.zeros((1, 3)), True, base, np.zeros(2))
-    rows = np.zeros(WIDTH, np.int64)
+    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
+    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
+    columns, start, scratch = small[0], small[1], small[2]
+    rows, counts = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
     for group in range(0, len(order), WIDTH):
         count = min(WIDTH, len(order) - group)
         seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start)
-        cell, _, load = loads(columns, constants, SOURCE, 1)
-        u, half = get(start, 0), get(columns, HALF)
-        layer.begin(u, cell, load, half, base, work, meshes, x, y)
-        met, alpha, beta = nested.solve(
-            x, y, base, u, cell, load, half, mask_of((1 << count) - 1), accuracy, meshes, work, table, sizes, found, out,
-            kept, doublings,
+        cell, _, load = loads(columns, constants, walls, layers)
+        met, alpha, beta = quadrature.solve(
+            get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, ends[:5],
+            ends[5:], edges, numbers[:2], scratch, counts, numbers[2:],
         )  # fmt: skip
-        met = met & first_guess.within(y, base, u, cell, load, half)
-        done = bits(met)
-        if stations is not None:
-            done = draw_profiles(done, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles)
-        record(done, bits(alpha), bits(beta), rows, out, values, bounds, status, slack)
+        record(bits(met), bits(alpha), bits(beta), rows, numbers[2:], values, bounds, status, slack)
 
 
 @entry_point
@@ -163,31 +138,20 @@ def carry_physical(problems, first, pressures, order, constants, layers, values,
 
 @entry_point
 def solve_lanes(
-    problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack,
-    stations, profiles,
+    problems, owners, pressures, stretches, order, constants, pieces, accuracy, values, bounds, status, slack
 ):  # fmt: skip
     """:func:`solve` the source's tubes."""
     solve(
-        problems, owners, pressures, stretches, order, constants, base, accuracy, values, bounds, status, slack, stations,
-        profiles,
+        problems, owners, pressures, stretches, order, constants, SOURCE, 1, pieces, accuracy, values, bounds, status, slack
     )  # fmt: skip
 
 
 @entry_point
 def solve_physical(
-    problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack,
+    problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack
 ):  # fmt: skip
-    """Solve rows of physical tubes as :func:`solve` does the source's, by :mod:`quadrature`, in so many ``pieces``."""
-    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
-    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
-    columns, start, scratch = small[0], small[1], small[2]
-    rows, counts = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
-    for group in range(0, len(order), WIDTH):
-        count = min(WIDTH, len(order) - group)
-        seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start)
-        cell, _, load = loads(columns, constants, PHYSICAL, layers)
-        met, alpha, beta = quadrature.solve(
-            get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, ends[:5],
-            ends[5:], edges, numbers[:2], scratch, counts, numbers[2:],
-        )  # fmt: skip
-        record(bits(met), bits(alpha), bits(beta), rows, numbers[2:], values, bounds, status, slack)
+    """:func:`solve` physical tubes."""
+    solve(
+        problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, pieces, accuracy, values, bounds, status,
+        slack,
+    )  # fmt: skip

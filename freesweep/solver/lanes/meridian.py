@@ -150,6 +150,14 @@ def work_of(u, cell, load, half):
     """What tells states that are as much work, from 0 to 1: how many families pull at the end and not in the middle, or
     the other way round; of states that are alike in this, the depth of the middle.
     """
+    return _work_of(u, cell, load, half, load.wall)
+
+
+@kernel
+def _work_of(u, cell, load, half, wall):
+    if len(wall) == 1:
+        _, _, _, L_yy, _, L_vv = lagrangian.density(u, spread(0.0), cell, load)
+        return min(sqrt(L_yy / L_vv) * half / DEEPEST, 1.0)
     zero, one = spread(0.0), spread(1.0)
     (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
     pull_alpha, pull_beta, near = physical.tensions(u, zero, cell, load, near)
@@ -182,10 +190,17 @@ def look(t, mid, cell, load, near, scratch):
 
 
 @kernel
-def handed_on(y, at, near):
+def handed_on(y, at, near, wall):
     """What the next place may start from: (kind, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), rises as from the one
     before.
     """
+    return _handed_on(y, at, near, wall)
+
+
+@kernel
+def _handed_on(y, at, near, wall):
+    if len(wall) == 1:
+        return near
     zero = spread(0.0)
     alike = (at.kind == near[0]) & (abs(y - near[1]) > APART)
     per_y = 1.0 / select(alike, y - near[1], 1.0)

@@ -1,5 +1,5 @@
-"""What is told of a state of a physical tube, for a vector of designs: outputs, the numbers of :mod:`..along.places`, and
-their bounds, from the sums along half of it (:mod:`quadrature`).
+"""What is told of a state, for a vector of designs: outputs, of a physical tube the numbers of :mod:`..along.places`, and their
+bounds, from the sums along half of it (:mod:`quadrature`).
 """
 
 from math import sqrt
@@ -13,6 +13,7 @@ from .meridian import fallen
 from .vector import get, put, select, spread
 
 SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
+OUTPUTS = 5
 SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
 STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
 FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
@@ -54,6 +55,19 @@ def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numb
         max(max(errors[0] / scale[0], errors[1] / scale[1]), max(errors[2] / scale[2], errors[3] / scale[3])), errors[4]
     )
     record(out, 0, outputs, errors, floor)
+    tell_places(
+        mid, miss, moved, by, middle_moved, cell, load, half, middle_limp, doubts, unsure, sums, missed, out, load.wall
+    )
+    return largest
+
+
+@kernel
+def tell_places(
+    mid, miss, moved, by, middle_moved, cell, load, half, middle_limp, doubts, unsure, sums, missed, out, wall
+):
+    """Write the numbers of a physical tube's places."""
+    if len(wall) == 1:
+        return
     size = load.p + abs(load.f)
     share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
     share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half
@@ -63,7 +77,7 @@ def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numb
     outer, strain = sqrt(get(sums, WORST + 2)), sqrt(get(sums, WORST + 3))
     faint, least, none = (places.ROUNDING + moved) * size, spread(places.ROUNDING), spread(0.0)
     record(
-        out, len(outputs),
+        out, OUTPUTS,
         (share_a, share_b, least_a, least_b, outer, strain),
         (
             doubt + doubts[0] / half, doubt + doubts[1] / half,
@@ -73,7 +87,6 @@ def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numb
         ),
         (least, least, none, none, places.ROUNDING * outer, places.ROUNDING * strain),
     )  # fmt: skip
-    return largest
 
 
 @kernel

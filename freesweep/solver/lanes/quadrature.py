@@ -1,9 +1,9 @@
-"""Free states of physical tubes by quadrature of their first integral, for a vector of designs: no mesh, no Newton's
-method but that for what the fibers leave the wall at one place.
+"""Free states of tubes that are the same all along by quadrature of their first integral, for a vector of designs: no mesh, no
+Newton's method but that for what loose fibers leave the wall at one place.
 
 A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant
 finds it, first by one rule along the whole depth, then part by part between the places where families go slack
-(:mod:`slack_ends`). What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs`
+(:mod:`slack_ends`); the source's tubes, which nobody asks where those are, have one part. What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs`
 makes of the sums what is told.
 """
 
@@ -38,7 +38,7 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
     for k in range(LAST + 1):
         here = look(first + width * PLACES[k], mid, cell, load, near, scratch)
         at, y = here.at, here.y
-        near = handed_on(y, at, near)
+        near = handed_on(y, at, near, load.wall)
         valid, short = valid & (at.room > 0.0), max(short, here.short)
         alpha, beta = slack_ends.pulls(at, load)
         dx = width * here.per_share
@@ -56,11 +56,19 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
         put(rows[VOLUME], k, dx * (volume - mid.y * mid.y * mid.s))
         put(rows[TWIST], k, dx * (psi - mid.psi))
         put(rows[ENERGY], k, dx * (energy - mid.energy))
-        put(rows[PUSH_ALPHA], k, -pulled(at.a, load))
-        put(rows[PUSH_BETA], k, -pulled(at.b, load))
-        put(rows[SQUARE], k, places.outer_square(y, at.G_1, cell, load.wall))
-        put(rows[STRAIN], k, places.strain_square(y, at.G_1, at.psi, cell, load.wall))
+        look_at(y, at, k, cell, load, rows, load.wall)
     return near, valid, short
+
+
+@kernel
+def look_at(y, at, k, cell, load, rows, wall):
+    """Of a physical tube the pulls, and the squares of its outer radius and of the wall's stretch, at one place."""
+    if len(wall) == 1:
+        return
+    put(rows[PUSH_ALPHA], k, -pulled(at.a, load))
+    put(rows[PUSH_BETA], k, -pulled(at.b, load))
+    put(rows[SQUARE], k, places.outer_square(y, at.G_1, cell, load.wall))
+    put(rows[STRAIN], k, places.strain_square(y, at.G_1, at.psi, cell, load.wall))
 
 
 @kernel
@@ -79,6 +87,8 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
         near, fine, lack = along(spread(left), spread(right), mid, cell, load, near, False, rows, scratch)
         valid, total, short = valid & fine, total + summed(rows[DX])[0], max(short, lack)
         limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
+        if len(load.wall) == 1:
+            continue
         doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
         doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
         for family in range(2):
@@ -126,11 +136,11 @@ def is_mixed(pull):
 
 @kernel
 def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
-    """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss,
-    behind them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN. Returns the lanes
-    that may be.
+    """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss; of
+    physical tubes behind them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN. Returns the
+    lanes that may be, and ``(alpha, beta)`` limp somewhere in the last part.
     """
-    valid, near = mask_of(-1), nothing_yet(spread(0.0))
+    valid, near, limp_a, limp_b = mask_of(-1), nothing_yet(spread(0.0)), mask_of(0), mask_of(0)
     for k in range(WORST + 4):
         put(numbers[0], k, spread(0.0 if k < WORST else -HUGE))
         put(numbers[1], k, spread(0.0))
@@ -138,12 +148,16 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
         left, width = get(edges, j), (get(edges, j + 1) - get(edges, j)) / pieces
         for i in range(pieces):
             near, fine, _ = along(left + i * width, left + (i + 1) * width, mid, cell, load, near, True, rows, scratch)
-            own = width > 0.0  # others have more parts
-            valid = valid & fine & ((width < NARROW) | ~(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
             dx, doubt = summed(rows[DX])
             add(numbers, DX, dx, doubt)
             for k in range(LENGTH, ENERGY + 1):
                 add(numbers, k, *summed(rows[k]))
+            valid = valid & fine
+            if len(load.wall) == 1:
+                limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
+                continue
+            own = width > 0.0  # others have more parts
+            valid = valid & ((width < NARROW) | ~(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
             for family in range(2):
                 slack = get(rows[ALPHA + family], LAST // 2) <= 0.0
                 add(numbers, SLACK + family, select(slack, dx, 0.0), select(slack, doubt, 0.0))
@@ -152,7 +166,7 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
                 most, missed = widest(rows[PUSH_ALPHA + k], LAST, *before)
                 put(numbers[0], WORST + k, select(own, most, before[0]))
                 put(numbers[1], WORST + k, select(own, missed, before[1]))
-    return valid
+    return valid, (limp_a, limp_b)
 
 
 @kernel
@@ -193,8 +207,8 @@ def let_go(mid, cell, load, half):
 @kernel
 def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
     """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out``
-    (2, > 11, WIDTH) takes the outputs, the numbers of :mod:`..along.places`, and their bounds. Returns masks: ``(met,
-    alpha slack or pushed somewhere, beta)``.
+    (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their bounds. Returns
+    masks: ``(met, alpha slack or pushed somewhere, beta)``.
 
     The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges``
     (> MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
@@ -202,29 +216,33 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     mid = middle(u, spread(DEEPEST), cell, load, scratch)
     depth = min(mid.rate * half, DEEPEST)
     slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
-    found, alpha, beta = mask_of(0), mask_of(0), mask_of(0)
+    found, limps = mask_of(0), (mask_of(0), mask_of(0))
     unsure, miss, doubts, middle_limp = spread(0.0), spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
     rough, fine = 0, 0  # trials that each lane has had, whatever its neighbours need
     while fine < FITS:
-        mid = middle(u, depth, cell, load, scratch)
-        total, (alpha, beta), middle_limp, doubts, valid, _ = scan(
-            pieces, mid, cell, load, rows, ends, counts, starts, scratch
-        )
-        active = active & valid
-        miss = half - total
-        long = (depth >= DEEPEST) & (miss >= 0.0)  # the middle is the uniform tube
-        rough += 1
-        wrong = active & ~settled & ~long & (abs(miss) * mid.rate * mid.q > ROUGH)
-        if rough == FITS:
-            active, wrong = active & ~wrong, mask_of(0)
-        arrived = active & ~wrong & ~settled
-        settled = settled | arrived
-        before = select(arrived, depth, before[0]), before[1]
+        mid, wrong = middle(u, depth, cell, load, scratch), mask_of(0)
+        if len(load.wall) > 1 or some(active & ~settled):
+            total, limps, middle_limp, doubts, valid, _ = scan(
+                pieces, mid, cell, load, rows, ends, counts, starts, scratch
+            )
+            active = active & valid
+            miss = half - total
+            long = (depth >= DEEPEST) & (miss >= 0.0)  # the middle is the uniform tube
+            rough += 1
+            wrong = active & ~settled & ~long & (abs(miss) * mid.rate * mid.q > ROUGH)
+            if rough == FITS:
+                active, wrong = active & ~wrong, mask_of(0)
+            arrived = active & ~wrong & ~settled
+            settled = settled | arrived
+            before = select(arrived, depth, before[0]), before[1]
         if not some(wrong):
             fine += 1
             parts, unsure = find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch)
             active = active & (unsure < slack_ends.ENOUGH)
-            active = active & between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)
+            valid, last_limps = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)
+            active = active & valid
+            if len(load.wall) == 1:
+                limps = last_limps
             miss = half - get(numbers[0], DX)
             long = (depth >= DEEPEST) & (miss >= 0.0)
             wrong = active & ~long & (abs(miss) * mid.rate * mid.q > CLOSE)
@@ -234,6 +252,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
     moved = 2.0 * mid.q * mid.rate * unmet(mid, miss, numbers)
     largest = finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
+    alpha, beta = limps
     if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
     if not has_any_family(load.wall):

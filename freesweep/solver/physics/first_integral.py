@@ -1,12 +1,12 @@
-"""A place along a physical tube that is the same all along, from the level of its first integral.
+"""A place along a tube that is the same all along, from the level of its first integral.
 
 Where nothing varies along x, ``L - v L_v`` is the same at every place. With the resultant R = T/cosine of the meridian's
 angle, in place of T, G and psi are those of a uniform tube (the slope enters by R alone), and ::
 
     level = R sqrt(G) - e W(y, G, psi) + m psi,    R^2 - T^2 = (T v/s)^2 = L_v^2
 
-The density of a uniform tube grows with its resultant by sqrt(G), and R follows from it without any derivative. Where G and
-psi are not yet known exactly, R is least at those that are right, so that Newton's method for them (:mod:`relaxed`) goes on
+The density of a uniform tube grows with its resultant by sqrt(G), and R follows from it without any derivative. Bonded
+fibers leave G and psi no choice. Where loose ones do, and they are not yet known exactly, R is least at those that are right, so that Newton's method for them (:mod:`relaxed`) goes on
 as if R were given.
 """
 
@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 from ...jit import kernel
 from ..either import isnt, select, some
+from . import membrane
 from .physical import LEAST, NO_ROOM, kind_of, place, place_beside
-from .relaxed import beside, both_reach, is_taut, lacking, multipliers, taut_twist, under
+from .relaxed import BOTH_TAUT, beside, both_reach, is_taut, lacking, multipliers, taut_twist, under
 from .wall import least_square, may_go_slack, slopes, stored
 
 LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it meets
@@ -62,6 +63,32 @@ def levelled(y, level, cell, load):
 @kernel
 def at_level(y, level, cell, load, near):
     """The :class:`Level` at one point, from what a neighbour handed on."""
+    return _at_level(y, level, cell, load, near, load.wall)
+
+
+@kernel
+def _at_level(y, level, cell, load, near, wall):
+    if len(wall) == 1:
+        return level_of_membrane(y, level, cell, load)
+    return level_of_wall(y, level, cell, load, near)
+
+
+@kernel
+def level_of_membrane(y, level, cell, load):
+    """:func:`at_level` of the source's tube."""
+    psi, psi_y, _, G_1, G_y, _ = membrane.kinematics(y, cell, load)
+    w, w_y, _ = membrane.strain_energy(y, cell, load)
+    p, m, area, G = load.p, load.m, load.e * cell[2], 1.0 + G_1
+    s = sqrt(max(G, NO_ROOM))
+    R = max((level + area * w - m * psi) / s, NO_ROOM)
+    L_y = 2.0 * p * y * s + 0.5 * R * G_y / s - area * w_y + m * psi_y
+    alpha, beta = membrane.multipliers(y, R / s, cell, load)
+    return Level(min(G, p * y * y + load.f), R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, alpha, beta)
+
+
+@kernel
+def level_of_wall(y, level, cell, load, near):
+    """:func:`at_level` of a physical tube."""
     H, D, gg, wall, m = cell[0], cell[1], load.gamma * load.gamma, load.wall, load.m
     area, still = load.e * cell[2], 0.0 * y
     if wall[2] > 0.0:
@@ -112,17 +139,33 @@ def at_level(y, level, cell, load, near):
 @kernel
 def level_of(y, cell, load, near):
     """``(level, G - 1, twist rate, energy W of the wall)`` where the meridian has no slope."""
+    return _level_of(y, cell, load, near, load.wall)
+
+
+@kernel
+def _level_of(y, cell, load, near, wall):
+    if len(wall) == 1:
+        psi, _, _, G_1, _, _ = membrane.kinematics(y, cell, load)
+        return membrane.uniform_tube(y, cell, load)[2], G_1, psi, energy_of(y, G_1, psi, cell, load, wall)
     T = load.p * y * y + load.f
     _, G_1, psi, dG, dpsi, _, _, _ = place_beside(y, 0.0 * y, T, cell, load, near)
     G_1, psi = G_1 + dG, psi + dpsi
     level = (
         T * sqrt(max(1.0 + G_1, NO_ROOM)) - stored(y, G_1, psi, load.e * cell[2], load.rubber, load.wall) + load.m * psi
     )
-    return level, G_1, psi, stored(y, G_1, psi, cell[2], load.rubber, load.wall)
+    return level, G_1, psi, energy_of(y, G_1, psi, cell, load, wall)
+
+
+@kernel
+def energy_of(y, G_1, psi, cell, load, wall):
+    """Energy W of the wall."""
+    if len(wall) == 1:
+        return cell[2] * membrane.strain_energy(y, cell, load)[0]
+    return stored(y, G_1, psi, cell[2], load.rubber, load.wall)
 
 
 @kernel
 def summed(at, y, cosine, cell, load):
     """``(s, y^2 s, psi, W)`` of a place, whose meridian has that cosine."""
     s = sqrt(max(1.0 + at.G_1, NO_ROOM)) * cosine
-    return s, y * y * s, at.psi, stored(y, at.G_1, at.psi, cell[2], load.rubber, load.wall)
+    return s, y * y * s, at.psi, energy_of(y, at.G_1, at.psi, cell, load, load.wall)

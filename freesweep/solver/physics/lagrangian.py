@@ -97,7 +97,7 @@ def density_beside(y, v, point, load, near):
 @kernel
 def _density_beside(y, v, point, load, near, wall):
     if len(wall) == 1:
-        return membrane.density(y, v, point, load), near
+        return membrane.density(y, v, point, load), membrane.handed_on(y, v, point, load)
     return physical.density_beside(y, v, point, load, near)
 
 

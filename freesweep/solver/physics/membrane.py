@@ -141,6 +141,14 @@ def density(y, v, cell, load):
 
 
 @kernel
+def handed_on(y, v, cell, load):
+    """What a neighbour may start from, as of :mod:`.physical`."""
+    psi, psi_y, _, G_1, G_y, _ = kinematics(y, cell, load)
+    none = 0.0 * y
+    return none, y, none + v, psi, psi_y, none, G_1, G_y, none
+
+
+@kernel
 def uniform_tube(y, cell, load):
     """``(sqrt(G), T sqrt(G), L)`` at slope 0: meridional stretch and resultant, and the density itself (Eq. 2.11)."""
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
@@ -204,13 +212,20 @@ def conjugate(y, v, cell, load, direction):
 
 @kernel
 def fiber_multipliers(y, s, cell, load):
-    """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family); a negative one belongs to a fiber that would have to push.
+    """:func:`multipliers` where the axial stretch ``s`` is known, not the slope: where the meridian stands upright, that has
+    no digits to spare for it.
+    """
+    return multipliers(y, (load.p * y * y + load.f) / s, cell, load)
 
-    They take the axial stretch ``s``, not the slope: where the meridian stands upright, that has no digits to spare for it.
-    The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of pi r0^2 C10.
+
+@kernel
+def multipliers(y, pull, cell, load):
+    """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family) under a ``pull``, the resultant over the axial stretch; a negative
+    one belongs to a fiber that would have to push. The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of
+    pi r0^2 C10.
     """
     H, D, a = cell[0], cell[1], load.e * cell[2]
-    rubber, k, f, m = load.rubber, load.wall[0], load.f, load.m
+    rubber, k, m = load.rubber, load.wall[0], load.m
     c = rubber[0]
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
     G = 1.0 + G_1
@@ -220,7 +235,7 @@ def fiber_multipliers(y, s, cell, load):
     slope = yeoh_slope(rubber, excess(G_1, (y - 1.0) * (y + 1.0), e * z) + y2 * k * psi * psi)
     w_G = slope * (1.0 - e * e * z) + c * (y2 - q * e * e)
     w_psi = 2.0 * k * psi * (slope * y2 + c * e)
-    total = 0.5 * (load.p * y2 + f) / s - a * w_G
+    total = 0.5 * pull - a * w_G
     difference = (0.5 * (m - a * w_psi) - total * H * load.gamma * load.gamma) * z / D
     return 0.5 * (total + difference), 0.5 * (total - difference)
 
