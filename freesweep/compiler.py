@@ -13,6 +13,7 @@ places.
 import contextlib
 import gc
 
+from llvmlite.binding import Linkage
 from numba.core import event, typed_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
@@ -85,18 +86,28 @@ class _Part(JITCodeLibrary):
         self._finalized = True
 
     def _own_module(self):
-        return super()._get_module_for_linking()
+        """Its functions as LLVM takes them even where, so far, nobody calls them: one that is called later comes but once."""
+        module = super()._get_module_for_linking()
+        for one in module.functions:
+            if one.linkage == Linkage.linkonce_odr:
+                one.linkage = Linkage.weak_odr
+        return module
 
     def _get_module_for_linking(self):
-        """This kernel and all that it calls, each once."""
-        whole, waiting, seen = self._own_module().clone(), [*self._linking_libraries], set()
+        """This kernel and all that it calls, each once; last Numba's own functions, of which LLVM takes those that are
+        called.
+        """
+        whole, waiting, seen = self._own_module().clone(), [*self._linking_libraries], {}
         while waiting:
             library = waiting.pop()
             if library not in seen:
-                seen.add(library)
-                part = isinstance(library, _Part)
-                whole.link_in(library._own_module() if part else library._get_module_for_linking(), preserve=True)
-                waiting += library._linking_libraries if part else ()
+                seen[library] = True
+                if isinstance(library, _Part):
+                    whole.link_in(library._own_module(), preserve=True)
+                    waiting += library._linking_libraries
+        for library in seen:
+            if not isinstance(library, _Part):
+                whole.link_in(library._get_module_for_linking(), preserve=True)
         return whole
 
 

@@ -59,8 +59,8 @@ def ask(middle, share, tries=ALONG):
 
 def crossing(place, low, high, width=0.0, tries=ALONG):
     """``(t, answer, other)`` where the miss changes its sign along ``place(t)``, a stretch and a share, between two
-    pairs of a t and its answer, as exactly as that ``width``; ``other`` is a pair beside it. None where the way there
-    leads through what is no tube.
+    pairs of a t and its answer, as exactly as that ``width``; ``other`` is a pair on the other side of it. None where the
+    way there leads through what is no tube.
 
     By the regula falsi of Illinois; a bracket that it does not halve is halved.
     """
@@ -75,12 +75,10 @@ def crossing(place, low, high, width=0.0, tries=ALONG):
         answer = yield from ask(*place(t), tries)
         if isnan(answer.miss):
             return None
-        same = answer.miss * low[1].miss > 0.0
-        other = low if abs(low[1].miss) < abs(high[1].miss) else high
-        if same:
-            low, weights = (t, answer), [1.0, 0.5 * weights[1]]
+        if answer.miss * low[1].miss > 0.0:
+            low, other, weights = (t, answer), high, [1.0, 0.5 * weights[1]]
         else:
-            high, weights = (t, answer), [0.5 * weights[0], 1.0]
+            high, other, weights = (t, answer), low, [0.5 * weights[0], 1.0]
         none = max(CLOSE * abs(place(t)[0] - 1.0), FAINT * answer.doubt)
         if abs(answer.miss) <= none or abs(high[0] - low[0]) <= max(width, ROUNDING * (1.0 + abs(t))):
             break

@@ -85,7 +85,7 @@ def turning_point(points, sense):
     At a turning point the branch runs across the way: to each stretch between the outer points belongs one share.
     """
     (a, fa), (b, fb), (c, fc) = ((point.middle, sense * point.share) for point in points)
-    doubt, reach = 0.0, max(abs(fb - fa), abs(fb - fc)) + FLAT
+    doubts, reach = {a: 0.0, b: 0.0, c: 0.0}, max(abs(fb - fa), abs(fb - fc)) + FLAT
     for trial in range(PEAK_STEPS):
         left, right = (b - a) * (fb - fc), (b - c) * (fb - fa)
         t = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right) if left != right else b
@@ -94,9 +94,8 @@ def turning_point(points, sense):
         t, met = yield from clear(t, sense * fb, sense, reach, NUDGE * (c - a))
         if met is None:
             break
-        share, own = met
-        if sense * share > fb + own + doubt:  # what hardly differs is no larger
-            doubt = own
+        share, doubts[t] = met
+        if sense * share > fb:
             (a, fa), (c, fc) = ((a, fa), (b, fb)) if (t - b) * (c - b) < 0.0 else ((b, fb), (c, fc))
             b, fb = t, sense * share
         elif (t - b) * (c - b) > 0.0:
@@ -105,7 +104,8 @@ def turning_point(points, sense):
             a, fa = t, sense * share
         if max(fb - fa, fb - fc) < FLAT or abs(c - a) < THIN:
             break
-    return sense * fb, doubt + STANDS_OUT * max(fb - fa, fb - fc, 0.0), points[1]._replace(middle=b, share=sense * fb)
+    bound = max(doubts[a], doubts[b], doubts[c]) + STANDS_OUT * max(fb - fa, fb - fc, 0.0)
+    return sense * fb, bound, points[1]._replace(middle=b, share=sense * fb)
 
 
 def clear(middle, share, sense, reach, nudge):

@@ -14,7 +14,8 @@ CAUTION, BENT = 3.0, 0.1  # times what two curves differ by, and times the fourt
 @kernel
 def beside(row, k, last):
     """The number of place k, mirrored at both ends."""
-    return get(row, last - abs(last - abs(k)))
+    k = max(k, -k)
+    return get(row, min(k, 2 * last - k))
 
 
 @kernel
@@ -45,3 +46,14 @@ def widest(row, last, most, missed):
         wider = here + lift > most
         most, missed = select(wider, here + lift, most), select(wider, wrong, missed)
     return most, missed
+
+
+@kernel
+def highest(row, last, most):
+    """The largest number so far, with those of a ``row`` up to ``last``, between which lie parabolas."""
+    for k in range(last + 1):
+        before, here, after = beside(row, k - 1, last), get(row, k), beside(row, k + 1, last)
+        flat, own = 0.5 * (after - before), before - 2.0 * here + after
+        peak = (here >= before) & (here >= after) & (own < 0.0)
+        most = max(most, here + select(peak, flat * flat / select(peak, -2.0 * own, 1.0), 0.0))
+    return most

@@ -57,7 +57,7 @@ class Middle(NamedTuple):
 
 class Place(NamedTuple):
     """Stretch and :class:`..physics.first_integral.Level` of a place, cosine of the meridian's angle there, how x grows
-    with the share t of the depth, and by what share R falls short of T where no meridian leads on.
+    with the share t of the depth, and by what share R falls short of T: none in the middle, less before it.
     """
 
     y: float
@@ -179,7 +179,7 @@ def look(t, mid, cell, load, near, scratch):
     at = lagrangian.at_level(y, mid.level, cell, load, near)
     T = load.p * y * y + load.f
     beyond = at.R - T
-    short = select(inside, max(-beyond / at.R - CERTAIN, 0.0), 0.0)
+    short = select(inside, -beyond / at.R, 0.0)
     near_by = on * (2.0 / 3.0 * mid.rise + at.rise / 3.0 + mid.bend * on / 6.0)
     beyond = select(beyond > CERTAIN * at.R, beyond, max(near_by, 0.0))
     sine = sqrt(beyond * (beyond + 2.0 * T)) / (T + beyond)

@@ -15,13 +15,14 @@ from ..physics import lagrangian
 from ..physics.uniform_tube import FAR
 from ..physics.wall import has_any_family, has_two_families
 from . import slack_ends
-from .extremes import widest
-from .meridian import DEEPEST, handed_on, look, middle
+from .extremes import highest, widest
+from .meridian import CERTAIN, DEEPEST, handed_on, look, middle
 from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WORST, finish, pulled, unmet
 from .rule import LAST, PLACES, summed
 from .vector import HUGE, WIDTH, get, mask_of, put, select, some, spread
 
 ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5, 15)
+SHORT = SQUARE  # which only what is known of the whole needs
 FITS = 16  # trials for the depth of the middle
 ROUGH, CLOSE = 1e-3, 1e-10  # shares of the layer that may be wrong there
 NARROW = 1e-6  # of the depth: a part of no length
@@ -32,14 +33,14 @@ SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
 def along(first, last, mid, cell, load, near, whole, rows, scratch):
     """Look at the places of one rule between two shares of the depth. ``rows`` (15, > LAST, WIDTH) take how x grows
     with the share of the part, pulls, and what was handed on; and as the ``whole`` also what else is to be summed and
-    known. Returns what is handed on, the lanes that may be, and by what share R falls short of T.
+    known; if not, a row takes by what share R falls SHORT of T. Returns what is handed on, and the lanes that may be.
     """
-    valid, width, short = mask_of(-1), last - first, spread(0.0)
+    valid, width = mask_of(-1), last - first
     for k in range(LAST + 1):
         here = look(first + width * PLACES[k], mid, cell, load, near, scratch)
         at, y = here.at, here.y
         near = handed_on(y, at, near, load.wall)
-        valid, short = valid & (at.room > 0.0), max(short, here.short)
+        valid = valid & (at.room > 0.0)
         alpha, beta = slack_ends.pulls(at, load)
         dx = width * here.per_share
         put(rows[DX], k, dx)
@@ -50,6 +51,7 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
         put(rows[PSI], k, at.psi)
         put(rows[WIDE], k, at.G_1)
         if not whole:
+            put(rows[SHORT], k, here.short)
             continue
         s, volume, psi, energy = lagrangian.summed(at, y, here.cosine, cell, load)
         put(rows[LENGTH], k, dx * (s - mid.s))
@@ -57,7 +59,7 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
         put(rows[TWIST], k, dx * (psi - mid.psi))
         put(rows[ENERGY], k, dx * (energy - mid.energy))
         look_at(y, at, k, cell, load, rows, load.wall)
-    return near, valid, short
+    return near, valid
 
 
 @kernel
@@ -79,13 +81,14 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
     """
     valid, near, total = mask_of(-1), nothing_yet(spread(0.0)), spread(0.0)
     limp_a, limp_b, doubt_a, doubt_b = mask_of(0), mask_of(0), spread(0.0), spread(0.0)
-    short = spread(0.0)
+    short = spread(CERTAIN)
     for lane in range(WIDTH):
         counts[lane] = 0
     for i in range(pieces):
         left, right = i / pieces, (i + 1) / pieces
-        near, fine, lack = along(spread(left), spread(right), mid, cell, load, near, False, rows, scratch)
-        valid, total, short = valid & fine, total + summed(rows[DX])[0], max(short, lack)
+        near, fine = along(spread(left), spread(right), mid, cell, load, near, False, rows, scratch)
+        valid, total = valid & fine, total + summed(rows[DX])[0]
+        short = highest(rows[SHORT], LAST, short)
         limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
         if len(load.wall) == 1:
             continue
@@ -96,7 +99,7 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
                 left, right - left, PLACES, rows[ALPHA + family], family, LAST, rows[KIND:], ends, counts, starts
             )
     middle_limp = get(rows[ALPHA], LAST) <= 0.0, get(rows[BETA], LAST) <= 0.0
-    return total, (limp_a, limp_b), middle_limp, (doubt_a, doubt_b), valid, short
+    return total, (limp_a, limp_b), middle_limp, (doubt_a, doubt_b), valid, short - CERTAIN
 
 
 @kernel
@@ -147,7 +150,7 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
     for j in range(parts):
         left, width = get(edges, j), (get(edges, j + 1) - get(edges, j)) / pieces
         for i in range(pieces):
-            near, fine, _ = along(left + i * width, left + (i + 1) * width, mid, cell, load, near, True, rows, scratch)
+            near, fine = along(left + i * width, left + (i + 1) * width, mid, cell, load, near, True, rows, scratch)
             dx, doubt = summed(rows[DX])
             add(numbers, DX, dx, doubt)
             for k in range(LENGTH, ENERGY + 1):
