@@ -9,7 +9,7 @@ from .description.loads import read_load, read_stations, warn_of_loads
 from .description.profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
-from .statics import is_solved_whole, read_course, undeformed
+from .statics import read_course, undeformed
 from .thick_wall import thin_wall_attributes
 from .worst_places import with_own
 
@@ -119,7 +119,7 @@ def _problem(tube, buckled, accuracy):
     design = {name: np.full(1, value) for name, value in tube.design().items()}
     unloaded = design | {"force": np.zeros(1), "torque": np.zeros(1)}
     row = problem_rows(unloaded, tube.energy, tube.is_thick, tube.threads)[0]
-    whole = is_solved_whole(tube) or buckled
+    whole = tube.varies or tube.is_thick or tube.threads > 0.0 or buckled  # on meshes only the source's tubes go by halves
     if tube.varies:
         solved, error = read_course(tube, accuracy)
         return row, solved, whole, error

@@ -125,11 +125,11 @@ def _solve(tube, loads, stations, accuracy):
     count, steps = len(force), len(pressure)
     design = {name: np.full(count, value) for name, value in tube.design().items()}
     rows = problem_rows(design | {"force": force, "torque": torque}, tube.energy, tube.is_thick, tube.threads)
-    whole, error = is_solved_whole(tube), 0.0
+    whole, error = tube.varies, 0.0
     if tube.varies:
         course, error = read_course(tube, accuracy)
     else:
-        course = uniform(BASE_CELLS // 2 if whole else BASE_CELLS)
+        course = uniform(BASE_CELLS)
     every = with_own(tube, stations)
     unique, index = near_stations(tube, every, whole)
     first = np.arange(count + 1, dtype=np.int64) * steps
@@ -168,11 +168,6 @@ def _solve(tube, loads, stations, accuracy):
     if not np.any(np.isinf(loads["pressure"])):  # the locked shape does not see the wall
         result.attrs |= thin_wall_attributes(tube)
     return result
-
-
-def is_solved_whole(tube):
-    """Whether all of a tube is solved, and not its half up to a plane of symmetry: first integrals are the source's."""
-    return tube.varies or tube.is_thick or tube.threads > 0.0
 
 
 def undeformed(tube, stations, whole):

@@ -1,5 +1,6 @@
 """Many designs at once: vectors go the quick way, branches are followed where that ends; tubes that vary go by meshes."""
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,21 +18,25 @@ from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall
 from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK, PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
+MIDDLE = OUTPUTS - 1
 NOTHING = np.empty(0)
 
 
 class Walks(NamedTuple):
-    """Equilibria of many designs: rows of states, but ``limits`` (problems, 2); see :func:`.free.free_states.walk`."""
+    """Equilibria of many designs: rows of states, but ``limits`` (problems, 2); see :func:`.free.free_states.walk`. The
+    ``middles`` are those of :func:`.lanes.profile.draw`.
+    """
 
     values: np.ndarray
     bounds: np.ndarray
     status: np.ndarray
     slack: np.ndarray
-    limits: np.ndarray
+    middles: np.ndarray
     profiles: np.ndarray
+    limits: np.ndarray
 
 
-STATES = tuple(name for name in Walks._fields if name != "limits")
+STATES = Walks._fields[:5]  # what vectors find
 
 
 def uniform(cells):
@@ -42,8 +47,8 @@ def uniform(cells):
 def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes=True, soon=False) -> Walks:
     """Walk each problem along its pressures; arguments as of :func:`follow_many`, ``tube`` its (course, edges, places).
 
-    Vectors of designs serve where tubes do not vary. Their numbers do not depend on which
-    designs share a vector; those of the scalar kernels alone (``lanes=False``) differ by less than the bounds.
+    Tubes that are the same all along go by their first integral, in vectors of designs; their numbers do not depend on which
+    designs share a vector. Those of meshes (``lanes=False``), by which tubes go that vary, differ by less than the bounds.
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     problems, pressures = (
@@ -52,24 +57,23 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     )  # others would be compiled for anew
     found = _nothing(problems, len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
-    drawn = len(stations) > 0
-    if lanes and len(tube[0]) == 0 and not drawn and not config.DISABLE_JIT:
-        calls = _scalar_calls(problems, first, pressures, tube, accuracy, stations, found)
+    calls = partial(_scalar_calls, problems, first, pressures, tube, accuracy, stations, found)
+    if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
         solve, given = _vector_call(problems)
-        if soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls):
+        if soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls()):
             found.status[_doubt(problems, first, pressures, found)] = PENDING
         if np.any(found.status == PENDING):
+            asked = found.status == PENDING
             _walk_lanes(problems, first, pressures, accuracy, found)
             kinds = [(kind, some) for _, _, kind, some in _kinds(problems)]
             follow_branches(problems, first, pressures, kinds, accuracy, found)
-    for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
+            found.status[found.status == PENDING] = NOT_CONVERGED
+            if len(stations):
+                _draw(problems, first, pressures, np.flatnonzero(asked), stations, accuracy, found)
+    for call in calls():
         left = np.count_nonzero(call[11] == PENDING)
         if left and not (soon and at_once(left, follow_many, follow_many, *call)):
             follow_many(*call)
-    if drawn and lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
-        doubtful = _doubt(problems, first, pressures, found)
-        if np.any(doubtful):
-            _replace(found, doubtful, walk_all(problems, first, pressures, tube, accuracy))
     found.bounds[limp] += MISSED * np.abs(found.values[limp])
     return found
 
@@ -107,19 +111,6 @@ def _doubt(problems, first, pressures, found):
     return (valued & (carried == 0)) | np.isin(found.status, (BEYOND_LIMIT, NOT_CONVERGED))
 
 
-def _replace(found, rows, better):
-    """Put what is known ``better`` into these rows. Profiles stay where they are of the same states; where there are none,
-    the status says that something is missing.
-    """
-    apart = np.abs(found.values - better.values)[:, :OUTPUTS]
-    alike = np.all(apart <= (found.bounds + better.bounds)[:, :OUTPUTS], axis=1)
-    for name in STATES[:-1]:
-        getattr(found, name)[rows] = getattr(better, name)[rows]
-    found.limits[:] = better.limits
-    found.profiles[rows & ~alike] = np.nan
-    found.status[rows & ~alike & (found.status == OK)] = INACCURATE
-
-
 def _walk_lanes(problems, first, pressures, accuracy, found):
     """Solve what vectors can of tubes that do not vary. A loaded one's stretch is carried up and down from the state at
     which its loads have settled.
@@ -131,7 +122,7 @@ def _walk_lanes(problems, first, pressures, accuracy, found):
     asked = own.rows >= 0
     on_the_way = _nothing(problems[own.owners], len(own.pressures), NOTHING)
     _solve_lanes(problems[own.owners], own.first, own.pressures, asked, accuracy, on_the_way)
-    for name in STATES[:-1]:
+    for name in STATES:
         getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
 
 
@@ -140,7 +131,8 @@ def _nothing(problems, states, stations):
     columns = OUTPUTS + (len(NUMBERS) if wall_columns(problems) == PHYSICAL else 0)
     return Walks(
         np.full((states, columns), np.nan), np.full((states, columns), np.nan), np.full(states, PENDING, np.int64),
-        np.zeros(states, np.int64), np.full((len(problems), 2), np.nan), np.full((states, FIELDS, len(stations)), np.nan),
+        np.zeros(states, np.int64), np.full((states, 2), np.nan), np.full((states, FIELDS, len(stations)), np.nan),
+        np.full((len(problems), 2), np.nan),
     )  # fmt: skip
 
 
@@ -156,13 +148,33 @@ def _solve_lanes(problems, first, pressures, asked, accuracy, found):
         for pieces in PIECES:
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_in_order(likeness[rows]), kind="stable")
-            solve(problems, owners, pressures, stretches, rows[alike], *kind, pieces, accuracy, *found[:4])
+            solve(problems, owners, pressures, stretches, rows[alike], *kind, pieces, accuracy, *found[:5])
+
+
+def _draw(problems, first, pressures, rows, stations, accuracy, found):
+    """Draw the states that were found among the ``rows``; what no rule tells to the accuracy has a status that says so."""
+    from .lanes.profile import draw_lanes, draw_physical
+
+    rows = rows[np.isin(found.status[rows], (OK, INACCURATE))]
+    met = np.isnan(found.middles[:, 0])  # on a branch, by the stretch in the middle
+    found.middles[met, 0] = found.values[met, MIDDLE]
+    owners = np.repeat(np.arange(len(problems)), np.diff(first))
+    drawn = np.zeros(len(pressures), bool)
+    for _, _, kind, some in _kinds(problems):
+        draw = draw_lanes if len(kind) == 1 else draw_physical
+        for pieces in PIECES:
+            left = rows[some[owners[rows]] & ~drawn[rows]]
+            if len(left):
+                draw(
+                    problems, owners, pressures, found.middles, left, stations, *kind, pieces, accuracy, found.profiles, drawn
+                )  # fmt: skip
+    found.status[rows[~drawn[rows]]] = INACCURATE
 
 
 def _vector_call(problems):
     """The entry point by which vectors solve such problems as the first, and arguments of the kinds that it is given."""
     (_, solve, kind, _), whole, states = next(_kinds(problems[:1])), np.empty(0, np.int64), np.empty((0, OUTPUTS))
-    return solve, (problems, whole, NOTHING, NOTHING, whole, *kind, 1, 1.0, states, states, whole, whole)
+    return solve, (problems, whole, NOTHING, NOTHING, whole, *kind, 1, 1.0, states, states, whole, whole, states)
 
 
 def _kinds(problems):

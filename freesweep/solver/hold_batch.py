@@ -167,9 +167,10 @@ def _hold(problems, targets, length_held, owners, pressures, rows, constants, ac
             size = len(part)
             free = np.full((2, size, 5), np.nan)
             status, slack = np.full(size, PENDING), np.zeros(size, np.int64)
+            middles = np.empty((size, 2))
             for pieces in PIECES:
                 left = np.flatnonzero(status == PENDING)
-                solve_lanes(own, part, p[part], stretches[part], left, constants, pieces, asked, *free, status, slack)
+                solve_lanes(own, part, p[part], stretches[part], left, constants, pieces, asked, *free, status, slack, middles)
             c[part], bound[part] = np.where(status == OK, free[:, :, column], np.nan)
         with np.errstate(all="ignore"):
             gain = c - before[1]

@@ -4,7 +4,7 @@ from math import isnan
 
 import numpy as np
 
-from .question import ALONG, FAINT, FINEST, ROUGH, TRIES, WIDER, ask, crossing, slope_of
+from .question import ALONG, FAINT, FINEST, MOST_TRIES, ROUGH, WIDER, ask, crossing, slope_of
 
 CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turning point stands out from its neighbours
 SLIGHT, LEAST_ASIDE = 1e-3, 1e-13  # a miss, and a stretch, by which a state is moved to see what changes
@@ -56,7 +56,7 @@ def state_at(share, near, far, accuracy):
     told by the last that tells it at all.
     """
     middle, stays, aside = near.middle + part_of(share, near, far) * (far.middle - near.middle), None, None
-    for fineness in range(TRIES):
+    for fineness in range(MOST_TRIES):
         tries = range(fineness, fineness + 1), np.inf
         met = yield from met_at(share, near, far, middle, tries, aside)
         if met is None:

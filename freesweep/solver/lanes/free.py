@@ -103,11 +103,12 @@ def seat_states(group, count, order, problems, owners, pressures, stretches, row
 
 @kernel
 def solve(
-    problems, owners, pressures, stretches, order, constants, walls, layers, pieces, accuracy, values, bounds, status, slack
+    problems, owners, pressures, stretches, order, constants, walls, layers, pieces, accuracy, values, bounds, status, slack, middles
 ):  # fmt: skip
     """Solve the rows in the given ``order``, WIDTH at a time, by :mod:`quadrature`, each part in so many ``pieces``: row i
     belongs to problem ``owners[i]`` and has the uniform stretch ``stretches[i]``. Other arguments as of :func:`carry` and
-    :func:`..free.free_states.follow_many`; rows that a lane could not do keep the status that they have.
+    :func:`..free.free_states.follow_many`; rows that a lane could not do keep the status that they have. Of the others
+    ``middles`` (n, 2) take the uniform stretch and the depth of the middle, from which profiles are drawn.
     """
     room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
     edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
@@ -117,11 +118,15 @@ def solve(
         count = min(WIDTH, len(order) - group)
         seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start)
         cell, _, load = loads(columns, constants, walls, layers)
-        met, alpha, beta = quadrature.solve(
+        met, alpha, beta, depth = quadrature.solve(
             get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, ends[:5],
             ends[5:], edges, numbers[:2], scratch, counts, numbers[2:],
         )  # fmt: skip
         record(bits(met), bits(alpha), bits(beta), rows, numbers[2:], values, bounds, status, slack)
+        put(scratch, 0, depth)
+        for lane in range(count):
+            if (bits(met) >> lane) & 1:
+                middles[rows[lane], 0], middles[rows[lane], 1] = start[0, lane], scratch[0, lane]
 
 
 @entry_point
@@ -138,20 +143,20 @@ def carry_physical(problems, first, pressures, order, constants, layers, values,
 
 @entry_point
 def solve_lanes(
-    problems, owners, pressures, stretches, order, constants, pieces, accuracy, values, bounds, status, slack
+    problems, owners, pressures, stretches, order, constants, pieces, accuracy, values, bounds, status, slack, middles
 ):  # fmt: skip
     """:func:`solve` the source's tubes."""
     solve(
-        problems, owners, pressures, stretches, order, constants, SOURCE, 1, pieces, accuracy, values, bounds, status, slack
+        problems, owners, pressures, stretches, order, constants, SOURCE, 1, pieces, accuracy, values, bounds, status, slack, middles
     )  # fmt: skip
 
 
 @entry_point
 def solve_physical(
-    problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack
+    problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack, middles
 ):  # fmt: skip
     """:func:`solve` physical tubes."""
     solve(
         problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, pieces, accuracy, values, bounds, status,
-        slack,
+        slack, middles,
     )  # fmt: skip

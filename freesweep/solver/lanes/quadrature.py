@@ -211,7 +211,7 @@ def let_go(mid, cell, load, half):
 def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
     """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out``
     (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their bounds. Returns
-    masks: ``(met, alpha slack or pushed somewhere, beta)``.
+    masks: ``(met, alpha slack or pushed somewhere, beta)``, and the depth of the middle.
 
     The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges``
     (> MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
@@ -260,4 +260,4 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
         beta = mask_of(0)
     if not has_any_family(load.wall):
         alpha = mask_of(0)
-    return found & (largest <= accuracy) & ~let_go(mid, cell, load, half), alpha, beta
+    return found & (largest <= accuracy) & ~let_go(mid, cell, load, half), alpha, beta, depth

@@ -14,8 +14,12 @@ _ANGLES = np.pi * np.arange(LAST + 1) / LAST
 _BASIS = np.polynomial.chebyshev.chebvander(-np.cos(_ANGLES), LAST)
 PLACES = 0.5 - 0.5 * np.cos(_ANGLES)
 WEIGHTS = np.linalg.solve(_BASIS.T, [0.0 if k % 2 else 1.0 / (1.0 - k * k) for k in range(LAST + 1)])
+_COEFFICIENTS = np.linalg.inv(_BASIS)
+_INTEGRALS = np.polynomial.chebyshev.chebint(_COEFFICIENTS, lbnd=-1)
+# up to the place of a row, for the number at the place of a column
+UP_TO = np.ascontiguousarray(0.5 * np.polynomial.chebyshev.chebval(-np.cos(_ANGLES), _INTEGRALS).T)
 TAILS = 4
-TAIL = np.ascontiguousarray(np.linalg.inv(_BASIS)[-TAILS:])
+TAIL = np.ascontiguousarray(_COEFFICIENTS[-TAILS:])
 MISSED = 0.02  # of the largest of the last coefficients
 
 

@@ -1,0 +1,264 @@
+"""What a tube that is the same all along looks like along its half, from its first integral, for a vector of designs.
+
+Sums up to each place of the rules (:mod:`rule`) tell x, axial position and twist there, polynomials between them the depth of
+a station; what is known of a place is told by its stretch and the level (:mod:`meridian`). How far a station may be off, and
+by how much the middle may have moved, makes the bounds.
+"""
+
+from math import atan, sqrt
+
+import numpy as np
+
+from ...jit import entry_point, kernel
+from ..along.profile import FIELDS, SMALLEST, VALUES
+from ..cells import nothing_yet
+from ..physics import lagrangian
+from ..physics.lagrangian import ROUNDING
+from ..problem import PHYSICAL, SOURCE
+from . import slack_ends
+from .free import seat_states
+from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at
+from .outputs import DX, LENGTH, TWIST
+from .pack import COLUMNS, aligned, loads
+from .pack import LENGTH as HALF
+from .quadrature import along, find_ends, scan
+from .rule import LAST, PLACES, UP_TO, summed
+from .vector import HUGE, WIDTH, bits, get, mask_of, put, select, spread
+
+# what is kept of each place of the way; axial position and twist as what they differ by from those of a tube like its middle
+SHARE, X, GROWTH, Z, TURN, DOUBT_X, DOUBT_Z, DOUBT_TURN = range(8)
+KEPT = DOUBT_TURN + 1
+STEPS, CLOSE = 40, 1e-14  # to a station, of a part
+
+
+@kernel
+def chosen(given, one, other):
+    """The :class:`Middle` of the lanes that are ``given``, in others the other one."""
+    return Middle(
+        select(given, one.u, other.u), select(given, one.rate, other.rate), select(given, one.depth, other.depth),
+        select(given, one.q, other.q), select(given, one.whole, other.whole), select(given, one.y, other.y),
+        select(given, one.level, other.level), select(given, one.per_depth, other.per_depth),
+        select(given, one.rise, other.rise), select(given, one.bend, other.bend), select(given, one.s, other.s),
+        select(given, one.psi, other.psi), select(given, one.energy, other.energy),
+    )  # fmt: skip
+
+
+@kernel
+def go(parts, pieces, edges, mid, cell, load, rows, way, scratch):
+    """Write what is known of each place along half a tube to the rows of the ``way``; returns how many those are, and the
+    lanes that may be.
+    """
+    valid, near, count = mask_of(-1), nothing_yet(spread(0.0)), 0
+    sums, doubts = (spread(0.0), spread(0.0), spread(0.0)), (spread(0.0), spread(0.0), spread(0.0))
+    for j in range(parts):
+        left, width = get(edges, j), (get(edges, j + 1) - get(edges, j)) / pieces
+        for i in range(pieces):
+            first, last = left + i * width, left + (i + 1) * width
+            near, fine = along(first, last, mid, cell, load, near, True, rows, scratch)
+            valid = valid & fine
+            grown, lengthened, turned = summed(rows[DX]), summed(rows[LENGTH]), summed(rows[TWIST])
+            doubts = doubts[0] + grown[1], doubts[1] + lengthened[1], doubts[2] + turned[1]
+            for k in range(LAST + 1):
+                x, z, turn = spread(0.0), spread(0.0), spread(0.0)
+                for l in range(LAST + 1):
+                    x, z = x + UP_TO[k, l] * get(rows[DX], l), z + UP_TO[k, l] * get(rows[LENGTH], l)
+                    turn = turn + UP_TO[k, l] * get(rows[TWIST], l)
+                put(way[SHARE], count, first + (last - first) * PLACES[k])
+                put(way[X], count, sums[0] + x)
+                put(way[GROWTH], count, get(rows[DX], k))
+                put(way[Z], count, sums[1] + z)
+                put(way[TURN], count, sums[2] + turn)
+                put(way[DOUBT_X], count, doubts[0])
+                put(way[DOUBT_Z], count, doubts[1])
+                put(way[DOUBT_TURN], count, doubts[2])
+                count += 1
+            sums = sums[0] + grown[0], sums[1] + lengthened[0], sums[2] + turned[0]
+    return count, valid
+
+
+@kernel
+def between(t, row, first, lane):
+    """The polynomial through the places of one rule in a row, at the share t of it: barycentric, of Chebyshev's points."""
+    above, below = 0.0, 0.0
+    for k in range(LAST + 1):
+        apart = t - PLACES[k]
+        if apart == 0.0:
+            return row[first + k, lane]
+        weight = (1.0 if k % 2 == 0 else -1.0) * (0.5 if k == 0 or k == LAST else 1.0) / apart
+        above += weight * row[first + k, lane]
+        below += weight
+    return above / below
+
+
+@kernel
+def meet(x, way, first, lane):
+    """The share of one rule at which x is met."""
+    low, high = 0.0, 1.0
+    t = (x - way[X, first, lane]) / max(way[X, first + LAST, lane] - way[X, first, lane], SMALLEST)
+    for _ in range(STEPS):
+        t = min(max(t, low), high)
+        miss = between(t, way[X], first, lane) - x
+        if miss > 0.0:
+            high = t
+        else:
+            low = t
+        step = miss / between(t, way[GROWTH], first, lane)
+        ahead = t - step
+        if not low <= ahead <= high:
+            ahead = 0.5 * (low + high)
+        if abs(ahead - t) < CLOSE:
+            return min(max(ahead, 0.0), 1.0)
+        t = ahead
+    return t
+
+
+@kernel
+def stand(x, count, way, beside, at, moved):
+    """Where the station x lies in each lane: the share of the depth to ``at[0]``, by what axial position and twist differ
+    from those of the middle to ``at[1]``, ``at[2]``, and their doubts, that of x first, to ``moved``. What is left behind the
+    last place is like the middle.
+    """
+    for lane in range(WIDTH):
+        first = beside[lane]
+        while first + LAST + 1 < count and way[X, first + LAST, lane] < x:
+            first += LAST + 1
+        beside[lane] = first
+        t = 1.0 if x > way[X, count - 1, lane] else meet(x, way, first, lane)
+        last = first + LAST
+        at[0, lane] = way[SHARE, first, lane] + t * (way[SHARE, last, lane] - way[SHARE, first, lane])
+        at[1, lane], at[2, lane] = between(t, way[Z], first, lane), between(t, way[TURN], first, lane)
+        for k in range(3):
+            moved[k, lane] = way[DOUBT_X + k, last, lane]
+
+
+@kernel
+def angle(tangent, scratch):
+    """The angles of lanes."""
+    put(scratch, 0, tangent)
+    for lane in range(WIDTH):
+        scratch[0, lane] = atan(scratch[0, lane])
+    return get(scratch, 0)
+
+
+@kernel
+def local(y, at, cell, load, scratch):
+    """Angles after deformation [rad], and multipliers of both families with their extension, at one place."""
+    meridional = sqrt(1.0 + at.G_1)
+    return (
+        angle(y * (cell[0] + cell[1] + at.psi) / meridional, scratch),
+        angle(y * (cell[0] - cell[1] + at.psi) / meridional, scratch), load.gamma * pull(at.a, load),
+        load.gamma * pull(at.b, load),
+    )  # fmt: skip
+
+
+@kernel
+def pull(multiplier, load):
+    """What a family pulls by: a slack one, by nothing."""
+    return max(multiplier, 0.0) if slack_ends.may_go_slack(load.wall) else multiplier
+
+
+@kernel
+def tell(x, left, mid, cell, load, half, middle_off, at, moved, near, scratch, out):
+    """Write the FIELDS of a station that :func:`stand` found to ``out`` (FIELDS, WIDTH), where the middle's stretch may be ``middle_off``; what is ``left`` of a long tube has the middle's, or that of the
+    uniform tube. Returns what is handed on.
+    """
+    here = look(get(at, 0), mid, cell, load, near, scratch)
+    y, level = here.y, here.at
+    near = handed_on(y, level, near, load.wall)
+    s = sqrt(1.0 + level.G_1)
+    sine = sqrt(max(1.0 - here.cosine * here.cosine, 0.0))
+    off = get(moved, 0)
+    z, turn = mid.s * x + get(at, 1), mid.psi * x + get(at, 2)
+    wrong = s * sine * off + middle_off
+    _, G_1, psi, _ = lagrangian.level_of(mid.u, cell, load, near)
+    own = local(y, level, cell, load, scratch)
+    by_y = local(y + wrong, lagrangian.at_level(y + wrong, mid.level, cell, load, near), cell, load, scratch)
+    higher = mid.level + mid.s * mid.rise * middle_off
+    by_level = local(y, lagrangian.at_level(y, higher, cell, load, near), cell, load, scratch)
+    put(out, 0, y)
+    put(out, 1, z)
+    put(out, 2, turn)
+    put(out, VALUES, wrong + ROUNDING * y)
+    put(out, VALUES + 1, get(moved, 1) + abs(s * here.cosine - mid.s) * off + abs(sqrt(1.0 + G_1) - mid.s) * left + ROUNDING * half)
+    put(out, VALUES + 2, get(moved, 2) + abs(level.psi - mid.psi) * off + abs(psi - mid.psi) * left + ROUNDING * max(1.0, abs(turn)))
+    for k in range(4):
+        put(out, 3 + k, own[k])
+        put(out, VALUES + 3 + k, abs(by_y[k] - own[k]) + abs(by_level[k] - own[k]) + ROUNDING * abs(own[k]))
+    return near
+
+
+@kernel
+def judge(out, half, turned, worst, loose, tension):
+    """``(worst, loose, tension)`` with one station more: the largest bound, scaled, of all but tensions; of those it, and the
+    largest of them.
+    """
+    worst = max(worst, max(get(out, VALUES), max(get(out, VALUES + 1) / half, get(out, VALUES + 2) / turned)))
+    worst = max(worst, max(get(out, VALUES + 3), get(out, VALUES + 4)))
+    loose = max(loose, max(get(out, VALUES + 5), get(out, VALUES + 6)))
+    return worst, loose, max(tension, max(abs(get(out, 5)), abs(get(out, 6))))
+
+
+@kernel
+def draw(
+    problems, owners, pressures, middles, order, stations, constants, walls, layers, pieces, accuracy, profiles, drawn
+):  # fmt: skip
+    """Write the profiles (FIELDS, m) of the rows in the given ``order`` at the ``stations`` (m,), ascending distances from
+    the end in radii, WIDTH at a time, each part in so many ``pieces``; ``drawn`` (n,) are those whose bounds meet the
+    ``accuracy``. ``middles`` (n, 2) are what :func:`.free.solve` leaves: uniform stretch and depth of the middle, or its
+    stretch and NaN. Other arguments as there.
+    """
+    places = (slack_ends.MOST + 1) * pieces * (LAST + 1)
+    room, ends, way = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(KEPT, places)
+    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
+    columns, start, scratch = small[0], small[1], small[2]
+    out, at = aligned(1, FIELDS)[0], aligned(2, KEPT)
+    rows, counts, beside = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
+    for group in range(0, len(order), WIDTH):
+        count = min(WIDTH, len(order) - group)
+        seat_states(group, count, order, problems, owners, pressures, middles[:, 0], rows, columns, start)
+        for lane in range(WIDTH):
+            start[1, lane], beside[lane] = middles[rows[lane], 1], 0
+        cell, _, load = loads(columns, constants, walls, layers)
+        half, depth = get(columns, HALF), get(start, 1)
+        known = depth == depth
+        found, _, _ = middle_at(get(start, 0), cell, load, half, scratch)
+        mid = chosen(known, middle(get(start, 0), select(known, depth, DEEPEST), cell, load, scratch), found)
+        _, _, _, _, valid, _ = scan(pieces, mid, cell, load, room, ends[:5], counts, ends[5:], scratch)
+        parts, unsure = find_ends(mid, cell, load, valid, ends[:5], counts, ends[5:], edges, scratch)
+        last, fine = go(parts, pieces, edges, mid, cell, load, room, way, scratch)
+        miss = half - get(way[X], last - 1)
+        moved = min(mid.rate * (abs(miss) + get(way[DOUBT_X], last - 1)), 1.0)  # deep in a tube little depends on it
+        middle_off = 2.0 * mid.q * abs(1.0 - mid.u) * moved
+        turned = max(1.0, abs(half * mid.psi + get(way[TURN], last - 1)))
+        worst, loose, tension, near = spread(0.0), spread(0.0), spread(0.0), nothing_yet(spread(0.0))
+        for j in range(len(stations)):
+            stand(stations[j], last, way, beside, at[0], at[1])
+            left = max(stations[j] - get(way[X], last - 1), 0.0)
+            near = tell(stations[j], left, mid, cell, load, half, middle_off, at[0], at[1], near, scratch, out)
+            worst, loose, tension = judge(out, half, turned, worst, loose, tension)
+            for lane in range(count):
+                for k in range(FIELDS):
+                    profiles[rows[lane], k, j] = out[k, lane]
+        worst = max(worst, loose / max(tension, SMALLEST))
+        ready = bits(valid & fine & (worst <= accuracy) & (unsure < slack_ends.ENOUGH))
+        for lane in range(count):
+            drawn[rows[lane]] = (ready >> lane) & 1 == 1
+
+
+@entry_point
+def draw_lanes(problems, owners, pressures, middles, order, stations, constants, pieces, accuracy, profiles, drawn):
+    """:func:`draw` the source's tubes."""
+    draw(
+        problems, owners, pressures, middles, order, stations, constants, SOURCE, 1, pieces, accuracy, profiles, drawn
+    )  # fmt: skip
+
+
+@entry_point
+def draw_physical(
+    problems, owners, pressures, middles, order, stations, constants, layers, pieces, accuracy, profiles, drawn
+):  # fmt: skip
+    """:func:`draw` physical tubes."""
+    draw(
+        problems, owners, pressures, middles, order, stations, constants, PHYSICAL, layers, pieces, accuracy, profiles,
+        drawn,
+    )  # fmt: skip
