@@ -77,6 +77,8 @@ def follow(point, sense, far, answer):
     """
     step, points = FIRST_STEP, [point]
     for _ in range(MOST_STEPS):
+        if len(points) > 1 and 0.0 <= sense * points[-1].share - far < FLAT * SHARP * points[-1].step:
+            points[-1] = yield from sharpened(points[-1])
         if len(points) > 1 and sense * points[-1].share >= far:
             return ARRIVED, points
         points[-1], ahead, longer = yield from advance(points[-1], step)

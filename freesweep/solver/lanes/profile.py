@@ -21,7 +21,7 @@ from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at
 from .outputs import DX, LENGTH, TWIST
 from .pack import COLUMNS, aligned, loads
 from .pack import LENGTH as HALF
-from .quadrature import along, find_ends, scan
+from .quadrature import along, find_ends, graded, scan
 from .rule import LAST, PLACES, UP_TO, summed
 from .vector import HUGE, WIDTH, bits, get, mask_of, put, select, spread
 
@@ -51,9 +51,9 @@ def go(parts, pieces, edges, mid, cell, load, rows, way, scratch):
     valid, near, count = mask_of(-1), nothing_yet(spread(0.0)), 0
     sums, doubts = (spread(0.0), spread(0.0), spread(0.0)), (spread(0.0), spread(0.0), spread(0.0))
     for j in range(parts):
-        left, width = get(edges, j), (get(edges, j + 1) - get(edges, j)) / pieces
+        left, width = get(edges, j), get(edges, j + 1) - get(edges, j)
         for i in range(pieces):
-            first, last = left + i * width, left + (i + 1) * width
+            first, last = left + graded(i, pieces) * width, left + graded(i + 1, pieces) * width
             near, fine = along(first, last, mid, cell, load, near, True, rows, scratch)
             valid = valid & fine
             grown, lengthened, turned = summed(rows[DX]), summed(rows[LENGTH]), summed(rows[TWIST])

@@ -74,6 +74,14 @@ def look_at(y, at, k, cell, load, rows, wall):
 
 
 @kernel
+def graded(i, pieces):
+    """Where piece i of a part begins, as a share of it: they are short at a tube's end, where the meridian may stand
+    upright.
+    """
+    return (i / pieces) * (i / pieces)
+
+
+@kernel
 def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
     """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) limp in
     the middle, (alpha, beta) lengths in doubt, lanes that may be, share by which R falls short of T)``. Brackets of the
@@ -85,7 +93,7 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
     for lane in range(WIDTH):
         counts[lane] = 0
     for i in range(pieces):
-        left, right = i / pieces, (i + 1) / pieces
+        left, right = graded(i, pieces), graded(i + 1, pieces)
         near, fine = along(spread(left), spread(right), mid, cell, load, near, False, rows, scratch)
         valid, total = valid & fine, total + summed(rows[DX])[0]
         short = highest(rows[SHORT], LAST, short)
@@ -148,9 +156,10 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
         put(numbers[0], k, spread(0.0 if k < WORST else -HUGE))
         put(numbers[1], k, spread(0.0))
     for j in range(parts):
-        left, width = get(edges, j), (get(edges, j + 1) - get(edges, j)) / pieces
+        left, width = get(edges, j), get(edges, j + 1) - get(edges, j)
         for i in range(pieces):
-            near, fine = along(left + i * width, left + (i + 1) * width, mid, cell, load, near, True, rows, scratch)
+            first, last = left + graded(i, pieces) * width, left + graded(i + 1, pieces) * width
+            near, fine = along(first, last, mid, cell, load, near, True, rows, scratch)
             dx, doubt = summed(rows[DX])
             add(numbers, DX, dx, doubt)
             for k in range(LENGTH, ENERGY + 1):

@@ -20,7 +20,7 @@ _INTEGRALS = np.polynomial.chebyshev.chebint(_COEFFICIENTS, lbnd=-1)
 UP_TO = np.ascontiguousarray(0.5 * np.polynomial.chebyshev.chebval(-np.cos(_ANGLES), _INTEGRALS).T)
 TAILS = 4
 TAIL = np.ascontiguousarray(_COEFFICIENTS[-TAILS:])
-MISSED = 0.02  # of the largest of the last coefficients
+MISSED = 0.05  # of the largest of the last coefficients
 
 
 @kernel
