@@ -23,7 +23,8 @@ FEW, SECONDS = 32, 15.0  # states, and [s] of processor time, in one process: fr
 FEWER, LESS = 4, 1.0  # and that of loading its work
 NEVER = 1 << 40  # again
 _spent = {}  # (awaited entry point, kinds of arguments) -> [states, seconds] in plain Python
-_twins, _foretold = {}, set()
+_twins, _foretold, _told = {}, set(), set()
+_stand_ins = {}  # name -> (thing that only compiled code knows, what twins take for it)
 _making = threading.RLock()  # of twins: one that is found knows all its names
 
 
@@ -87,6 +88,9 @@ def _kinds(entry, arguments):
 
 
 def _tell(folder):
+    if folder in _told:
+        return
+    _told.add(folder)
     where = "once for each version" if folder else "in each process, for there is no folder to keep them in"
     print(f"freesweep: compiling the kernels, {where}: half a minute to three", file=sys.stderr)
 
@@ -99,6 +103,17 @@ def _has_code(entry, kinds):
 def _is_kept(entry, kinds):
     """Whether machine code for arguments of these kinds need only be loaded."""
     return isinstance(entry._cache, KernelCache) and entry._cache.holds(kinds, entry.targetctx.codegen())
+
+
+def stand_in(name, thing, plain):
+    """Let twins take something ``plain`` for a thing of that name that only compiled code knows."""
+    _stand_ins[name] = thing, plain
+
+
+def run(entry, states, soon, *arguments):
+    """Call an entry point, for so many states; ``soon``: without the compiler where that is quicker (:func:`at_once`)."""
+    if not (soon and at_once(states, entry, entry, *arguments)):
+        entry(*arguments)
 
 
 def is_at_hand(entry) -> bool:
@@ -150,11 +165,14 @@ def _twin(function):
 
             _twins[function] = twin
             known = function.__globals__  # its own name may be among them
-            names.update({name: _plain(known[name]) for name in function.__code__.co_names if name in known})
+            names.update({name: _plain(known[name], name) for name in function.__code__.co_names if name in known})
         return _twins[function]
 
 
-def _plain(thing):
+def _plain(thing, name=None):
+    own, plain = _stand_ins.get(name, (None, None))
+    if own is not None and thing is own:
+        return plain
     if isinstance(thing, Dispatcher):
         return _twin(thing.py_func)
     if isinstance(thing, types.ModuleType) and thing.__name__.startswith(__package__):
@@ -169,6 +187,6 @@ class _Twins:
         self._module = module
 
     def __getattr__(self, name):
-        twin = _plain(getattr(self._module, name))
+        twin = _plain(getattr(self._module, name), name)
         setattr(self, name, twin)
         return twin

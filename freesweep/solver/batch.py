@@ -1,21 +1,19 @@
 """Many designs at once: vectors go the quick way, branches are followed where that ends; tubes that vary go by meshes."""
 
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numba import config
 
-from ..interpret import at_once
+from ..interpret import run
 from .along.places import NUMBERS
 from .along.profile import FIELDS
 from .by_middle.many import PIECES, follow_branches
-from .free.carried import carried_many
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
 from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
-from .status import BEYOND_LIMIT, INACCURATE, NOT_CONVERGED, OK, PENDING
+from .status import INACCURATE, NOT_CONVERGED, OK, PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
 MIDDLE = OUTPUTS - 1
@@ -57,23 +55,16 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     )  # others would be compiled for anew
     found = _nothing(problems, len(pressures), stations)
     pressures, limp = next_to_nothing(problems, first, pressures)
-    calls = partial(_scalar_calls, problems, first, pressures, tube, accuracy, stations, found)
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
-        solve, given = _vector_call(problems)
-        if soon and all(at_once(len(call[4]), solve, follow_many, *call, instead=given) for call in calls()):
-            found.status[_doubt(problems, first, pressures, found)] = PENDING
-        if np.any(found.status == PENDING):
-            asked = found.status == PENDING
-            _walk_lanes(problems, first, pressures, accuracy, found)
-            kinds = [(kind, some) for _, _, kind, some in _kinds(problems)]
-            follow_branches(problems, first, pressures, kinds, accuracy, found)
-            found.status[found.status == PENDING] = NOT_CONVERGED
-            if len(stations):
-                _draw(problems, first, pressures, np.flatnonzero(asked), stations, accuracy, found)
-    for call in calls():
-        left = np.count_nonzero(call[11] == PENDING)
-        if left and not (soon and at_once(left, follow_many, follow_many, *call)):
-            follow_many(*call)
+        _walk_lanes(problems, first, pressures, accuracy, found, soon)
+        kinds = [(kind, some) for _, _, kind, some in _kinds(problems)]
+        follow_branches(problems, first, pressures, kinds, accuracy, found, soon)
+        found.status[found.status == PENDING] = NOT_CONVERGED
+        if len(stations):
+            _draw(problems, first, pressures, stations, accuracy, found, soon)
+    else:
+        for call in _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
+            run(follow_many, len(call[4]), soon, *call)
     found.bounds[limp] += MISSED * np.abs(found.values[limp])
     return found
 
@@ -82,7 +73,7 @@ def walk_by_vectors(problems, first, pressures, accuracy) -> Walks:
     """:func:`walk_all` of tubes that do not vary: what vectors find, PENDING where they leave it open."""
     found = _nothing(problems, len(pressures), NOTHING)
     pressures, _ = next_to_nothing(problems, first, pressures)
-    _walk_lanes(problems, first, pressures, accuracy, found)
+    _walk_lanes(problems, first, pressures, accuracy, found, False)
     return found
 
 
@@ -96,32 +87,17 @@ def _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
         )  # fmt: skip
 
 
-def _doubt(problems, first, pressures, found):
-    """Which states of physical tubes scalar kernels did not find, or found where the uniform tube does not lead: a coarse
-    mesh may pass over a small snap, which the first integral sees.
-    """
-    walls = wall_columns(problems)
-    if walls != PHYSICAL:
-        return np.zeros(len(pressures), bool)
-    carried = np.zeros(len(pressures), np.int64)
-    call = problems, walls, settling_pressure(problems), first, pressures, carried
-    if not at_once(len(pressures), carried_many, carried_many, *call):
-        carried_many(*call)
-    valued = np.isin(found.status, (OK, INACCURATE))
-    return (valued & (carried == 0)) | np.isin(found.status, (BEYOND_LIMIT, NOT_CONVERGED))
-
-
-def _walk_lanes(problems, first, pressures, accuracy, found):
+def _walk_lanes(problems, first, pressures, accuracy, found, soon):
     """Solve what vectors can of tubes that do not vary. A loaded one's stretch is carried up and down from the state at
     which its loads have settled.
     """
     if not np.any(is_loaded(problems)):
-        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), accuracy, found)
+        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), accuracy, found, soon)
         return
     own = legs(problems, first, pressures)
     asked = own.rows >= 0
     on_the_way = _nothing(problems[own.owners], len(own.pressures), NOTHING)
-    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, accuracy, on_the_way)
+    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, accuracy, on_the_way, soon)
     for name in STATES:
         getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
 
@@ -136,26 +112,29 @@ def _nothing(problems, states, stations):
     )  # fmt: skip
 
 
-def _solve_lanes(problems, first, pressures, asked, accuracy, found):
+def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
     # what shares a vector should need much the same work: as many pressures, and likeness tells the rest
     steps = np.diff(first)
     owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
     stretches, likeness = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
     for carry, solve, kind, some in _kinds(problems):
-        carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness)
+        given = problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness
+        run(carry, len(pressures), soon, *given)
         carried = some[owners] & asked & np.isfinite(stretches)
         for pieces in PIECES:
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_in_order(likeness[rows]), kind="stable")
-            solve(problems, owners, pressures, stretches, rows[alike], *kind, pieces, accuracy, *found[:5])
+            given = problems, owners, pressures, stretches, rows[alike], *kind, pieces, accuracy, *found[:5]
+            if len(rows):
+                run(solve, len(rows), soon, *given)
 
 
-def _draw(problems, first, pressures, rows, stations, accuracy, found):
-    """Draw the states that were found among the ``rows``; what no rule tells to the accuracy has a status that says so."""
+def _draw(problems, first, pressures, stations, accuracy, found, soon):
+    """Draw the states that were found; what no rule tells to the accuracy has a status that says so."""
     from .lanes.profile import draw_lanes, draw_physical
 
-    rows = rows[np.isin(found.status[rows], (OK, INACCURATE))]
+    rows = np.flatnonzero(np.isin(found.status, (OK, INACCURATE)) & (found.bounds[:, 0] > 0.0))  # at rest, exactly
     met = np.isnan(found.middles[:, 0])  # on a branch, by the stretch in the middle
     found.middles[met, 0] = found.values[met, MIDDLE]
     owners = np.repeat(np.arange(len(problems)), np.diff(first))
@@ -165,16 +144,9 @@ def _draw(problems, first, pressures, rows, stations, accuracy, found):
         for pieces in PIECES:
             left = rows[some[owners[rows]] & ~drawn[rows]]
             if len(left):
-                draw(
-                    problems, owners, pressures, found.middles, left, stations, *kind, pieces, accuracy, found.profiles, drawn
-                )  # fmt: skip
+                given = problems, owners, pressures, found.middles, left, stations, *kind, pieces, accuracy
+                run(draw, len(left), soon, *given, found.profiles, drawn)
     found.status[rows[~drawn[rows]]] = INACCURATE
-
-
-def _vector_call(problems):
-    """The entry point by which vectors solve such problems as the first, and arguments of the kinds that it is given."""
-    (_, solve, kind, _), whole, states = next(_kinds(problems[:1])), np.empty(0, np.int64), np.empty((0, OUTPUTS))
-    return solve, (problems, whole, NOTHING, NOTHING, whole, *kind, 1, 1.0, states, states, whole, whole, states)
 
 
 def _kinds(problems):

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...interpret import run
 from ..load_path import is_loaded, settling_pressure
 from ..physics.wall import LOOSE
 from ..problem import PROBLEM_SIZE, THREADS
@@ -35,7 +36,7 @@ class Rows(NamedTuple):
         return np.flatnonzero(self.status == PENDING).tolist()
 
 
-def follow_branches(problems, first, pressures, kinds, accuracy, found):
+def follow_branches(problems, first, pressures, kinds, accuracy, found, soon=False):
     """Write what is PENDING of the states ``found`` of the ``problems``, as far as their branches tell: arguments
     as of :func:`..batch.walk_all`; ``kinds`` are pairs of what all problems of one vector share, and which problems
     those are.
@@ -49,7 +50,7 @@ def follow_branches(problems, first, pressures, kinds, accuracy, found):
     with np.errstate(all="ignore"):  # of what is no tube nothing can be told
         asked = {k: next(steps, None) for k, steps in walks.items()}
         while asked := {k: asked_of for k, asked_of in asked.items() if asked_of is not None}:
-            answers = answered(problems, kinds, asked, found.values.shape[1])
+            answers = answered(problems, kinds, asked, found.values.shape[1], soon)
             asked = {k: _next(walks[k], answer) for k, answer in answers.items()}
 
 
@@ -60,7 +61,7 @@ def _next(steps, answer):
         return None
 
 
-def answered(problems, kinds, asked, columns):
+def answered(problems, kinds, asked, columns, soon=False):
     """Answers to what is ``asked`` of problems, pairs of a way and a question, by their number."""
     from ..lanes import by_middle
 
@@ -77,9 +78,8 @@ def answered(problems, kinds, asked, columns):
             values, bounds = np.empty((2, len(rows), columns))
             told = np.empty((len(rows), by_middle.COUNT))
             measure = by_middle.measure_lanes if len(kind) == 1 else by_middle.measure_physical
-            measure(
-                problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, told
-            )
+            own = problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, told
+            run(measure, 0, soon, *own)
             scales = np.column_stack([told[:, by_middle.SCALES :], np.ones(len(rows))])
             for n, k in enumerate(owners[rows].tolist()):
                 miss, doubt, slack = told[n, : by_middle.SCALES].tolist()

@@ -16,7 +16,7 @@ from .outputs import DX, finish, unmet
 from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
 from .quadrature import between_ends, find_ends, scan
 from .rule import LAST
-from .vector import WIDTH, bits, get, mask_of, put, select, spread
+from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
 TOLD = MISS, DOUBT, SLACK, SCALES = range(4)  # what is told beside outputs: three numbers, and from the last on four
@@ -48,7 +48,7 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     for lane in range(WIDTH):
         scratch[0, lane] = exp(scratch[0, lane])
     lack = select(driven, select(short > 0.0, -1.0 - short, get(scratch, 0) - 1.0), min(lack, -1.0))
-    put(told, MISS, select(driven & ~valid, np.nan, lack))
+    put(told, MISS, select(driven & isnt(valid), np.nan, lack))
     doubt = select(fine, unmet(mid, zero, numbers) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)), np.inf)
     put(told, DOUBT, select(driven & valid, doubt, 0.0))
     rest = select(mid.depth >= DEEPEST - AT_LEAST, max(miss, 0.0), 0.0)  # what is left of a long tube is uniform

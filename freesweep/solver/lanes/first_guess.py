@@ -10,7 +10,7 @@ from ..guide import FAR_FROM, STRAY
 from ..physics import lagrangian
 from ..physics.uniform_tube import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
 from ..physics.wall import leaves_choice, may_go_slack
-from .vector import HUGE, get, mask_of, select, some, spread
+from .vector import HUGE, get, isnt, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
 GLANCE = 0.06  # relative change of the stretch between two looks at the slope, where that is even:
@@ -35,7 +35,7 @@ def seek(here, cell, start, end, low, high, t, steep, near, todo):
     :func:`..physics.uniform_tube.curvature_at`.
     """
     zero = spread(0.0)
-    t = select(todo & ~((t >= low) & (t <= high)), 0.5 * (low + high), t)
+    t = select(todo & isnt((t >= low) & (t <= high)), 0.5 * (low + high), t)
     L_yy, L_vv, before, L_before = spread(1.0), spread(-1.0), t, zero
     for _ in range(SECANTS):
         (_, L_y, _, now_yy, _, now_vv), then = lagrangian.density_beside(here, zero, cell, between(start, end, t), near)
@@ -45,11 +45,11 @@ def seek(here, cell, start, end, low, high, t, steep, near, todo):
         steep = select(moved & (rise * steep > 0.0), rise, steep)
         there = todo & (abs(L_y) <= CLOSE * abs(steep) * (high - low))
         L_yy, L_vv = select(there, now_yy, L_yy), select(there, now_vv, L_vv)
-        todo = todo & ~there
+        todo = todo & isnt(there)
         if not some(todo):
             break
         above = L_y * steep > 0.0
-        low, high = select(todo & ~above, t, low), select(todo & above, t, high)
+        low, high = select(todo & isnt(above), t, low), select(todo & above, t, high)
         before, L_before = t, L_y
         ahead = t - L_y / steep
         t = select(todo, select((ahead > low) & (ahead < high), ahead, 0.5 * (low + high)), t)
@@ -70,7 +70,7 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
         if not some(within):
             break
         here, L_yy, L_vv = u + change * min(i / samples, 1.0), spread(1.0), spread(-1.0)
-        if some(within & ~bent):
+        if some(within & isnt(bent)):
             _, low_y, _, low_yy, _, low_vv = lagrangian.density(here, 0.0, cell, before)
             _, high_y, _, high_yy, _, high_vv = lagrangian.density(here, 0.0, cell, after)
             share = low_y / (low_y - high_y)
@@ -91,12 +91,12 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
             L_yy, L_vv = select(own, bent_yy, L_yy), select(own, bent_vv, L_vv)
         far = L_yy * half * half < FAR * FAR * L_vv
         slope = -L_yy
-        risen = risen & (~within | ((far | (here > drawn)) & (slope > 0.0)))
+        risen = risen & (isnt(within) | ((far | (here > drawn)) & (slope > 0.0)))
         if i >= 2 and not may_go_slack(end.wall):
             dips = within & (second < first) & (second < slope)
             bend = first - 2.0 * second + slope
             lowest = second - (slope - first) * (slope - first) / (8.0 * bend)
-            risen = risen & (~dips | (lowest > 0.0))
+            risen = risen & (isnt(dips) | (lowest > 0.0))
         least, most = select(within, min(least, slope), least), select(within, max(most, slope), most)
         first, second = second, slope
         i += 1
@@ -111,13 +111,13 @@ def rising(u, trial, cell, start, end, low, high, half, asked):
     """
     change = trial - u
     still = abs(change) < 1e-9 * u
-    asked = asked & ~still
+    asked = asked & isnt(still)
     size = abs(change) / min(u, trial)
     risen, least, most = scan(u, change, max(1.0 + size / GLANCE, 2.0), cell, start, end, low, high, half, asked)
     unsure = risen & ((least < EVEN * most) | (min(u, trial) < lagrangian.drawn_in(cell, end)))
     if some(unsure):
         risen_all, _, _ = scan(u, change, 2.0 + size / SCAN, cell, start, end, low, high, half, unsure)
-        risen = risen & (~unsure | risen_all)
+        risen = risen & (isnt(unsure) | risen_all)
     return still | risen
 
 
@@ -143,7 +143,7 @@ def follow(u, cell, start, end, half, asked):
             trial = select(going, new, trial)
             going = going & (abs(trial - u) < LARGEST_CHANGE * u)
             there = going & ((size < 1e-13 * u) | ((size < 1e-10 * u) & (size >= 0.5 * before)))
-            arrived, going, before = arrived | there, going & ~there, size
+            arrived, going, before = arrived | there, going & isnt(there), size
             if not some(going):
                 break
         arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived
@@ -167,5 +167,5 @@ def within(y, n, u, cell, load, half):
     missed = kept & (u < lagrangian.drawn_in(cell, load)) & (get(y, n) - u > FAR_FROM * (1.0 - u))
     if some(missed):
         _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
-        kept = kept & ~(missed & (L_yy * half * half < FAR * FAR * L_vv))
+        kept = kept & isnt(missed & (L_yy * half * half < FAR * FAR * L_vv))
     return kept

@@ -131,7 +131,7 @@ def middle_at(y, cell, load, half, scratch):
     far = min(max(rate * half, 1.0), DEEPEST)
     least = fall * reach * 2.0 / (1.0 / fallen(far, scratch) - 2.0)
     return Middle(
-        y - gap, select(driven, 1.0 / per_depth, rate), depth, q, whole, y, level, per_depth, rise,
+        y - gap, select(driven, 1.0 / select(driven, per_depth, 1.0), rate), depth, q, whole, y, level, per_depth, rise,
         -(L_yy + rise * near[7] / s) / s, s, psi, energy,
     ), driven, rise / least - 1.0  # fmt: skip
 

@@ -19,7 +19,7 @@ from .extremes import highest, widest
 from .meridian import CERTAIN, DEEPEST, handed_on, look, middle
 from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WORST, finish, pulled, unmet
 from .rule import LAST, PLACES, summed
-from .vector import HUGE, WIDTH, get, mask_of, put, select, some, spread
+from .vector import HUGE, WIDTH, get, isnt, mask_of, put, select, some, spread
 
 ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5, 15)
 SHORT = SQUARE  # which only what is known of the whole needs
@@ -141,7 +141,7 @@ def is_mixed(pull):
     middle, mixed = get(pull, LAST // 2) > 0.0, mask_of(0)
     for k in range(1, LAST):
         here = get(pull, k) > 0.0
-        mixed = mixed | (here & ~middle) | (middle & ~here)
+        mixed = mixed | (here & isnt(middle)) | (middle & isnt(here))
     return mixed
 
 
@@ -169,7 +169,7 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
                 limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
                 continue
             own = width > 0.0  # others have more parts
-            valid = valid & ((width < NARROW) | ~(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
+            valid = valid & ((width < NARROW) | isnt(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
             for family in range(2):
                 slack = get(rows[ALPHA + family], LAST // 2) <= 0.0
                 add(numbers, SLACK + family, select(slack, dx, 0.0), select(slack, doubt, 0.0))
@@ -233,7 +233,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     rough, fine = 0, 0  # trials that each lane has had, whatever its neighbours need
     while fine < FITS:
         mid, wrong = middle(u, depth, cell, load, scratch), mask_of(0)
-        if len(load.wall) > 1 or some(active & ~settled):
+        if len(load.wall) > 1 or some(active & isnt(settled)):
             total, limps, middle_limp, doubts, valid, _ = scan(
                 pieces, mid, cell, load, rows, ends, counts, starts, scratch
             )
@@ -241,10 +241,10 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             miss = half - total
             long = (depth >= DEEPEST) & (miss >= 0.0)  # the middle is the uniform tube
             rough += 1
-            wrong = active & ~settled & ~long & (abs(miss) * mid.rate * mid.q > ROUGH)
+            wrong = active & isnt(settled) & isnt(long) & (abs(miss) * mid.rate * mid.q > ROUGH)
             if rough == FITS:
-                active, wrong = active & ~wrong, mask_of(0)
-            arrived = active & ~wrong & ~settled
+                active, wrong = active & isnt(wrong), mask_of(0)
+            arrived = active & isnt(wrong) & isnt(settled)
             settled = settled | arrived
             before = select(arrived, depth, before[0]), before[1]
         if not some(wrong):
@@ -257,8 +257,8 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
                 limps = last_limps
             miss = half - get(numbers[0], DX)
             long = (depth >= DEEPEST) & (miss >= 0.0)
-            wrong = active & ~long & (abs(miss) * mid.rate * mid.q > CLOSE)
-            found = active & ~wrong
+            wrong = active & isnt(long) & (abs(miss) * mid.rate * mid.q > CLOSE)
+            found = active & isnt(wrong)
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
@@ -269,4 +269,4 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
         beta = mask_of(0)
     if not has_any_family(load.wall):
         alpha = mask_of(0)
-    return found & (largest <= accuracy) & ~let_go(mid, cell, load, half), alpha, beta, depth
+    return found & (largest <= accuracy) & isnt(let_go(mid, cell, load, half)), alpha, beta, depth

@@ -8,7 +8,7 @@ from ...jit import kernel
 from ..along.slack import NOTHING, TENSIONLESS
 from ..physics.wall import may_go_slack
 from .meridian import look
-from .vector import WIDTH, get, mask_of, select, some, spread
+from .vector import WIDTH, get, isnt, mask_of, select, some, spread
 
 MOST = 8  # ends in half a tube; more are left to finer parts
 STEPS, CLOSE, SURE = 48, 1e-9, 3e-8  # of the search, its last step [of the depth], and how exactly an end is known
@@ -65,7 +65,7 @@ def search(ends, j, going, mid, cell, load, near, scratch):
     for i in range(STEPS):
         new = right - behind * (right - left) / select(going, behind - before, 1.0)
         halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)  # where a pull ends without a slope
-        new = select((new > left) & (new < right) & ~halved, new, 0.5 * (left + right))
+        new = select((new > left) & (new < right) & isnt(halved), new, 0.5 * (left + right))
         moved = abs(new - t)
         t = select(going, new, t)
         going = going & (moved > CLOSE)

@@ -3,14 +3,17 @@
 ``Lane`` is LLVM's ``<WIDTH x double>``. Its ``+ - * /``, unary minus, comparisons, ``sqrt``, ``abs``, ``min`` and ``max``
 are LLVM's own vector operations, lane by lane, so no design can see its neighbours; a float beside a lane stands for all
 of them. Comparisons give a ``Mask``, joined by ``& | ~``; where a
-condition is asked for, a mask is true if any lane is. :mod:`..either` chooses. Only compiled code knows these types.
+condition is asked for, a mask is true if any lane is. :mod:`..either` chooses. Only compiled code knows these
+types.
 
-Arrays of lanes are plain arrays of shape (n, WIDTH): :func:`get`, :func:`put`.
+Arrays of lanes are plain arrays of shape (n, WIDTH): :func:`get`, :func:`put`. In plain Python (:mod:`freesweep.interpret`)
+a vector has one lane, which is a number.
 """
 
 import math
 import operator
 
+import numpy as np
 from llvmlite import ir
 from numba.core import config, types
 from numba.core.codegen import get_host_cpu_features
@@ -18,6 +21,7 @@ from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
+from ...interpret import stand_in
 from ..either import isnt, select, some
 
 
@@ -229,3 +233,12 @@ def mask_of(typingctx, number):
         return builder.bitcast(builder.trunc(args[0], ir.IntType(WIDTH)), _BITS)
 
     return mask(types.int64), build
+
+
+# a vector of one, for the first states of a process
+stand_in("WIDTH", WIDTH, 1)
+stand_in("get", get, lambda array, index: array[index, 0])
+stand_in("put", put, lambda array, index, value: array.__setitem__((index, 0), value))
+stand_in("spread", spread, np.float64)
+stand_in("bits", bits, int)
+stand_in("mask_of", mask_of, lambda number: bool(number & 1))
