@@ -86,7 +86,7 @@ def _solve(drawn, audited, model):
 
 
 def _finer(job, count):
-    """Records of a job's first so many problems on a finer mesh."""
+    """Records of a job's first so many problems, by meshes, and those finer ones."""
     from ..sweep import solve
     from ..sweep.plan import FREE
 
@@ -95,7 +95,7 @@ def _finer(job, count):
     exact = (solve.UNIFORM[0], edges, solve.UNIFORM[2]), 0.0  # no profile, no error of one
     of_kind = solve._solve_free if job.kind == FREE else solve._solve_held
     problems, targets, pressures = job.problems[:count], job.targets[:count], job.pressures[: first[-1]]
-    return of_kind(job.kind, problems, targets, first, pressures, exact, AUDIT_ACCURACY)[0]
+    return of_kind(job.kind, problems, targets, first, pressures, exact, AUDIT_ACCURACY, lanes=False)[0]
 
 
 def _bar(total, progress):

@@ -151,8 +151,7 @@ def _free(rows, pressure, most, accuracy, followed, thorough):
     if thorough or config.DISABLE_JIT or len(tube[0]):
         walks = batch.walk_all(rows, first, pressures, tube, accuracy - SENSITIVITY * error, soon=True)
     else:
-        walks = batch._nothing(rows, len(pressures), batch.NOTHING)
-        batch._walk_lanes(rows, first, pressures, int(tube[1][-1]), accuracy, batch.NOTHING, walks)
+        walks = batch.walk_by_vectors(rows, first, pressures, accuracy)
         walks.status[walks.status == PENDING] = NOT_CONVERGED
     own = slice(0, None, steps)
     bounds, limits = widened(walks.values, walks.bounds, error)[own], walks.limits.copy()
@@ -179,7 +178,7 @@ def _held(kind, rows, own, accuracy, followed, thorough):
     else:
         found = hold_batch._pending(rows, count)
         if rows.shape[1] == PROBLEM_SIZE:  # vectors hold the source's tubes only
-            hold_batch._hold_lanes(*asked, int(tube[1][-1]), accuracy, found)
+            hold_batch._hold_lanes(*asked, accuracy, found)
         found.status[found.status == PENDING] = NOT_CONVERGED
     values = np.column_stack([found.values, found.along])
     bounds = widened(values, np.column_stack([found.bounds, found.along_bounds]), error)

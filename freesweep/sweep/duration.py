@@ -26,10 +26,10 @@ TOGETHER = 32  # problems that are solved at once, as vectors need them
 def entry_points(kind, sweep) -> tuple:
     """Names of the solver's entry points for a kind of states: those of vectors, where there are any, and the scalar one."""
     if kind == FREE:
-        of_vectors = ("carry_physical", "solve_physical") if sweep.is_physical else ("carry_lanes", "solve_lanes")
-        if sweep.is_physical and is_loaded(sweep):  # branches turn there
-            of_vectors += ("measure_physical",)
-        return ("follow_many",) if sweep.varies else (*of_vectors, "follow_many")
+        if sweep.varies:
+            return ("follow_many",)
+        words = ("carry", "solve", "measure") if is_loaded(sweep) else ("carry", "solve")  # loaded, branches turn
+        return tuple(f"{word}_{'physical' if sweep.is_physical else 'lanes'}" for word in words)
     return ("hold_many",) if sweep.varies or sweep.is_physical else ("seek_lanes", "solve_lanes", "hold_many")
 
 
