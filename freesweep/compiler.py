@@ -1,13 +1,13 @@
 """Numba's compiler without what kernels never need: a third of the time that a first call waits otherwise.
 
 Numba optimises each function together with all that it calls, and makes machine code of it, and then anew at each level
-above. Here a kernel that other kernels call remains as LLVM reads it; an entry point links all that it needs, each kernel
-once, and only that is optimised and made.
+above. Here a kernel that other kernels call remains as LLVM reads it; an entry point links all that it needs, each
+kernel once, and only that is optimised and made.
 
-Kernels hold no closures, ``with``, ``raise`` or expressions of whole arrays, so the passes that look for those are left out.
-What is handed to LLVM is shorter (:mod:`.lowering`). And which signature an operator takes for arguments of given types,
-which Numba finds out by trying dozens of templates, is found out once in a process rather than at each of thousands of
-places.
+Kernels hold no closures, ``with``, ``raise`` or expressions of whole arrays, so the passes that look for those are left
+out. What is handed to LLVM is shorter (:mod:`.lowering`). And which signature an operator takes for arguments of given
+types, which Numba finds out by trying dozens of templates, is found out once in a process rather than at each of
+thousands of places.
 """
 
 import contextlib
@@ -60,8 +60,8 @@ INSTEAD = (
 
 @contextlib.contextmanager
 def _quick():
-    """While a kernel is compiled with all that it calls, parts of Numba are replaced by quicker ones, and Python's garbage
-    collector, which would look at a compiler's many objects over and over, waits.
+    """While a kernel is compiled with all that it calls, parts of Numba are replaced by quicker ones, and Python's
+    garbage collector, which would look at a compiler's many objects over and over, waits.
     """
     if BaseFunction.get_call_type is _remembered:  # it is called by one that is compiled
         yield
@@ -86,7 +86,9 @@ class _Part(JITCodeLibrary):
         self._finalized = True
 
     def _own_module(self):
-        """Its functions as LLVM takes them even where, so far, nobody calls them: one that is called later comes but once."""
+        """Its functions as LLVM takes them even where, so far, nobody calls them: one that is called later comes but
+        once.
+        """
         module = super()._get_module_for_linking()
         for one in module.functions:
             if one.linkage == Linkage.linkonce_odr:
@@ -114,8 +116,9 @@ class _Part(JITCodeLibrary):
 class _Whole(JITCodeLibrary):
     """The code of a kernel that Python calls, and of all others that it needs, which no one calls from outside.
 
-    Those keep no name, so LLVM may drop arguments, and what it has put in everywhere. Its linker takes the first function of
-    a name, be it another library's own: code compiled later for the same kernel would call one that has fewer arguments.
+    Those keep no name, so LLVM may drop arguments, and what it has put in everywhere. Its linker takes the first
+    function of a name, be it another library's own: code compiled later for the same kernel would call one that has
+    fewer arguments.
     """
 
     def finalize(self):

@@ -119,7 +119,9 @@ def _problem(tube, buckled, accuracy):
     design = {name: np.full(1, value) for name, value in tube.design().items()}
     unloaded = design | {"force": np.zeros(1), "torque": np.zeros(1)}
     row = problem_rows(unloaded, tube.energy, tube.is_thick, tube.threads)[0]
-    whole = tube.varies or tube.is_thick or tube.threads > 0.0 or buckled  # on meshes only the source's tubes go by halves
+    whole = (
+        tube.varies or tube.is_thick or tube.threads > 0.0 or buckled
+    )  # on meshes only the source's tubes go by halves
     if tube.varies:
         solved, error = read_course(tube, accuracy)
         return row, solved, whole, error

@@ -45,9 +45,9 @@ def uniform(cells):
 def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes=True, soon=False) -> Walks:
     """Walk each problem along its pressures; arguments as of :func:`follow_many`, ``tube`` its (course, edges, places).
 
-    Tubes that are the same all along go by their first integral, in vectors of designs; their numbers do not depend on which
-    designs share a vector. Those of meshes (``lanes=False``), by which tubes go that vary, differ by less than the bounds.
-    ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
+    Tubes that are the same all along go by their first integral, in vectors of designs; their numbers do not depend on
+    which designs share a vector. Those of meshes (``lanes=False``), by which tubes go that vary, differ by less than
+    the bounds. ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     problems, pressures = (
         np.ascontiguousarray(problems),

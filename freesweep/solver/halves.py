@@ -1,6 +1,4 @@
-"""Physical tubes that are the same all along: their halves are no mirror images of each other to the kernels, which know a
-first integral for membranes with bonded fibers only. Each is solved whole, with a node in the middle, by itself.
-"""
+"""Tubes that are the same all along, as meshes take them: each by itself, whole, with a node in the middle."""
 
 import numpy as np
 
@@ -14,13 +12,14 @@ def in_two_halves(problem, cells):
     return course, np.arange(3) * cells, np.arange(3) * 0.5 * problem[LENGTH]
 
 
-def one_by_one(problems, first, tube):
+def one_by_one(problems, first, tube, by_halves=False):
     """``(problems, rows, first, tube)`` as kernels take them, two slices among them: of all problems together, or of each.
 
-    ``tube`` is their (course, edges, places), without a course where they do not vary.
+    ``tube`` is their (course, edges, places), without a course where they do not vary; ``by_halves``: the source's are all
+    solved at once then, each up to its plane of symmetry.
     """
     course, edges, _ = tube
-    if len(course) or problems.shape[1] == PROBLEM_SIZE:
+    if len(course) or (by_halves and problems.shape[1] == PROBLEM_SIZE):
         yield slice(None), slice(None), first, tube
         return
     for k, (begin, end) in enumerate(zip(first[:-1].tolist(), first[1:].tolist())):

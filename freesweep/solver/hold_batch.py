@@ -98,7 +98,7 @@ def _scalar_calls(problems, targets, kind, first, pressures, tube, accuracy, fou
     walls, each = wall_columns(problems), np.diff(first)
     others = np.repeat(problems[:, TORQUE if kind == HELD_LENGTH else FORCE], each)
     targets, nothing = np.repeat(targets, each), np.empty(0)
-    for own, rows, starts, whole in one_by_one(problems, first, tube):
+    for own, rows, starts, whole in one_by_one(problems, first, tube, True):
         count = len(pressures[rows])
         yield (
             problems[own], walls, starts, pressures[rows], others[rows], targets[rows], kind, False, *whole, accuracy,
@@ -114,9 +114,7 @@ def _hold_lanes(problems, targets, kind, first, pressures, accuracy, found):
     for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
         rows = np.flatnonzero(some & (pressures > 0.0))
         if len(rows):
-            _hold(
-                problems, 0.5 * targets, kind == HELD_LENGTH, owners, pressures, rows, constants, accuracy, found
-            )
+            _hold(problems, 0.5 * targets, kind == HELD_LENGTH, owners, pressures, rows, constants, accuracy, found)
 
 
 def refuse(problem, pressures, others, targets, kind, status):
@@ -170,7 +168,8 @@ def _hold(problems, targets, length_held, owners, pressures, rows, constants, ac
             middles = np.empty((size, 2))
             for pieces in PIECES:
                 left = np.flatnonzero(status == PENDING)
-                solve_lanes(own, part, p[part], stretches[part], left, constants, pieces, asked, *free, status, slack, middles)
+                told = *free, status, slack, middles
+                solve_lanes(own, part, p[part], stretches[part], left, constants, pieces, asked, *told)
             c[part], bound[part] = np.where(status == OK, free[:, :, column], np.nan)
         with np.errstate(all="ignore"):
             gain = c - before[1]

@@ -132,7 +132,9 @@ def compile_idle(words):
         if "carry_physical" in words:
             carry_physical(problems, first, numbers, whole, constants, 1, states, states, whole, numbers, numbers)
         if "solve_physical" in words:
-            solve_physical(problems, whole, numbers, numbers, whole, constants, 1, 1, 1.0, states, states, whole, whole, states)
+            solve_physical(
+                problems, whole, numbers, numbers, whole, constants, 1, 1, 1.0, states, states, whole, whole, states
+            )
         if "measure_physical" in words:
             measure_physical(problems, whole, states, numbers, constants, 1, 1, states, states, states)
         if "physical_states" in words:
@@ -140,7 +142,9 @@ def compile_idle(words):
         if "carry_lanes" in words:
             carry_lanes(problems, first, numbers, whole, constants, states, states, whole, numbers, numbers)
         if "solve_lanes" in words:
-            solve_lanes(problems, whole, numbers, numbers, whole, constants, 1, 1.0, states, states, whole, whole, states)
+            solve_lanes(
+                problems, whole, numbers, numbers, whole, constants, 1, 1.0, states, states, whole, whole, states
+            )
         if "measure_lanes" in words:
             measure_lanes(problems, whole, states, numbers, constants, 1, states, states, states)
         if "seek_lanes" in words:

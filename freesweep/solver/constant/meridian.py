@@ -1,4 +1,4 @@
-"""The meridian of a tube that is the same all along, by quadrature of its first integral: a first guess of any steepness.
+"""The meridian of a tube that is the same all along, by quadrature of its first integral.
 
 Where nothing varies along x, ``L - y' L_y'`` is the same at every place; T = p y^2 + f, F = T sqrt(G), U(y) = L(y, 0)::
 
@@ -8,24 +8,14 @@ R comes from integrating U' = L_y, which loses no digit near the middle y_m, and
 theta of ``|y_m - y| = scale (cosh(theta) - 1)``, which runs evenly through an end layer. Distances crowd at the clamped end.
 """
 
-from math import acosh, cosh, exp, log, log1p, sinh, sqrt
+from math import acosh, exp, log, log1p, sinh, sqrt
 
 import numpy as np
 
 from ...jit import kernel
-from ..guide import cell_along
-from ..numerics import mesh, newton
-from ..numerics.properties_along import fill
 from ..physics import lagrangian
 
-NODES = 160  # along the curve: a guess need be good to a hundredth only
-DEEPEST = 20.0  # e-folds from end to middle; beyond them the middle is the uniform stretch
-CROWDING = 0.01  # of an e-fold: the distances at the clamped end, if not less
 TAYLOR, TAYLOR_STEP = 1e-6, 1e-4  # share of y up to which a difference of U' has too few digits; of that for U'''
-ROOT_STEPS = 60
-HALF_FITS = 1e-5  # relative
-STEEP = 0.5  # cosine of the meridian's angle
-MOST_SHIFT = 0.1  # of what is left of the tube
 
 
 @kernel
@@ -93,104 +83,3 @@ def trace(cell, load, top, drive_at_top, gap, scale, nodes, crowding, curve):
         total += h
     x[nodes], y[0] = total, 1.0
     return total
-
-
-@kernel
-def scaled(curve, half, nodes):
-    """Let x of the middle, which is close to it, be ``half``; the number of cells."""
-    share = half / curve[0, nodes]
-    for k in range(nodes + 1):
-        curve[0, k] *= share
-    return nodes
-
-
-@kernel
-def lengthened(curve, half, nodes):
-    """Go on as the uniform tube to ``half``; the number of cells."""
-    if not half > curve[0, nodes] * (1.0 + HALF_FITS):
-        return scaled(curve, half, nodes)
-    curve[0, nodes + 1], curve[1, nodes + 1] = half, curve[1, nodes]
-    curve[2, nodes], curve[3, nodes] = 0.0, 1.0
-    return nodes + 1
-
-
-@kernel
-def meet(cell, load, u, half, deep, tolerance, nodes, crowding, curve):
-    """Trace the tube whose middle lies at ``half``, toward the uniform stretch ``u``; x of that middle, less than half where
-    more than ``deep`` e-folds lie before it, NaN where there is none.
-
-    ``|u - y| = gap cosh(theta)``: x of the middle grows with the e-folds.
-    """
-    reach = abs(u - 1.0)
-    low, high = 0.0, deep
-    gap = reach / cosh(high)
-    total = trace(cell, load, u, 0.0, gap, gap, nodes, crowding, curve)
-    if not total > half:
-        return total
-    miss_low, miss_high = -half, total - half
-    folds = 0.0
-    for _ in range(ROOT_STEPS):
-        folds = (low * miss_high - high * miss_low) / (miss_high - miss_low)
-        gap = reach / cosh(folds)
-        total = trace(cell, load, u, 0.0, gap, gap, nodes, crowding, curve)
-        miss = total - half
-        if not abs(miss) > tolerance * half:
-            break
-        if miss > 0.0:
-            high, miss_high, miss_low = folds, miss, 0.5 * miss_low
-        else:
-            low, miss_low, miss_high = folds, miss, 0.5 * miss_high
-    return total
-
-
-@kernel
-def fit(cell, load, u, half, nodes, curve):
-    """The curve with ``half`` as x of the middle, toward the uniform stretch ``u``; its number of cells, 0 for none."""
-    total = meet(cell, load, u, half, DEEPEST, HALF_FITS, nodes, CROWDING, curve)
-    if not total > 0.0:
-        return 0
-    return lengthened(curve, half, nodes) if total <= half else scaled(curve, half, nodes)
-
-
-@kernel
-def spread(curve, count, cell, load, n, x, y, work):
-    """Mesh and shape on n cells from a ``curve`` of ``count`` cells: nodes where it bends, slopes that leave room."""
-    mesh.bends(curve[0], curve[2], curve[3], count, True, work[0])
-    mesh.node_density(curve[0], count, work[0], work[1])
-    mesh.regrade(curve[0], curve[1], work[1], count, n, x, y, work[2])
-    j, shift = 0, 0.0
-    for i in range(n):
-        h, middle = x[i + 1] - x[i], 0.5 * (x[i] + x[i + 1])
-        while j < count - 2 and 0.5 * (curve[0, j + 1] + curve[0, j + 2]) < middle:
-            j += 1
-        here, after = 0.5 * (curve[0, j] + curve[0, j + 1]), 0.5 * (curve[0, j + 1] + curve[0, j + 2])
-        share = min(max((middle - here) / (after - here), 0.0), 1.0)
-        cosine = curve[3, j] + share * (curve[3, j + 1] - curve[3, j])
-        work[0, i] = cosine
-        if cosine < STEEP and shift < MOST_SHIFT * (
-            x[n] - x[i]
-        ):  # there the last digits of the slope count: to each rise its length
-            room = lagrangian.integrands(0.5 * (y[i] + y[i + 1]), 0.0, (cell[0], cell[1], cell[2]), load)[0]
-            shift += abs(y[i + 1] - y[i]) / (room * sqrt(1.0 - cosine * cosine)) - h
-            work[1, i] = shift
-        else:
-            work[1, i] = shift * (x[n] - x[i + 1]) / (x[n] - x[i])
-            shift = work[1, i]
-    for i in range(n - 1):
-        x[i + 1] += work[1, i]
-
-
-@kernel
-def start(tube, u, load, x, y, curve, work):
-    """As :func:`guide.start`, for a tube that is the same all along: mesh and first shape; whether there is one."""
-    cell = cell_along(tube, 0.0)
-    n = len(x) - 1
-    if not abs(u[0] - 1.0) > 1e-12:
-        return False
-    count = fit(cell, load, u[0], tube.places[1], NODES, curve)
-    if count == 0:
-        return False
-    own = fill(tube.course, tube.edges, x, n, n, tube.cells)
-    spread(curve, count, cell, load, n, x, y, work)
-    mesh.ease(lagrangian.integrands, x, y, n, work[0], own, load)
-    return newton.admissible(lagrangian.density, x, y, n, own, load)

@@ -4,8 +4,6 @@ import numpy as np
 
 from ...jit import kernel
 from .. import guide
-from ..constant import quadrature
-from ..constant.branch import is_upright
 from ..load import loaded
 from ..numerics.bordered import FOLLOWED
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
@@ -65,10 +63,8 @@ def answer(track, space, tube, path, first, here, ahead, rows, accuracy):
         p = rows.pressures[i]
         if rows.status[i] == PENDING and low <= p <= high:
             guess(track, space, here, ahead, p)
-            load, middle = loaded(path.origin, path.direction, p), space.y[tube.middle]
+            load = loaded(path.origin, path.direction, p)
             status, doublings = plain(space, tube, load, accuracy)
-            if status == NOT_CONVERGED and tube.half:
-                status, doublings = quadrature.solve(tube, middle, load, len(space.x) - 1, accuracy, space)
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
@@ -146,6 +142,4 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
         if (mu - far) * sense >= 0.0:
             return OK, here, ahead
         first, here = mu, take(track, tube, path, mu, tangent_mu, space.work)
-        if is_upright(track, tube, loaded(path.origin, path.direction, here[0])):
-            break
     return NOT_CONVERGED, here, (here[0], here[1], 0.0)

@@ -2,8 +2,7 @@
 
 First leg: pressure, force, torque and fiber extension - 1 rise in proportion, the pressure to the settling one. Second leg:
 from there the pressure alone, upward and downward. Which pressures are asked for changes no step: each state is solved on
-nested meshes from the two states of the branch that enclose it. Where a mesh loses the branch of a tube that is the same all
-along, its first integral goes on (:mod:`..constant.branch`).
+nested meshes from the two states of the branch that enclose it.
 """
 
 import numpy as np
@@ -11,18 +10,15 @@ import numpy as np
 from ...jit import entry_point, kernel
 from .. import guide
 from ..along import places
-from ..constant import quadrature
-from ..constant.branch import retrace
-from ..load import Load, by, loaded, under
-from ..numerics import nested
+from ..load import Load, by, under
 from ..numerics.bordered import FOLLOWED
 from ..numerics.path import NOTHING, Path
-from ..numerics.properties_along import Tube, make_cells, of_problems, seat, volume
+from ..numerics.properties_along import Tube, make_cells, volume
 from ..numerics.shapes import differ, extremes
 from ..physics import lagrangian
 from ..physics.wall import has_two_families, may_go_slack
-from ..problem import FORCE, GAMMA, LENGTH, TORQUE, rubber_of, wall_of
-from ..status import BEYOND_LIMIT, COMPRESSED, DEGENERATE, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
+from ..problem import FORCE, GAMMA, TORQUE, rubber_of, wall_of
+from ..status import COMPRESSED, DEGENERATE, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from .branch import begin, follow, guess
 from .fold import FINEST
 from .meshes import stand
@@ -36,7 +32,7 @@ FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for wh
 def settle(problem, wall, tube, rows):
     """Write the rows that need no solving."""
     gamma, f, m = problem[GAMMA], problem[FORCE], problem[TORQUE]
-    clamped, half = 1.0, (1.0 if tube.half else 0.5) * tube.places[len(tube.places) - 1]
+    clamped, half = 1.0, 0.5 * tube.places[len(tube.places) - 1]
     for end in range(2):
         cell = guide.cell_along(tube, 1.0 * end)
         clamped = min(clamped, lagrangian.clamped(cell, gamma, wall))
@@ -54,7 +50,7 @@ def settle(problem, wall, tube, rows):
             for k in range(5):
                 rows.values[i, k], rows.bounds[i, k] = 0.0, 0.0
             rows.values[i, 0], rows.values[i, 4] = half, 1.0
-            rows.values[i, 1] = (1.0 if tube.half else 0.5) * volume(tube.course, tube.places)
+            rows.values[i, 1] = 0.5 * volume(tube.course, tube.places)
             places.rest(tube.course, wall, rows.values[i, 5:], rows.bounds[i, 5:])
         elif not p + f > 0.0:
             rows.status[i] = COMPRESSED
@@ -85,12 +81,10 @@ def leave(rows, status, low, high):
 
 @kernel
 def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
-    """Stand on the state at which all loads are at their full size: ``(status, share of the way, stretch in the middle)``
-    where the mesh still held the branch.
-    """
+    """Stand on the state at which all loads are at their full size, if the status is OK."""
     status, mu, tangent_mu = begin(track, space, tube, path)
     if status != FOLLOWED:
-        return NOT_CONVERGED, 0.0, 1.0
+        return NOT_CONVERGED
     if mu < 1.0:
         none = Rows(
             rows.pressures[:0], rows.values[:0], rows.bounds[:0], rows.status[:0], rows.slack[:0], rows.stations,
@@ -98,14 +92,14 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
         )  # fmt: skip
         status, here, ahead = follow(track, roomy, space, tube, path, mu, tangent_mu, 1.0, none, limit, accuracy)
         if status != OK:
-            return status, here[0], track.y[tube.middle]
+            return status
         guess(track, space, here, ahead, 1.0)
         for i in range(len(space.y)):
             track.y[i] = space.y[i]
         status, negative, _ = stand(track, tube, path, 1.0, 1.0, 0, space.work)
         if status != FOLLOWED or negative > 0 or differ(extremes(space.y, tube.middle), extremes(track.y, tube.middle)):
-            return NOT_CONVERGED, here[0], track.y[tube.middle]
-    return OK, 1.0, track.y[tube.middle]
+            return NOT_CONVERGED
+    return OK
 
 
 @kernel
@@ -123,49 +117,23 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
                 rest = Load(1.0, load.rubber, load.wall, 0.0, 0.0, 0.0, 1.0)
                 fading = Load(load.gamma - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0)
                 way = Path(rest, fading, 0.0, may_go_slack(load.wall), NOTHING)
-                found, _, middle = settle_loads(way, track, roomy, space, tube, rows, limit, accuracy)
-                if found == OK:
+                if settle_loads(way, track, roomy, space, tube, rows, limit, accuracy) == OK:
                     for k in range(len(space.x)):
                         space.x[k], space.y[k] = track.x[k], track.y[k]
                     status, doublings = plain(space, tube, load, accuracy)
-                    if status == NOT_CONVERGED and tube.half:
-                        status, doublings = quadrature.solve(tube, middle, load, len(space.x) - 1, accuracy, space)
             record(space, tube, load, status, doublings, accuracy, rows, i)
 
 
 @kernel
-def go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy):
-    """Rows that still wait, from pressure ``low`` to ``high``, of a tube that is the same all along, whose branch the mesh
-    has lost at the load ``mu``, with this stretch in the ``middle``.
-    """
-    for i in range(len(rows.pressures)):
-        p = rows.pressures[i]
-        if rows.status[i] == PENDING and low <= p <= high:
-            load = loaded(path.origin, path.direction, p)
-            status, doublings, share, bound = retrace(
-                space, tube, middle, loaded(path.origin, path.direction, mu), load, accuracy
-            )
-            record(space, tube, load, status, doublings, accuracy, rows, i)
-            if status == BEYOND_LIMIT and p > mu and limit[0] != limit[0]:
-                limit[0], limit[1] = mu + share * (p - mu), bound * (p - mu)
-
-
-@kernel
-def along_pressure(
-    track, roomy, space, tube, path, status, start, middle, tangent_mu, sense, far, rows, limit, accuracy
-):
+def along_pressure(track, roomy, space, tube, path, status, start, tangent_mu, sense, far, rows, limit, accuracy):
     """The states from the pressure ``start`` on, where the ``track`` stands if its ``status`` is FOLLOWED, to the pressure
     ``far``; rows on that side that no state belongs to get a status.
     """
-    mu = start
     if status == FOLLOWED:
-        status, here, _ = follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, accuracy)
-        mu, middle = here[0], track.y[tube.middle]
+        status, _, _ = follow(track, roomy, space, tube, path, start, tangent_mu, far, rows, limit, accuracy)
     else:
         status = NOT_CONVERGED
     low, high = (start, np.inf) if sense > 0.0 else (0.0, start)
-    if status == NOT_CONVERGED and tube.half:
-        go_on(space, tube, path, mu, middle, low, high, rows, limit, accuracy)
     leave(rows, status if status != OK else NOT_CONVERGED, low, high)
 
 
@@ -193,22 +161,14 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
         else:
             mu = 0.0
         if most > mu:
-            along_pressure(
-                track, roomy, space, tube, path, status, mu, 1.0, tangent_mu, 1.0, most, rows, limit, accuracy
-            )
+            along_pressure(track, roomy, space, tube, path, status, mu, tangent_mu, 1.0, most, rows, limit, accuracy)
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
     rise = Load(gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0)
     first, n = Path(rest, rise, 0.0, may_go_slack(wall), NOTHING), len(track.x) - 1
     origin = Load(gamma, rubber, wall, 0.0, f, m, 1.0)
     path = Path(origin, pressure, max(f, 0.0), may_go_slack(wall), NOTHING)
-    status, share, middle = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
-    load, before = loaded(path.origin, path.direction, settled), loaded(first.origin, first.direction, share)
-    if status == NOT_CONVERGED and tube.half:
-        status, _, _, _ = retrace(space, tube, middle, before, load, accuracy)
-        if status == OK or status == INACCURATE:
-            go_on(space, tube, path, settled, space.out[0, nested.MIDDLE], 0.0, most, rows, limit, accuracy)
-            status = NOT_CONVERGED
+    status = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
     if status != OK:
         leave(rows, status, 0.0, np.inf)
         return
@@ -219,9 +179,7 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
         for i in range(n + 1):
             track.x[i], track.y[i] = x[i], y[i]
         status, _, tangent_mu = stand(track, tube, path, settled, sense, 0, space.work)
-        along_pressure(
-            track, roomy, space, tube, path, status, settled, middle, tangent_mu, sense, far, rows, limit, accuracy
-        )
+        along_pressure(track, roomy, space, tube, path, status, settled, tangent_mu, sense, far, rows, limit, accuracy)
 
 
 @entry_point
@@ -237,8 +195,7 @@ def follow_many(
     walls : the columns of a wall, SOURCE or PHYSICAL of :mod:`problem`
     settled : (k,) pressure at which the loads of each are full
     pressures : (n,) p = P/C10; infinity is the locked shape, where the wall no longer counts
-    course, edges, places : what varies along the tubes, and where segments begin and end on the base mesh and along x; an
-        empty ``course`` for tubes that are the same all along, of which half is solved
+    course, edges, places : what varies along the tubes, and where segments begin and end on the base mesh and along x
     accuracy : bound to reach, scaled
     values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds; of
         physical tubes (n, 11), with the numbers of :mod:`..along.places`
@@ -247,25 +204,19 @@ def follow_many(
     limits : (k, 2) limit pressure and its bound; what is there stays if none is met
     stations, profiles : (m,), (n, FIELDS, m): see :func:`..along.profile.at_stations`; m = 0 for none
     """
-    same = len(course) == 0
     middle, half = edges[len(edges) - 1], 0.5 * places[len(places) - 1]
     for k in range(len(places)):
         if abs(places[k] - half) < 1e-9 * half:
             middle = edges[k]
-    own_course, own_places = (of_problems(course), np.zeros(2)) if same else (course, places)
     for k in range(len(problems)):
         own = slice(first[k], first[k + 1])
         if not np.any(status[own] == PENDING):
             continue
-        if same:
-            own_places[1] = 0.5 * problems[k, LENGTH]
-            seat(own_course, problems[k])
         for factor in FINER:
             base = factor * edges[len(edges) - 1]
-            space = make_space(base, 1 if same else guide.PLACES)
-            track, roomy = make_track(base, same, False), make_track(FINEST * base, same, False)
-            cells = make_cells(course, 1 if same else len(space.fine[0]))
-            tube = Tube(own_course, factor * edges, cells, same, factor * middle, own_places)
+            space = make_space(base, guide.PLACES)
+            track, roomy = make_track(base, False, False), make_track(FINEST * base, False, False)
+            tube = Tube(course, factor * edges, make_cells(course, len(space.fine[0])), False, factor * middle, places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
             walk(problems[k], walls, settled[k], tube, track, roomy, space, rows, limits[k], accuracy)
             again = False

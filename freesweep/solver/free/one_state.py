@@ -11,7 +11,6 @@ from ...jit import kernel
 from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
-from ..constant import quadrature
 from ..load import NO_CHANGE, by
 from ..numerics import held, nested, newton
 from ..numerics.properties_along import fill
@@ -40,10 +39,7 @@ def solve(space, tube, load, goal, direction, target, regrades, accuracy):
 @kernel
 def free(space, tube, load, regrades, accuracy):
     """The state at ``load``, from a guess."""
-    status, doublings = solve(space, tube, load, PLAIN, NO_CHANGE, 0.0, regrades, accuracy)
-    if status != NOT_CONVERGED and tube.half:
-        status, doublings = quadrature.sharpen(tube, load, accuracy, space, status, doublings)
-    return status, doublings
+    return solve(space, tube, load, PLAIN, NO_CHANGE, 0.0, regrades, accuracy)
 
 
 @kernel
@@ -115,7 +111,7 @@ def record(space, tube, load, status, doublings, accuracy, rows, i):
         return
     base = len(space.x) - 1
     for k in range(5):
-        share = 1.0 if tube.half or k == nested.MIDDLE else 0.5  # of half the tube
+        share = 1.0 if k == nested.MIDDLE else 0.5  # of half the tube
         rows.values[i, k], rows.bounds[i, k] = share * space.out[0, k], share * space.out[1, k]
     rows.slack[i] = look_along(
         space.fine, base << doublings, base, tube, load, space.work, rows.values[i, 5:], rows.bounds[i, 5:]

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from ..constant.branch import MOST_NODES
 from ..numerics import nested
 from ..numerics.path import Track
 
@@ -41,7 +40,7 @@ class Rows(NamedTuple):
 @kernel
 def make_space(base, places):
     """Scratch for a base mesh of ``base`` cells, and uniform stretches at so many ``places``."""
-    size = max((base << nested.MAX_DOUBLINGS) + 2, MOST_NODES + 3)  # a trace is as long on a coarse mesh
+    size = (base << nested.MAX_DOUBLINGS) + 2
     return Space(
         np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
         np.zeros((5, size)), np.zeros((4, nested.OUTPUTS)), np.zeros(base + 1), np.zeros(base + 1),

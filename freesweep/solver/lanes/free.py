@@ -36,11 +36,11 @@ def locked(problem):
 
 @kernel
 def carry(problems, first, pressures, order, constants, walls, layers, values, bounds, status, stretches, likeness):
-    """Uniform ``stretches`` (pressures,) of the problems, taken in the given ``order``, WIDTH at a time: NaN from where no
-    quick way leads on; and ``likeness`` (pressures,), numbers from 0 to 1 that tell states that are as much work.
-    What needs no solving at all is written to ``values``, ``bounds`` and ``status``. ``constants`` are the columns of the
-    rubbers' constants, MOONEY_RIVLIN or YEOH, and ``walls`` those of the walls, SOURCE or PHYSICAL, whose ``layers`` and
-    loose fibers are the same for all: each has machine code of its own.
+    """Uniform ``stretches`` (pressures,) of the problems, taken in the given ``order``, WIDTH at a time: NaN from where
+    no quick way leads on; and ``likeness`` (pressures,), numbers from 0 to 1 that tell states that are as much work.
+    What needs no solving at all is written to ``values``, ``bounds`` and ``status``. ``constants`` are the columns of
+    the rubbers' constants, MOONEY_RIVLIN or YEOH, and ``walls`` those of the walls, SOURCE or PHYSICAL, whose
+    ``layers`` and loose fibers are the same for all: each has machine code of its own.
     """
     columns, found = aligned(1, COLUMNS)[0], aligned(1, 2)[0]
     members, rows = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
@@ -103,12 +103,14 @@ def seat_states(group, count, order, problems, owners, pressures, stretches, row
 
 @kernel
 def solve(
-    problems, owners, pressures, stretches, order, constants, walls, layers, pieces, accuracy, values, bounds, status, slack, middles
+    problems, owners, pressures, stretches, order, constants, walls, layers, pieces, accuracy, values, bounds, status, slack,
+    middles,
 ):  # fmt: skip
-    """Solve the rows in the given ``order``, WIDTH at a time, by :mod:`quadrature`, each part in so many ``pieces``: row i
-    belongs to problem ``owners[i]`` and has the uniform stretch ``stretches[i]``. Other arguments as of :func:`carry` and
-    :func:`..free.free_states.follow_many`; rows that a lane could not do keep the status that they have. Of the others
-    ``middles`` (n, 2) take the uniform stretch and the depth of the middle, from which profiles are drawn.
+    """Solve the rows in the given ``order``, WIDTH at a time, by :mod:`quadrature`, each part in so many ``pieces``:
+    row i belongs to problem ``owners[i]`` and has the uniform stretch ``stretches[i]``. Other arguments as of
+    :func:`carry` and :func:`..free.free_states.follow_many`; rows that a lane could not do keep the status that they
+    have. Of the others ``middles`` (n, 2) take the uniform stretch and the depth of the middle, from which profiles are
+    drawn.
     """
     room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
     edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
@@ -143,17 +145,20 @@ def carry_physical(problems, first, pressures, order, constants, layers, values,
 
 @entry_point
 def solve_lanes(
-    problems, owners, pressures, stretches, order, constants, pieces, accuracy, values, bounds, status, slack, middles
+    problems, owners, pressures, stretches, order, constants, pieces, accuracy, values, bounds, status, slack,
+    middles,
 ):  # fmt: skip
     """:func:`solve` the source's tubes."""
     solve(
-        problems, owners, pressures, stretches, order, constants, SOURCE, 1, pieces, accuracy, values, bounds, status, slack, middles
+        problems, owners, pressures, stretches, order, constants, SOURCE, 1, pieces, accuracy, values, bounds, status, slack,
+    middles,
     )  # fmt: skip
 
 
 @entry_point
 def solve_physical(
-    problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack, middles
+    problems, owners, pressures, stretches, order, constants, layers, pieces, accuracy, values, bounds, status, slack,
+    middles,
 ):  # fmt: skip
     """:func:`solve` physical tubes."""
     solve(

@@ -1,5 +1,5 @@
-"""What is told of a state, for a vector of designs: outputs, of a physical tube the numbers of :mod:`..along.places`, and their
-bounds, from the sums along half of it (:mod:`quadrature`).
+"""What is told of a state, for a vector of designs: outputs, of a physical tube the numbers of :mod:`..along.places`,
+and their bounds, from the sums along half of it (:mod:`quadrature`).
 """
 
 from math import sqrt
@@ -33,8 +33,8 @@ def unmet(mid, miss, numbers):
 
 @kernel
 def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
-    """Write outputs, numbers and bounds, where the middle may have ``moved`` by that share of the layer; returns the largest
-    scaled bound of the outputs, rounding left out.
+    """Write outputs, numbers and bounds, where the middle may have ``moved`` by that share of the layer; returns the
+    largest scaled bound of the outputs, rounding left out.
     """
     sums, missed = numbers[0], numbers[1]
     rest = fallen(mid.rate * miss, scratch)  # how much of what is left of the layer is left in the middle itself

@@ -1,8 +1,8 @@
 """What a tube that is the same all along looks like along its half, from its first integral, for a vector of designs.
 
-Sums up to each place of the rules (:mod:`rule`) tell x, axial position and twist there, polynomials between them the depth of
-a station; what is known of a place is told by its stretch and the level (:mod:`meridian`). How far a station may be off, and
-by how much the middle may have moved, makes the bounds.
+Sums up to each place of the rules (:mod:`rule`) tell x, axial position and twist there, polynomials between them the
+depth of a station; what is known of a place is told by its stretch and the level (:mod:`meridian`). How far a station
+may be off, and by how much the middle may have moved, makes the bounds.
 """
 
 from math import atan, sqrt
@@ -23,7 +23,7 @@ from .pack import COLUMNS, aligned, loads
 from .pack import LENGTH as HALF
 from .quadrature import along, find_ends, graded, scan
 from .rule import LAST, PLACES, UP_TO, summed
-from .vector import HUGE, WIDTH, bits, get, mask_of, put, select, spread
+from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
 # what is kept of each place of the way; axial position and twist as what they differ by from those of a tube like its middle
 SHARE, X, GROWTH, Z, TURN, DOUBT_X, DOUBT_Z, DOUBT_TURN = range(8)
@@ -45,8 +45,8 @@ def chosen(given, one, other):
 
 @kernel
 def go(parts, pieces, edges, mid, cell, load, rows, way, scratch):
-    """Write what is known of each place along half a tube to the rows of the ``way``; returns how many those are, and the
-    lanes that may be.
+    """Write what is known of each place along half a tube to the rows of the ``way``; returns how many those are, and
+    the lanes that may be.
     """
     valid, near, count = mask_of(-1), nothing_yet(spread(0.0)), 0
     sums, doubts = (spread(0.0), spread(0.0), spread(0.0)), (spread(0.0), spread(0.0), spread(0.0))
@@ -114,9 +114,9 @@ def meet(x, way, first, lane):
 
 @kernel
 def stand(x, count, way, beside, at, moved):
-    """Where the station x lies in each lane: the share of the depth to ``at[0]``, by what axial position and twist differ
-    from those of the middle to ``at[1]``, ``at[2]``, and their doubts, that of x first, to ``moved``. What is left behind the
-    last place is like the middle.
+    """Where the station x lies in each lane: the share of the depth to ``at[0]``, by what axial position and twist
+    differ from those of the middle to ``at[1]``, ``at[2]``, and their doubts, that of x first, to ``moved``. What is
+    left behind the last place is like the middle.
     """
     for lane in range(WIDTH):
         first = beside[lane]
@@ -159,8 +159,9 @@ def pull(multiplier, load):
 
 @kernel
 def tell(x, left, mid, cell, load, half, middle_off, at, moved, near, scratch, out):
-    """Write the FIELDS of a station that :func:`stand` found to ``out`` (FIELDS, WIDTH), where the middle's stretch may be ``middle_off``; what is ``left`` of a long tube has the middle's, or that of the
-    uniform tube. Returns what is handed on.
+    """Write the FIELDS of a station that :func:`stand` found to ``out`` (FIELDS, WIDTH), where the middle's stretch may
+    be ``middle_off``; what is ``left`` of a long tube has the middle's, or that of the uniform tube. Returns what is
+    handed on.
     """
     here = look(get(at, 0), mid, cell, load, near, scratch)
     y, level = here.y, here.at
@@ -179,8 +180,16 @@ def tell(x, left, mid, cell, load, half, middle_off, at, moved, near, scratch, o
     put(out, 1, z)
     put(out, 2, turn)
     put(out, VALUES, wrong + ROUNDING * y)
-    put(out, VALUES + 1, get(moved, 1) + abs(s * here.cosine - mid.s) * off + abs(sqrt(1.0 + G_1) - mid.s) * left + ROUNDING * half)
-    put(out, VALUES + 2, get(moved, 2) + abs(level.psi - mid.psi) * off + abs(psi - mid.psi) * left + ROUNDING * max(1.0, abs(turn)))
+    put(
+        out,
+        VALUES + 1,
+        get(moved, 1) + abs(s * here.cosine - mid.s) * off + abs(sqrt(1.0 + G_1) - mid.s) * left + ROUNDING * half,
+    )
+    put(
+        out,
+        VALUES + 2,
+        get(moved, 2) + abs(level.psi - mid.psi) * off + abs(psi - mid.psi) * left + ROUNDING * max(1.0, abs(turn)),
+    )
     for k in range(4):
         put(out, 3 + k, own[k])
         put(out, VALUES + 3 + k, abs(by_y[k] - own[k]) + abs(by_level[k] - own[k]) + ROUNDING * abs(own[k]))
@@ -189,8 +198,8 @@ def tell(x, left, mid, cell, load, half, middle_off, at, moved, near, scratch, o
 
 @kernel
 def judge(out, half, turned, worst, loose, tension):
-    """``(worst, loose, tension)`` with one station more: the largest bound, scaled, of all but tensions; of those it, and the
-    largest of them.
+    """``(worst, loose, tension)`` with one station more: the largest bound, scaled, of all but tensions; of those it,
+    and the largest of them.
     """
     worst = max(worst, max(get(out, VALUES), max(get(out, VALUES + 1) / half, get(out, VALUES + 2) / turned)))
     worst = max(worst, max(get(out, VALUES + 3), get(out, VALUES + 4)))
@@ -202,10 +211,10 @@ def judge(out, half, turned, worst, loose, tension):
 def draw(
     problems, owners, pressures, middles, order, stations, constants, walls, layers, pieces, accuracy, profiles, drawn
 ):  # fmt: skip
-    """Write the profiles (FIELDS, m) of the rows in the given ``order`` at the ``stations`` (m,), ascending distances from
-    the end in radii, WIDTH at a time, each part in so many ``pieces``; ``drawn`` (n,) are those whose bounds meet the
-    ``accuracy``. ``middles`` (n, 2) are what :func:`.free.solve` leaves: uniform stretch and depth of the middle, or its
-    stretch and NaN. Other arguments as there.
+    """Write the profiles (FIELDS, m) of the rows in the given ``order`` at the ``stations`` (m,), ascending distances
+    from the end in radii, WIDTH at a time, each part in so many ``pieces``; ``drawn`` (n,) are those whose bounds meet
+    the ``accuracy``. ``middles`` (n, 2) are what :func:`.free.solve` leaves: uniform stretch and depth of the middle,
+    or its stretch and NaN. Other arguments as there.
     """
     places = (slack_ends.MOST + 1) * pieces * (LAST + 1)
     room, ends, way = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(KEPT, places)

@@ -1,10 +1,10 @@
-"""Free states of tubes that are the same all along by quadrature of their first integral, for a vector of designs: no mesh, no
-Newton's method but that for what loose fibers leave the wall at one place.
+"""Free states of tubes that are the same all along by quadrature of their first integral, for a vector of designs: no
+mesh, no Newton's method but that for what loose fibers leave the wall at one place.
 
 A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant
 finds it, first by one rule along the whole depth, then part by part between the places where families go slack
-(:mod:`slack_ends`); the source's tubes, which nobody asks where those are, have one part. What is summed (:mod:`rule`) is what an output differs by from that of the middle; :mod:`outputs`
-makes of the sums what is told.
+(:mod:`slack_ends`); the source's tubes, which nobody asks where those are, have one part. What is summed (:mod:`rule`)
+is what an output differs by from that of the middle; :mod:`outputs` makes of the sums what is told.
 """
 
 from ...jit import kernel
@@ -148,8 +148,8 @@ def is_mixed(pull):
 @kernel
 def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
     """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss; of
-    physical tubes behind them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN. Returns the
-    lanes that may be, and ``(alpha, beta)`` limp somewhere in the last part.
+    physical tubes behind them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN.
+    Returns the lanes that may be, and ``(alpha, beta)`` limp somewhere in the last part.
     """
     valid, near, limp_a, limp_b = mask_of(-1), nothing_yet(spread(0.0)), mask_of(0), mask_of(0)
     for k in range(WORST + 4):
@@ -219,8 +219,8 @@ def let_go(mid, cell, load, half):
 @kernel
 def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
     """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out``
-    (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their bounds. Returns
-    masks: ``(met, alpha slack or pushed somewhere, beta)``, and the depth of the middle.
+    (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their bounds.
+    Returns masks: ``(met, alpha slack or pushed somewhere, beta)``, and the depth of the middle.
 
     The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges``
     (> MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).

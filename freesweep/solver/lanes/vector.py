@@ -1,13 +1,13 @@
-"""A Numba type that holds one number of each of several designs: the physics, written for one float, runs on it as it is.
+"""A Numba type that holds one number of each of several designs: the physics, written for one float, runs on it as it
+is.
 
-``Lane`` is LLVM's ``<WIDTH x double>``. Its ``+ - * /``, unary minus, comparisons, ``sqrt``, ``abs``, ``min`` and ``max``
-are LLVM's own vector operations, lane by lane, so no design can see its neighbours; a float beside a lane stands for all
-of them. Comparisons give a ``Mask``, joined by ``& | ~``; where a
-condition is asked for, a mask is true if any lane is. :mod:`..either` chooses. Only compiled code knows these
-types.
+``Lane`` is LLVM's ``<WIDTH x double>``. Its ``+ - * /``, unary minus, comparisons, ``sqrt``, ``abs``, ``min`` and
+``max`` are LLVM's own vector operations, lane by lane, so no design can see its neighbours; a float beside a lane
+stands for all of them. Comparisons give a ``Mask``, joined by ``& | ~``; where a condition is asked for, a mask is true
+if any lane is. :mod:`..either` chooses. Only compiled code knows these types.
 
-Arrays of lanes are plain arrays of shape (n, WIDTH): :func:`get`, :func:`put`. In plain Python (:mod:`freesweep.interpret`)
-a vector has one lane, which is a number.
+Arrays of lanes are plain arrays of shape (n, WIDTH): :func:`get`, :func:`put`. In plain Python
+(:mod:`freesweep.interpret`) a vector has one lane, which is a number.
 """
 
 import math

@@ -1,13 +1,13 @@
 """A place along a tube that is the same all along, from the level of its first integral.
 
-Where nothing varies along x, ``L - v L_v`` is the same at every place. With the resultant R = T/cosine of the meridian's
-angle, in place of T, G and psi are those of a uniform tube (the slope enters by R alone), and ::
+Where nothing varies along x, ``L - v L_v`` is the same at every place. With the resultant R = T/cosine of the
+meridian's angle, in place of T, G and psi are those of a uniform tube (the slope enters by R alone), and ::
 
     level = R sqrt(G) - e W(y, G, psi) + m psi,    R^2 - T^2 = (T v/s)^2 = L_v^2
 
 The density of a uniform tube grows with its resultant by sqrt(G), and R follows from it without any derivative. Bonded
-fibers leave G and psi no choice. Where loose ones do, and they are not yet known exactly, R is least at those that are right, so that Newton's method for them (:mod:`relaxed`) goes on
-as if R were given.
+fibers leave G and psi no choice. Where loose ones do, and they are not yet known exactly, R is least at those that are
+right, so that Newton's method for them (:mod:`relaxed`) goes on as if R were given.
 """
 
 from math import sqrt
@@ -24,8 +24,8 @@ LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it 
 
 
 class Level(NamedTuple):
-    """What is known of a place: room, the resultant R, how R - T rises with y; G - 1, twist rate; which families are taut,
-    and their multipliers, of a slack one, below 0, what it lacks of being taut.
+    """What is known of a place: room, the resultant R, how R - T rises with y; G - 1, twist rate; which families are
+    taut, and their multipliers, of a slack one, below 0, what it lacks of being taut.
     """
 
     room: float
@@ -40,8 +40,8 @@ class Level(NamedTuple):
 
 @kernel
 def levelled(y, level, cell, load):
-    """``(R, G - 1, psi, taut alpha, taut beta)``, whatever the neighbours are. The density is convex in R: from the second
-    step on Newton's method comes from above.
+    """``(R, G - 1, psi, taut alpha, taut beta)``, whatever the neighbours are. The density is convex in R: from the
+    second step on Newton's method comes from above.
     """
     area, m, wall = load.e * cell[2], load.m, load.wall
     R = max(load.p * y * y + load.f, NO_ROOM)

@@ -21,10 +21,10 @@ Functional (Eqs. 2.2, 2.5 - 2.8, 2.11; tension positive, unlike Eq. 2.11 where F
 ``k`` (``shear``) is 1 for the invariants of the whole in-plane tensor, whose twist shears the wall, and 0 for
 Eq. 2.5 as printed, which takes lambda_1 and lambda_2 for principal stretches.
 
-``cell`` holds what may vary along the tube, (H, D, a); ``load`` what does not, (gamma, rubber, wall, p, f, m, e),
-with ``rubber`` = (c, c2, c3), or (c,): then no code is made for Yeoh's part, and ``wall`` = (k,). The weight ``e`` of the
-strain energy is 1; 0 gives the locked shape (section 2.2). All functions are plain arithmetic: they run on a float or on
-any number-like lane type.
+``cell`` holds what may vary along the tube, (H, D, a); ``load`` what does not, (gamma, rubber, wall, p, f, m, e), with
+``rubber`` = (c, c2, c3), or (c,): then no code is made for Yeoh's part, and ``wall`` = (k,). The weight ``e`` of the
+strain energy is 1; 0 gives the locked shape (section 2.2). All functions are plain arithmetic: they run on a float or
+on any number-like lane type.
 """
 
 from math import sqrt
@@ -160,8 +160,8 @@ def uniform_tube(y, cell, load):
 
 @kernel
 def integrands(y, v, cell, load):
-    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w (Eqs. 2.2, 2.5 - 2.7); and the
-    kind of state, within which the density is smooth: there is one here.
+    """What the outputs integrate: axial length s, volume y^2 s, twist psi, strain energy a w (Eqs. 2.2, 2.5 - 2.7); and
+    the kind of state, within which the density is smooth: there is one here.
     """
     psi, _, _, G_1, _, _ = kinematics(y, cell, load)
     w, _, _ = strain_energy(y, cell, load)
@@ -187,8 +187,8 @@ def longest(cell, gamma):
 
 @kernel
 def drawn_in(cell, load):
-    """The stretch below 1 from which a tube counts as drawn in: DRAWN_IN of its radius, and under force or torque as soon as
-    its length has changed by that share.
+    """The stretch below 1 from which a tube counts as drawn in: DRAWN_IN of its radius, and under force or torque as
+    soon as its length has changed by that share.
     """
     size = abs(load.f) + abs(load.m)
     loaded = size / (size + NO_ROOM)  # 1, or 0
@@ -198,8 +198,8 @@ def drawn_in(cell, load):
 
 @kernel
 def conjugate(y, v, cell, load, direction):
-    """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load: what is held when that load is unknown. L is linear in
-    the loads here: c_mu = 0.
+    """``(c, c_y, c_v, c_mu)`` with c = dL/dmu along a change of load: what is held when that load is unknown. L is
+    linear in the loads here: c_mu = 0.
     """
     psi, psi_y, _, G_1, G_y, _ = kinematics(y, cell, load)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
@@ -212,17 +212,17 @@ def conjugate(y, v, cell, load, direction):
 
 @kernel
 def fiber_multipliers(y, s, cell, load):
-    """:func:`multipliers` where the axial stretch ``s`` is known, not the slope: where the meridian stands upright, that has
-    no digits to spare for it.
+    """:func:`multipliers` where the axial stretch ``s`` is known, not the slope: where the meridian stands upright,
+    that has no digits to spare for it.
     """
     return multipliers(y, (load.p * y * y + load.f) / s, cell, load)
 
 
 @kernel
 def multipliers(y, pull, cell, load):
-    """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family) under a ``pull``, the resultant over the axial stretch; a negative
-    one belongs to a fiber that would have to push. The tension of a whole family is ``2 gamma tau/cos(angle)`` in units of
-    pi r0^2 C10.
+    """Multipliers of Eqs. 2.3 and 2.4 (alpha, beta family) under a ``pull``, the resultant over the axial stretch; a
+    negative one belongs to a fiber that would have to push. The tension of a whole family is ``2 gamma tau/cos(angle)``
+    in units of pi r0^2 C10.
     """
     H, D, a = cell[0], cell[1], load.e * cell[2]
     rubber, k, m = load.rubber, load.wall[0], load.m
