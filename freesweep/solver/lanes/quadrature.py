@@ -19,7 +19,7 @@ from .extremes import highest, widest
 from .meridian import CERTAIN, DEEPEST, handed_on, look, middle
 from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WORST, finish, pulled, unmet
 from .rule import LAST, PLACES, summed
-from .vector import HUGE, WIDTH, get, isnt, mask_of, put, select, some, spread
+from .vector import HUGE, WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5, 15)
 SHORT = SQUARE  # which only what is known of the whole needs
@@ -210,6 +210,23 @@ def limp(pull):
 
 
 @kernel
+def other(where, new, old):
+    """One mask where it is so, elsewhere the other."""
+    return (where & new) | (isnt(where) & old)
+
+
+@kernel
+def with_ends(counts, ended):
+    """Which lanes have ends, of those that had before; others have none any more."""
+    had, some_have = bits(ended), 0
+    for lane in range(WIDTH):
+        if not (had >> lane) & 1:
+            counts[lane] = 0
+        some_have |= (1 if counts[lane] > 0 else 0) << lane
+    return mask_of(some_have)
+
+
+@kernel
 def let_go(mid, cell, load, half):
     """Where the middle misses a uniform stretch that draws the tube in, though its end is far: that is another branch."""
     drawn, missed = mid.u < lagrangian.drawn_in(cell, load), mid.y - mid.u > FAR_FROM * (1.0 - mid.u)
@@ -231,13 +248,17 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     found, limps = mask_of(0), (mask_of(0), mask_of(0))
     unsure, miss, doubts, middle_limp = spread(0.0), spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
     rough, fine = 0, 0  # trials that each lane has had, whatever its neighbours need
+    ended = mask_of(-1)  # whose parts have to be looked for again: of all the same, they are one
     while fine < FITS:
         mid, wrong = middle(u, depth, cell, load, scratch), mask_of(0)
-        if len(load.wall) > 1 or some(active & isnt(settled)):
-            total, limps, middle_limp, doubts, valid, _ = scan(
+        if fine == 0 or some(active & ended):
+            total, now_limp, limp_there, now_doubts, valid, _ = scan(
                 pieces, mid, cell, load, rows, ends, counts, starts, scratch
             )
-            active = active & valid
+            limps = other(ended, now_limp[0], limps[0]), other(ended, now_limp[1], limps[1])
+            middle_limp = other(ended, limp_there[0], middle_limp[0]), other(ended, limp_there[1], middle_limp[1])
+            doubts = select(ended, now_doubts[0], doubts[0]), select(ended, now_doubts[1], doubts[1])
+            active = active & (valid | isnt(ended))
             miss = half - total
             long = (depth >= DEEPEST) & (miss >= 0.0)  # the middle is the uniform tube
             rough += 1
@@ -249,6 +270,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             before = select(arrived, depth, before[0]), before[1]
         if not some(wrong):
             fine += 1
+            ended = ended & with_ends(counts, ended)
             parts, unsure = find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch)
             active = active & (unsure < slack_ends.ENOUGH)
             valid, last_limps = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)

@@ -18,7 +18,7 @@ from ..either import isnt, select, some
 from . import membrane
 from .physical import LEAST, NO_ROOM, kind_of, place, place_beside
 from .relaxed import BOTH_TAUT, beside, both_reach, is_taut, lacking, multipliers, taut_twist, under
-from .wall import least_square, may_go_slack, slopes, stored
+from .wall import has_two_families, least_square, may_go_slack, rises, slopes, stored
 
 LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it meets
 
@@ -88,33 +88,67 @@ def level_of_membrane(y, level, cell, load):
 
 @kernel
 def level_of_wall(y, level, cell, load, near):
-    """:func:`at_level` of a physical tube."""
+    """:func:`at_level` of a physical tube: where both families are taut, as bonded ones are, nothing has to be looked
+    for.
+    """
+    wall = load.wall
+    if has_two_families(wall):
+        at = level_if_taut(y, level, cell, load)
+        taut = (at.a >= 0.0) & (at.b >= 0.0)
+        if not may_go_slack(wall) or not some(isnt(taut)):
+            return at
+        slack = level_where_slack(y, level, cell, load, near)
+        return Level(
+            select(taut, at.room, slack.room), select(taut, at.R, slack.R), select(taut, at.rise, slack.rise),
+            select(taut, at.G_1, slack.G_1), select(taut, at.psi, slack.psi), select(taut, at.kind, slack.kind),
+            select(taut, at.a, slack.a), select(taut, at.b, slack.b),
+        )  # fmt: skip
+    return level_where_slack(y, level, cell, load, near)
+
+
+@kernel
+def level_if_taut(y, level, cell, load):
+    """:func:`at_level` where both families are taut, or bonded."""
+    H, D, gg, m, area = cell[0], cell[1], load.gamma * load.gamma, load.m, load.e * cell[2]
+    psi, G_1 = taut_twist(y, H, gg), max(both_reach(y, H, D, gg, gg - 1.0), LEAST - 1.0)
+    W, W_y, W_G, W_p = rises(y, G_1, psi, area, load.rubber, load.wall)
+    s = sqrt(1.0 + G_1)
+    R, both = max((level + W - m * psi) / s, NO_ROOM), y == y
+    a, b = multipliers(y, s, psi, both, both, H, D, R, m, W_G, W_p)
+    ta, tb = H + D + psi, H - D + psi
+    L_y = 2.0 * load.p * y * s - W_y - 2.0 * y * (a * ta * ta + b * tb * tb)
+    room = room_of(y, 1.0 + G_1, load)
+    return Level(room, R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, a, b)
+
+
+@kernel
+def room_of(y, G, load):
+    """What is positive where a place may be."""
+    room = min(min(G - LEAST, y), load.p * y * y + load.f)
+    return min(room, least_square(y, max(G, NO_ROOM), load.wall))
+
+
+@kernel
+def level_where_slack(y, level, cell, load, near):
+    """:func:`at_level` where families may be slack."""
     H, D, gg, wall, m = cell[0], cell[1], load.gamma * load.gamma, load.wall, load.m
     area, still = load.e * cell[2], 0.0 * y
-    if wall[2] > 0.0:
-        known, kind, G_1, psi, dG, dpsi, W, R = beside(
-            y, still, H, D, gg, (level, level), m, area, load.rubber, wall, near
-        )
-        alpha, beta = is_taut(kind)
-        lost = isnt(known)
-        if some(lost):
-            other, wide, twist, with_alpha, with_beta = levelled(y, level, cell, load)
-            R, G_1, psi = select(lost, other, R), select(lost, wide, G_1), select(lost, twist, psi)
-            dG, dpsi = select(lost, still, dG), select(lost, still, dpsi)
-            alpha, beta = (lost & with_alpha) | (known & alpha), (lost & with_beta) | (known & beta)
-            V = slopes(y, G_1, psi, area, load.rubber, wall)
-            W = (
-                select(lost, V[0], W[0]), select(lost, V[1], W[1]), select(lost, V[2], W[2]), select(lost, V[3], W[3]),
-                select(lost, V[4], W[4]), select(lost, V[5], W[5]), select(lost, V[6], W[6]), select(lost, V[7], W[7]),
-                select(lost, V[8], W[8]),
-            )  # fmt: skip
-    else:
-        psi, G_1 = taut_twist(y, H, gg), max(both_reach(y, H, D, gg, gg - 1.0), LEAST - 1.0)
-        R, W = (
-            under((level, level), y, G_1, psi, m, area, load.rubber, wall),
-            slopes(y, G_1, psi, area, load.rubber, wall),
-        )
-        dG, dpsi, alpha, beta = still, still, y == y, y == y
+    known, kind, G_1, psi, dG, dpsi, W, R = beside(
+        y, still, H, D, gg, (level, level), m, area, load.rubber, wall, near
+    )
+    alpha, beta = is_taut(kind)
+    lost = isnt(known)
+    if some(lost):
+        other, wide, twist, with_alpha, with_beta = levelled(y, level, cell, load)
+        R, G_1, psi = select(lost, other, R), select(lost, wide, G_1), select(lost, twist, psi)
+        dG, dpsi = select(lost, still, dG), select(lost, still, dpsi)
+        alpha, beta = (lost & with_alpha) | (known & alpha), (lost & with_beta) | (known & beta)
+        V = slopes(y, G_1, psi, area, load.rubber, wall)
+        W = (
+            select(lost, V[0], W[0]), select(lost, V[1], W[1]), select(lost, V[2], W[2]), select(lost, V[3], W[3]),
+            select(lost, V[4], W[4]), select(lost, V[5], W[5]), select(lost, V[6], W[6]), select(lost, V[7], W[7]),
+            select(lost, V[8], W[8]),
+        )  # fmt: skip
     W_y, W_G, W_p, _, W_yG, W_yp, W_GG, W_Gp, _ = W
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     i = 1.0 / s
@@ -132,8 +166,7 @@ def level_of_wall(y, level, cell, load, near):
     a = select(alpha, a + select(both, 0.0, more), -max(lack_a, 0.0))
     b = select(beta, b + select(both, 0.0, more), -max(lack_b, 0.0))
     G = 1.0 + G_1
-    room = min(min(G - LEAST, y), min(least_square(y, max(G, NO_ROOM), wall), load.p * y * y + load.f))
-    return Level(room, R, -L_y / s, G_1, psi, kind_of(alpha, beta), a, b)
+    return Level(room_of(y, G, load), R, -L_y / s, G_1, psi, kind_of(alpha, beta), a, b)
 
 
 @kernel

@@ -79,3 +79,36 @@ def slopes(y, G_1, psi, area, c, k, inner, count, places, weights, at, reciproca
         w_GG + 2.0 * g * d_w_qG + g * g * bend * dd_three - 1.5 * g * e * d_w_q,
         twist * (g * d - c * e * e * squares), 2.0 * k * (q + c * e * squares),
     )  # fmt: skip
+
+
+@kernel
+def rises(y, G_1, psi, area, c, k, inner, count, places, weights, at, reciprocal):
+    """``(W, W_y, W_G, W_psi)``, in one go along the layers."""
+    G = 1.0 + G_1
+    e = 1.0 / G
+    root = sqrt(e)
+    y2, n = y * y, k * psi * psi
+    bend = root * G_1 / (1.0 / root + 1.0)
+    square, one, W = 1.0 + 0.0 * area, area, 0.0 * area
+    one_q = two_q = 0.0 * area
+    for j in range(count):
+        if count > 1:
+            square, one = inner + area * places[at + j], area * weights[at + j]
+        q = y2 + (square - 1.0) * root
+        z, i = 1.0 / q, 1.0 / square
+        x = square * z
+        b = ((y - 1.0) * (y + 1.0) - (square - 1.0) * bend) * i  # q/rho^2 - 1
+        first = excess(G_1, b, x * e) + q * n
+        W += one * (first + c * (excess(-G_1 * e, -b * x, G * q * i) + square * n * e))
+        part = one * x
+        one_q += part
+        two_q += part * z
+    whole, d, i = weigh(area, inner, count, reciprocal)
+    d_two = (one_q - y2 * two_q) * G * root
+    squares, d_i = whole + d, whole - i  # the first the sum of rho^2
+    slope, stiff = e + c, 1.0 + c * G
+    w_q, d_w_q = stiff * i + n * whole - slope * two_q, stiff * d_i + n * d - slope * d_two
+    w_G = whole - e * e * one_q + c * (y2 * i + root * d_i - e * e * (whole + n * squares))
+    return (
+        W, 2.0 * y * w_q, w_G - 0.5 * root * e * d_w_q, 2.0 * k * psi * (y2 * whole + root * d + c * e * squares)
+    )  # fmt: skip

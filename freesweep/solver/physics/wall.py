@@ -206,6 +206,18 @@ def slopes(y, G_1, psi, area, rubber, wall):
 
 
 @kernel
+def rises(y, G_1, psi, area, rubber, wall):
+    """``(W, W_y, W_G, W_psi)``."""
+    if len(rubber) > 1:
+        return of_any(y, G_1, psi, area, rubber, wall)[:4]
+    count = layers(area, wall)
+    return mooney_wall.rises(
+        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count),
+        reciprocal_of(area, wall, count),
+    )  # fmt: skip
+
+
+@kernel
 def of_any(y, G_1, psi, area, rubber, wall):
     """:func:`energy`, layer by layer."""
     k, inner = wall[0], wall[1]
