@@ -16,7 +16,6 @@ import pytest
 import freesweep as fs
 from freesweep import interpret, jit
 from freesweep.solver import batch
-from freesweep.solver.lanes import free as lanes
 
 ROOT = Path(__file__).parents[2]
 
@@ -149,20 +148,29 @@ def test_time_in_which_others_had_the_processor_does_not_count(entry, monkeypatc
     assert interpret.at_once(1, kernel, kernel, np.ones(1))
 
 
-def test_only_what_vectors_leave_counts(monkeypatch):
-    """Many states of which vectors solve all but one: plain Python is asked for one."""
-    asked = []
-    monkeypatch.setattr(batch, "at_once", lambda states, awaited, *_, **__: asked.append((states, awaited)) or False)
-
-    def solve_all_but_one(_, __, ___, ____, rows, _____, ______, _______, values, bounds, status, *________):
-        status[rows[1:]] = 0
-
-    monkeypatch.setattr(lanes, "carry_lanes", lambda *given: given[8].fill(1.0))
-    monkeypatch.setattr(lanes, "solve_lanes", solve_all_but_one)
-    monkeypatch.setattr(batch, "follow_many", lambda *_: None)
-    problems = np.zeros((40, 11))
-    batch.walk_all(problems, np.arange(41), np.ones(40), batch.uniform(24), 1e-6, soon=True)
-    assert [states for states, _ in asked] == [40, 1]
+@pytest.mark.parametrize("columns", [11, 13], ids=["source", "physical"])
+def test_a_vector_of_one_tells_in_plain_python_what_compiled_ones_tell(columns, monkeypatch):
+    """Free, loaded and locked states, one beyond its limit, and profiles: numbers differ by rounding."""
+    problems = np.array([
+        [0.11, 0.73, 0.5, 1.0, 0.5, 1.0, 0.0, 0.0, 30.0, 0.0, 0.0, 0.6, 1.0],
+        [0.11, 0.73, 0.5, 1.01, 0.5, 1.0, 0.3, 0.1, 30.0, 0.0, 0.0, 0.6, 1.0],
+        [1.58, 0.15, 0.78, 1.01, 0.5, 0.0, 0.0, 0.0, 8.0, 0.0, 0.0, 0.6, 0.0],
+    ])[:, :columns]  # fmt: skip
+    pressures, first = np.tile([0.4, 1.2, np.inf], 3), np.arange(4) * 3
+    asked = problems, first, pressures, batch.uniform(24), 1e-6, np.linspace(0.0, 4.0, 5)
+    compiled, ran = batch.walk_all(*asked), []
+    monkeypatch.setattr(interpret, "_kinds", lambda *_: None)  # no machine code is at hand
+    monkeypatch.setattr(interpret, "_is_kept", lambda *_: False)
+    monkeypatch.setattr(interpret, "_spent", {})
+    done = interpret._is_done
+    monkeypatch.setattr(interpret, "_is_done", lambda entry, *more: ran.append(entry) or done(entry, *more))
+    plain = batch.walk_all(*asked, soon=True)
+    assert {entry.py_func.__name__.split("_")[0] for entry in ran} >= {"carry", "solve", "draw"}
+    np.testing.assert_array_equal(plain.status, compiled.status)
+    np.testing.assert_array_less(np.abs(plain.values - compiled.values), np.fmax(compiled.bounds, 1e-12))
+    fields = compiled.profiles.shape[1] // 2
+    apart = np.abs(plain.profiles - compiled.profiles)[:, :fields]
+    np.testing.assert_array_less(apart, np.fmax(compiled.profiles[:, fields:], 1e-12))
 
 
 def test_twins_are_whole_whichever_thread_asks_first():
@@ -219,14 +227,3 @@ def test_vectors_are_not_compiled_for_a_few_states_of_another_rubber(entry, caps
     assert len(awaited.signatures) == 1
     assert not capsys.readouterr().err
     assert not interpret.at_once(interpret.FEW, awaited, entry, numbers, instead=(other,))
-
-
-def test_the_vectors_awaited_are_those_of_the_rubber(monkeypatch):
-    kinds = []
-    monkeypatch.setattr(batch, "at_once", lambda *_, instead=None: kinds.append(instead) or True)
-    problems = np.zeros((2, 11))
-    problems[1, 9] = 0.1
-    for k in (0, 1):
-        batch.walk_all(problems[k : k + 1], np.array([0, 1]), np.ones(1), batch.uniform(24), 1e-6, soon=True)
-    vectors = [given for given in kinds if given is not None]
-    assert [len(given[5]) for given in vectors] == [1, 3]
