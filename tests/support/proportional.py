@@ -1,29 +1,24 @@
 """Walks whose loads all rise in proportion to the first pressure: hard ways for the kernels, of which no actuator asks."""
 
+from unittest import mock
+
 import numpy as np
 
 from freesweep.census.designs import _tubes
 from freesweep.first_integral.folded import solve_near
 from freesweep.solver import batch
+from freesweep.solver.by_middle import many
+from freesweep.solver.status import NOT_CONVERGED, PENDING
 
 
 def in_proportion(problems, first, pressures):
     """States of ``problems`` (n, 11), whose loads are at their full size at the first of each one's ``pressures``."""
     problems, pressures = np.ascontiguousarray(problems), np.ascontiguousarray(pressures, dtype=float)
-    first, nothing = np.asarray(first), batch.NOTHING
-    found = batch._nothing(problems, len(pressures), nothing)
-    batch.follow_many(
-        problems,
-        batch.wall_columns(problems),
-        pressures[first[:-1]],
-        first,
-        pressures,
-        *batch.uniform(24),
-        1e-6,
-        *found[:5],
-        nothing,
-        found.profiles,
-    )
+    first, found = np.asarray(first), batch._nothing(problems, len(pressures), batch.NOTHING)
+    kinds = [(kind, some) for _, _, kind, some in batch._kinds(problems)]
+    with mock.patch.object(many, "settling_pressure", lambda _: pressures[first[:-1]]):
+        many.follow_branches(problems, first, pressures, kinds, 1e-6, found)
+    found.status[found.status == PENDING] = NOT_CONVERGED
     return found
 
 

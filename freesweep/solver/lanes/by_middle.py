@@ -21,7 +21,6 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
 TOLD = MISS, DOUBT, SLACK, SCALES = range(4)  # what is told beside outputs: three numbers, and from the last on four
 COUNT = SCALES + 4
-AT_LEAST = 0.1  # of a depth
 ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middle
 
 
@@ -47,11 +46,13 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     put(scratch, 0, min(max(min(mid.rate * miss, DEEPEST - mid.depth), -DEEPEST), DEEPEST))
     for lane in range(WIDTH):
         scratch[0, lane] = exp(scratch[0, lane])
-    lack = select(driven, select(short > 0.0, -1.0 - short, get(scratch, 0) - 1.0), min(lack, -1.0))
+    deep = (mid.depth >= DEEPEST) & (miss >= 0.0)  # what is left of the tube is as its middle
+    lack = select(driven, select(short > 0.0, -1.0 - short, select(deep, 0.0, get(scratch, 0) - 1.0)), min(lack, -1.0))
     put(told, MISS, select(driven & isnt(valid), np.nan, lack))
-    doubt = select(fine, unmet(mid, zero, numbers) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)), np.inf)
+    doubt = select(deep, 0.0, unmet(mid, zero, numbers) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)))
+    doubt = select(fine, doubt, np.inf)
     put(told, DOUBT, select(driven & valid, doubt, 0.0))
-    rest = select(mid.depth >= DEEPEST - AT_LEAST, max(miss, 0.0), 0.0)  # what is left of a long tube is uniform
+    rest = select(deep, miss, 0.0)
     finish(mid, rest, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
     scale, _ = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
