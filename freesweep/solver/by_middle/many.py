@@ -18,7 +18,7 @@ from .states import middle_at, state_at, turning_point
 from .steps import ARRIVED, LARGEST_STEP, TURNED, Point, begin, follow
 from .ways import fading, ways_of
 
-PIECES = 1, 2, 4, 16, 64  # in which each part of a tube is summed, one try after the other
+PIECES = 1, 2, 4, 16, 64, 256  # in which each part of a tube is summed, one try after the other
 
 
 class Rows(NamedTuple):

@@ -16,6 +16,7 @@ SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
 OUTPUTS = 5
 SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
 STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
+FLOOR = 10.0  # times the rounding of a mesh: sums along few places, of which some hardly know R - T
 FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
 
 
@@ -51,7 +52,8 @@ def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numb
         get(missed, TWIST) + moved * abs(get(sums, TWIST)), get(missed, ENERGY) + moved * abs(get(sums, ENERGY)),
         middle_moved * rest,
     )  # fmt: skip
-    scale, floor = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
+    scale, floors = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
+    floor = FLOOR * floors[0], FLOOR * floors[1], FLOOR * floors[2], FLOOR * floors[3], floors[4]
     largest = max(
         max(max(errors[0] / scale[0], errors[1] / scale[1]), max(errors[2] / scale[2], errors[3] / scale[3])), errors[4]
     )
