@@ -30,7 +30,7 @@ def answered(steps, missing):
         count += 1
         miss = missing(question.middle, question.share) / (question.middle - 1.0)
         values = np.array([question.middle])
-        answer = Answer(miss, 0.0, values, 1e-15 * values, np.ones(1), 0)
+        answer = Answer(miss, 0.0, values, 1e-15 * values, np.ones(1), np.zeros(1), 0)
 
 
 def branch(missing, far=1.0):

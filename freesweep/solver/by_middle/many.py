@@ -80,10 +80,11 @@ def answered(problems, kinds, asked, columns, soon=False):
             measure = by_middle.measure_lanes if len(kind) == 1 else by_middle.measure_physical
             own = problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, told
             run(measure, 0, soon, *own)
-            scales = np.column_stack([told[:, by_middle.SCALES :], np.ones(len(rows))])
+            scales = np.column_stack([told[:, by_middle.SCALES : by_middle.FLOORS], np.ones(len(rows))])
+            floors = np.column_stack([told[:, by_middle.FLOORS :], np.zeros(len(rows))])
             for n, k in enumerate(owners[rows].tolist()):
                 miss, doubt, slack = told[n, : by_middle.SCALES].tolist()
-                answers[k] = Answer(miss, doubt, values[n], bounds[n], scales[n], int(slack))
+                answers[k] = Answer(miss, doubt, values[n], bounds[n], scales[n], floors[n], int(slack))
     return answers
 
 

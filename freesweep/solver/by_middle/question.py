@@ -33,7 +33,8 @@ class Question(NamedTuple):
 
 class Answer(NamedTuple):
     """By how much a question misses being a state (NaN: no tube at all), and what may be missing of that, both times
-    the strain; outputs, what may be missing of them, and by what they are measured; families that are slack.
+    the strain; outputs, what may be missing of them, by what they are measured, and how much of that is rounding;
+    families that are slack.
     """
 
     miss: float
@@ -41,6 +42,7 @@ class Answer(NamedTuple):
     values: np.ndarray
     bounds: np.ndarray
     scales: np.ndarray
+    floors: np.ndarray
     slack: int
 
 

@@ -4,9 +4,10 @@ from math import isnan
 
 import numpy as np
 
-from .question import ALONG, FAINT, FINEST, MOST_TRIES, ROUGH, WIDER, ask, crossing, slope_of
+from .question import ALONG, FAINT, FINEST, MOST_TRIES, ROUGH, STILL, WIDER, ask, crossing, slope_of
 
 CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turning point stands out from its neighbours
+CLOSE_BY = 4.0 * STILL
 SLIGHT, LEAST_ASIDE = 1e-3, 1e-13  # a miss, and a stretch, by which a state is moved to see what changes
 GOLDEN, PEAK_STEPS, FLAT, THIN = 0.381966, 40, 1e-9, 1e-7  # to a turning point; how exactly share and stretch are met
 NUDGE, NUDGES = 0.01, 4  # of the way between the outer ones of three points
@@ -62,14 +63,17 @@ def state_at(share, near, far, accuracy):
         if met is None:
             return stays
         middle, answer, other = met
-        if not abs(answer.miss) <= ROUGH * abs(middle - 1.0):
-            return stays
         slope = slope_of(middle, answer, other)
-        moved = max(min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle)), LEAST_ASIDE)
-        other = yield from ask(middle + moved, share, tries)
-        change = np.abs(other.values - answer.values) / max(abs(other.miss - answer.miss), 1e-300)
-        bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
-        largest = np.max(bounds[: len(answer.scales)] / answer.scales)
+        if abs(middle - 1.0) < CLOSE_BY and abs(other[0] - 1.0) < CLOSE_BY:  # on both sides of no strain
+            bounds = answer.bounds + np.abs(other[1].values - answer.values)
+        elif not abs(answer.miss) <= ROUGH * abs(middle - 1.0):
+            return stays
+        else:
+            moved = min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle))
+            beside = yield from ask(middle + max(moved, LEAST_ASIDE), share, tries)
+            change = np.abs(beside.values - answer.values) / max(abs(beside.miss - answer.miss), 1e-300)
+            bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
+        largest = np.max((bounds[: len(answer.scales)] - answer.floors) / answer.scales)
         if largest <= ROUGH:
             stays = answer, bounds, largest
         if largest <= accuracy:

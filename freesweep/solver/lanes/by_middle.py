@@ -12,15 +12,16 @@ from ..physics import lagrangian
 from ..problem import FORCE, GAMMA, PHYSICAL, SOURCE, TORQUE
 from . import slack_ends
 from .meridian import DEEPEST, middle_at
-from .outputs import DX, finish, unmet
+from .outputs import DX, FLOOR, finish, unmet
 from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
 from .quadrature import between_ends, find_ends, scan
 from .rule import LAST
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
-TOLD = MISS, DOUBT, SLACK, SCALES = range(4)  # what is told beside outputs: three numbers, and from the last on four
-COUNT = SCALES + 4
+# what is told beside outputs: three numbers, then by what four of them are measured, and what is rounding of their bounds
+MISS, DOUBT, SLACK, SCALES, FLOORS = 0, 1, 2, 3, 7
+COUNT = FLOORS + 4
 ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middle
 
 
@@ -55,11 +56,15 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     rest = select(deep, miss, 0.0)
     finish(mid, rest, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
-    scale, _ = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
+    scale, rounding = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
     put(told, SCALES, scale[0])
     put(told, SCALES + 1, scale[1])
     put(told, SCALES + 2, scale[2])
     put(told, SCALES + 3, scale[3])
+    put(told, FLOORS, FLOOR * rounding[0])
+    put(told, FLOORS + 1, FLOOR * rounding[1])
+    put(told, FLOORS + 2, FLOOR * rounding[2])
+    put(told, FLOORS + 3, FLOOR * rounding[3])
     return alpha, beta
 
 

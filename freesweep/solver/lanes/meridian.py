@@ -24,7 +24,7 @@ from .vector import WIDTH, get, put, select, spread
 
 DEEPEST = 24.0  # where nothing is left of the layer
 EVEN, LEAST_EVEN = 6.0, 0.15  # depth up to which equal steps do; the least share of equal steps
-CERTAIN = 1e-8  # share of R from which R - T is more than rounding
+CERTAIN, NOISE = 1e-8, 1e-12  # shares of R, and of what it is the difference of, from which R - T is more than rounding
 APART = 1e-6  # of 2 q |u - 1|: difference of two stretches that has digits
 MEETS = 1e-9  # of q: as near to the middle as counts as there
 LEAST_RATE = 1e-12
@@ -181,7 +181,8 @@ def look(t, mid, cell, load, near, scratch):
     beyond = at.R - T
     short = select(inside, -beyond / at.R, 0.0)
     near_by = on * (2.0 / 3.0 * mid.rise + at.rise / 3.0 + mid.bend * on / 6.0)
-    beyond = select(beyond > CERTAIN * at.R, beyond, max(near_by, 0.0))
+    certain = CERTAIN * at.R + NOISE * (abs(mid.level) + abs(load.m * at.psi))
+    beyond = select(beyond > certain, beyond, max(near_by, 0.0))
     sine = sqrt(beyond * (beyond + 2.0 * T)) / (T + beyond)
     turned = inside & (sine > 0.0)
     rise = abs(1.0 - mid.u) * over * (z + mid.q)  # of y by the depth

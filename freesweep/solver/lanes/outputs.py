@@ -28,7 +28,9 @@ def pulled(multiplier, load):
 
 @kernel
 def unmet(mid, miss, numbers):
-    """How much of half the tube's length may be missing. The shallower the middle, the fewer places have no digit of R - T."""
+    """How much of half the tube's length may be missing: the shallower the middle, the fewer places have no digit of
+    R - T.
+    """
     strain = mid.q * (mid.u - 1.0)
     return get(numbers[1], DX) + abs(miss) + FAINT / mid.rate * min(FAINT / (2.0 * strain * strain), 1.0)
 

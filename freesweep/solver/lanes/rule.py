@@ -37,6 +37,12 @@ def level(row, first):
 
 
 @kernel
+def missed_on_the_way(row):
+    """What the sum up to a place of a row may miss: more than that of the whole, in which much of it cancels."""
+    return MISSED * max(level(row, 2), level(row, 4))
+
+
+@kernel
 def summed(row):
     """Sum of a row by the rule, and what it may miss."""
     total = spread(0.0)
