@@ -22,7 +22,7 @@ from .outputs import DX, LENGTH, TWIST
 from .pack import COLUMNS, aligned, loads
 from .pack import LENGTH as HALF
 from .quadrature import along, find_ends, graded, scan
-from .rule import LAST, PLACES, UP_TO, missed_on_the_way, summed
+from .rule import LAST, PLACES, UP_TO, summed
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
 # what is kept of each place of the way; axial position and twist as what they differ by from those of a tube like its middle
@@ -57,7 +57,7 @@ def go(parts, pieces, edges, mid, cell, load, rows, way, scratch):
             near, fine = along(first, last, mid, cell, load, near, True, rows, scratch)
             valid = valid & fine
             grown, lengthened, turned = summed(rows[DX]), summed(rows[LENGTH]), summed(rows[TWIST])
-            own = missed_on_the_way(rows[DX]), missed_on_the_way(rows[LENGTH]), missed_on_the_way(rows[TWIST])
+            doubts = doubts[0] + grown[1], doubts[1] + lengthened[1], doubts[2] + turned[1]
             for k in range(LAST + 1):
                 x, z, turn = spread(0.0), spread(0.0), spread(0.0)
                 for l in range(LAST + 1):
@@ -68,12 +68,11 @@ def go(parts, pieces, edges, mid, cell, load, rows, way, scratch):
                 put(way[GROWTH], count, get(rows[DX], k))
                 put(way[Z], count, sums[1] + z)
                 put(way[TURN], count, sums[2] + turn)
-                put(way[DOUBT_X], count, doubts[0] + own[0])
-                put(way[DOUBT_Z], count, doubts[1] + own[1])
-                put(way[DOUBT_TURN], count, doubts[2] + own[2])
+                put(way[DOUBT_X], count, doubts[0])
+                put(way[DOUBT_Z], count, doubts[1])
+                put(way[DOUBT_TURN], count, doubts[2])
                 count += 1
             sums = sums[0] + grown[0], sums[1] + lengthened[0], sums[2] + turned[0]
-            doubts = doubts[0] + grown[1], doubts[1] + lengthened[1], doubts[2] + turned[1]
     return count, valid
 
 
