@@ -120,15 +120,16 @@ def solve(
         count = min(WIDTH, len(order) - group)
         seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start)
         cell, _, load = loads(columns, constants, walls, layers)
-        met, alpha, beta, depth = quadrature.solve(
+        met, alpha, beta, (u, depth) = quadrature.solve(
             get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, ends[:5],
             ends[5:], edges, numbers[:2], scratch, counts, numbers[2:],
         )  # fmt: skip
         record(bits(met), bits(alpha), bits(beta), rows, numbers[2:], values, bounds, status, slack)
-        put(scratch, 0, depth)
+        put(start, 0, u)
+        put(start, 1, depth)
         for lane in range(count):
             if (bits(met) >> lane) & 1:
-                middles[rows[lane], 0], middles[rows[lane], 1] = start[0, lane], scratch[0, lane]
+                middles[rows[lane], 0], middles[rows[lane], 1] = start[0, lane], start[1, lane]
 
 
 @entry_point

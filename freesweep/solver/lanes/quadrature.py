@@ -25,6 +25,8 @@ ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5
 SHORT = SQUARE  # which only what is known of the whole needs
 FITS = 16  # trials for the depth of the middle
 ROUGH, CLOSE = 1e-3, 1e-10  # shares of the layer that may be wrong there
+MUCH = 1e-2  # of the accuracy asked for
+STEPS, MET = 8, 1e-12  # to the uniform stretch, relative
 NARROW = 1e-6  # of the depth: a part of no length
 SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
 
@@ -228,20 +230,37 @@ def with_ends(counts, ended):
 
 @kernel
 def let_go(mid, cell, load, half):
-    """Where the middle misses a uniform stretch that draws the tube in, though its end is far: that is another branch."""
+    """Where the middle misses a uniform stretch that draws the tube in, though its end is far: that is another branch.
+    """
     drawn, missed = mid.u < lagrangian.drawn_in(cell, load), mid.y - mid.u > FAR_FROM * (1.0 - mid.u)
     return drawn & missed & (mid.rate * half > FAR)
 
 
 @kernel
+def stationary(u, cell, load, active):
+    """``(u, lanes where it is met)``: the uniform stretch near one that is all but it."""
+    zero, near, todo = spread(0.0), nothing_yet(spread(0.0)), active
+    for _ in range(STEPS):
+        (_, L_y, _, L_yy, _, _), near = lagrangian.density_beside(u, zero, cell, load, near)
+        change = L_y / L_yy
+        u = select(todo, u - change, u)
+        todo = todo & (abs(change) > MET * u)
+        if not some(todo):
+            break
+    return u, active & isnt(todo)
+
+
+@kernel
 def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
-    """Solve the ``active`` lanes, whose uniform tubes have the stretch ``u``, all rules in so many ``pieces``. ``out``
-    (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their bounds.
-    Returns masks: ``(met, alpha slack or pushed somewhere, beta)``, and the depth of the middle.
+    """Solve the ``active`` lanes, whose uniform tubes have about the stretch ``u``, all rules in so many ``pieces``.
+    ``out`` (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their
+    bounds. Returns masks, and uniform stretch and depth of the middle: ``(met, alpha slack or pushed somewhere, beta,
+    (u, depth))``.
 
     The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges``
     (> MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
     """
+    u, active = stationary(u, cell, load, active)
     mid = middle(u, spread(DEEPEST), cell, load, scratch)
     depth = min(mid.rate * half, DEEPEST)
     slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
@@ -279,7 +298,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
                 limps = last_limps
             miss = half - get(numbers[0], DX)
             long = (depth >= DEEPEST) & (miss >= 0.0)
-            wrong = active & isnt(long) & (abs(miss) * mid.rate * mid.q > CLOSE)
+            wrong = active & isnt(long) & (abs(miss) * mid.rate * mid.q > min(CLOSE, MUCH * accuracy))
             found = active & isnt(wrong)
             if not some(wrong):
                 break
@@ -291,4 +310,4 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
         beta = mask_of(0)
     if not has_any_family(load.wall):
         alpha = mask_of(0)
-    return found & (largest <= accuracy) & isnt(let_go(mid, cell, load, half)), alpha, beta, depth
+    return found & (largest <= accuracy) & isnt(let_go(mid, cell, load, half)), alpha, beta, (u, depth)
