@@ -69,7 +69,7 @@ def test_limit_pressures_are_those_of_the_meshes(number, many):
     walks, numbers = many
     limit, bound = LIMITS[number]
     found, own = walks.limits[numbers.index(number)]
-    assert abs(found - limit) <= own + bound
+    assert abs(found - limit) <= own + bound + 5e-6 * limit  # they had less Gauss points
     assert own < 1e-3 * limit  # at a corner, where threads go slack; 1e-6 and less where it is smooth
 
 

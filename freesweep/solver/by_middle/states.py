@@ -56,10 +56,10 @@ def state_at(share, near, far, accuracy):
     two points of the branch; None where it is not met, as at a jump of the miss. What no try tells to the ``accuracy`` is
     told by the last that tells it at all.
     """
-    middle, stays, aside = near.middle + part_of(share, near, far) * (far.middle - near.middle), None, None
+    first, stays, aside = near.middle + part_of(share, near, far) * (far.middle - near.middle), None, None
     for fineness in range(MOST_TRIES):
         tries = range(fineness, fineness + 1), np.inf
-        met = yield from met_at(share, near, far, middle, tries, aside)
+        met = yield from met_at(share, near, far, first, tries, aside)
         if met is None:
             return stays
         middle, answer, other = met
@@ -67,7 +67,7 @@ def state_at(share, near, far, accuracy):
         if abs(middle - 1.0) < CLOSE_BY and abs(other[0] - 1.0) < CLOSE_BY:  # on both sides of no strain
             bounds = answer.bounds + np.abs(other[1].values - answer.values)
         elif not abs(answer.miss) <= ROUGH * abs(middle - 1.0):
-            return stays
+            continue
         else:
             moved = min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle))
             beside = yield from ask(middle + max(moved, LEAST_ASIDE), share, tries)
@@ -81,7 +81,7 @@ def state_at(share, near, far, accuracy):
             stays = answer, bounds, largest
         if largest <= accuracy:
             break
-        aside = max(FAINT * answer.doubt / slope, LEAST_ASIDE)
+        first, aside = middle, max(FAINT * answer.doubt / slope, LEAST_ASIDE)
     return stays
 
 
@@ -91,8 +91,15 @@ def turning_point(points, sense):
 
     At a turning point the branch runs across the way: to each stretch between the outer points belongs one share.
     """
-    (a, fa), (b, fb), (c, fc) = ((point.middle, sense * point.share) for point in points)
-    doubts, reach = {a: 0.0, b: 0.0, c: 0.0}, max(abs(fb - fa), abs(fb - fc)) + FLAT
+    a, b, c = (point.middle for point in points)
+    fa, fb, fc = (sense * point.share for point in points)
+    reach = max(abs(fb - fa), abs(fb - fc)) + FLAT
+    known, doubts = [], {}
+    for t, f in ((a, fa), (b, fb), (c, fc)):
+        met = yield from across(t, sense * f, sense, reach)
+        share, doubts[t] = met if met is not None else (sense * f, reach)
+        known.append(sense * share)
+    fa, fb, fc = known
     for trial in range(PEAK_STEPS):
         left, right = (b - a) * (fb - fc), (b - c) * (fb - fa)
         t = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right) if left != right else b

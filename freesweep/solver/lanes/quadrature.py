@@ -230,8 +230,7 @@ def with_ends(counts, ended):
 
 @kernel
 def let_go(mid, cell, load, half):
-    """Where the middle misses a uniform stretch that draws the tube in, though its end is far: that is another branch.
-    """
+    """Where the middle misses a uniform stretch that draws the tube in, though its end is far: that is another branch."""
     drawn, missed = mid.u < lagrangian.drawn_in(cell, load), mid.y - mid.u > FAR_FROM * (1.0 - mid.u)
     return drawn & missed & (mid.rate * half > FAR)
 
