@@ -73,7 +73,9 @@ def state_at(share, near, far, accuracy):
             beside = yield from ask(middle + max(moved, LEAST_ASIDE), share, tries)
             change = np.abs(beside.values - answer.values) / max(abs(beside.miss - answer.miss), 1e-300)
             bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
-        finer = min(fineness + 1, MOST_TRIES - 1)  # where a meridian stands upright a rule may be surer than it is right
+        finer = min(
+            fineness + 1, MOST_TRIES - 1
+        )  # where a meridian stands upright a rule may be surer than it is right
         finer = yield from ask(middle, share, (range(finer, finer + 1), np.inf))
         bounds = np.maximum(bounds, np.abs(finer.values - answer.values))
         largest = np.max((bounds[: len(answer.scales)] - answer.floors) / answer.scales)

@@ -6,11 +6,10 @@ the fibers' extension changes, or fibers are loose, the secant finds the place o
 
 from ...jit import kernel
 from ..cells import nothing_yet
-from ..guide import FAR_FROM, STRAY
 from ..physics import lagrangian
 from ..physics.uniform_tube import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
 from ..physics.wall import leaves_choice, may_go_slack
-from .vector import HUGE, get, isnt, mask_of, select, some, spread
+from .vector import HUGE, isnt, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
 GLANCE = 0.06  # relative change of the stretch between two looks at the slope, where that is even:
@@ -152,20 +151,3 @@ def follow(u, cell, start, end, half, asked):
         done = done | (todo & (t >= 1.0))
         todo = todo & (t < 1.0) & (step > SMALLEST_STEP)
     return u, done
-
-
-@kernel
-def within(y, n, u, cell, load, half):
-    """Where the shape lies between 1 and the uniform stretch, and its middle near one that draws the tube in while the end
-    is far; elsewhere it is another branch.
-    """
-    slack = STRAY * abs(u - 1.0) + 1e-6
-    low, high = spread(HUGE), spread(-HUGE)
-    for i in range(n + 1):
-        low, high = min(low, get(y, i)), max(high, get(y, i))
-    kept = (min(u, 1.0) - slack <= low) & (high <= max(u, 1.0) + slack)
-    missed = kept & (u < lagrangian.drawn_in(cell, load)) & (get(y, n) - u > FAR_FROM * (1.0 - u))
-    if some(missed):
-        _, _, _, L_yy, _, L_vv = lagrangian.density(u, 0.0, cell, load)
-        kept = kept & isnt(missed & (L_yy * half * half < FAR * FAR * L_vv))
-    return kept

@@ -6,7 +6,6 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from ..along.places import OUTER, STRETCH
-from ..along.profile import at_stations
 from ..load import Load, at_pressure, fibers_alone
 from ..physics import lagrangian
 from ..physics.wall import layers, reciprocal
@@ -24,7 +23,6 @@ from ..problem import (
     TORQUE,
     D,
     H,
-    rubber_of,
     wall_of,
 )
 from ..status import COMPRESSED, INVALID, OK
@@ -99,19 +97,6 @@ def lock(lane, columns):
 
 
 @kernel
-def seat(lane, columns, tube):
-    """One lane as the scalar kernels take it: its load; ``tube`` is changed to it."""
-    course, places = tube.course, tube.places
-    for k in range(3):
-        course[0, 0, k, 0] = columns[k, lane]
-    places[1] = columns[LENGTH, lane]
-    return Load(
-        columns[GAMMA, lane], rubber_of(columns[:, lane]), (columns[SHEAR, lane],), columns[PRESSURE, lane],
-        columns[FORCE, lane], columns[TORQUE, lane], columns[WEIGHT, lane],
-    )  # fmt: skip
-
-
-@kernel
 def is_clamped(problem):
     """Whether the fibers leave the clamped ends any meridional stretch."""
     cell = problem[H], problem[D], problem[AREA]
@@ -150,17 +135,3 @@ def record(met, alpha, beta, rows, out, values, bounds, status, slack):
             slack[row] = ((alpha >> lane) & 1) | (((beta >> lane) & 1) << 1)
             for k in range(values.shape[1]):
                 values[row, k], bounds[row, k] = out[0, k, lane], out[1, k, lane]
-
-
-@kernel
-def draw_profiles(met, rows, columns, base, doublings, kept, stations, tube, nodes, accuracy, profiles):
-    """Write the profiles of the lanes that are met, from the meshes that were ``kept`` of them; returns those whose bounds
-    meet the accuracy.
-    """
-    drawn = 0
-    for lane in range(WIDTH):
-        if (met >> lane) & 1:
-            load = seat(lane, columns, tube)
-            missed = at_stations(stations, base, doublings[lane], tube, load, kept[lane], nodes, profiles[rows[lane]])
-            drawn |= (1 if missed <= accuracy else 0) << lane
-    return drawn

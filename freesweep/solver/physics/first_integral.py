@@ -133,9 +133,7 @@ def level_where_slack(y, level, cell, load, near):
     """:func:`at_level` where families may be slack."""
     H, D, gg, wall, m = cell[0], cell[1], load.gamma * load.gamma, load.wall, load.m
     area, still = load.e * cell[2], 0.0 * y
-    known, kind, G_1, psi, dG, dpsi, W, R = beside(
-        y, still, H, D, gg, (level, level), m, area, load.rubber, wall, near
-    )
+    known, kind, G_1, psi, dG, dpsi, W, R = beside(y, still, H, D, gg, (level, level), m, area, load.rubber, wall, near)
     alpha, beta = is_taut(kind)
     lost = isnt(known)
     if some(lost):
