@@ -15,6 +15,7 @@ import numpy as np
 STILL = 1e-9  # strain beside which the middle is not looked at: the miss is a ratio of two small numbers there
 CLOSE = 1e-11  # a miss that is none
 FAINT = 0.1  # share of a doubt that cannot be told from none
+LEAST_DOUBT = 1e-10  # of a share
 MOST_HALVINGS, ROUNDING = 60, 4e-16  # of a bracket, and its width where it ends
 TRIES, MOST_TRIES = 4, 6  # along a branch, and for a state
 ROUGH = 1e-2  # what is not known to this share of itself is not known
@@ -90,3 +91,26 @@ def crossing(place, low, high, width=0.0, tries=ALONG):
 def slope_of(t, answer, other):
     """How fast the miss changes beside a :func:`crossing`."""
     return abs((answer.miss - other[1].miss) / (t - other[0])) if answer.miss != other[1].miss else np.inf
+
+
+def across(middle, share, sense, reach, tries=FINEST):
+    """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than
+    ``reach``.
+    """
+
+    def place(t):
+        return middle, share + t
+
+    answer = yield from ask(middle, share, tries)
+    distance, first = FAINT**3 * reach, (0.0, answer)
+    while distance < 4.0 * reach and not isnan(answer.miss):
+        for t in (-sense * distance, sense * distance):
+            other = yield from ask(*place(t), tries)
+            if other.miss * answer.miss < 0.0:
+                met = yield from crossing(place, first, (t, other), tries=tries)
+                if met is None:
+                    return None
+                t, found, _ = met
+                return share + t, (found.doubt + abs(found.miss)) / slope_of(*met) + LEAST_DOUBT
+        distance *= WIDER
+    return None

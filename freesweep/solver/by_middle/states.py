@@ -1,10 +1,8 @@
 """What is told of a branch between its points: turning points, and the states that are asked for."""
 
-from math import isnan
-
 import numpy as np
 
-from .question import ALONG, FAINT, FINEST, MOST_TRIES, ROUGH, STILL, WIDER, ask, crossing, slope_of
+from .question import ALONG, FAINT, MOST_TRIES, ROUGH, STILL, WIDER, across, ask, crossing, slope_of
 
 CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turning point stands out from its neighbours
 CLOSE_BY = 4.0 * STILL
@@ -136,26 +134,3 @@ def clear(middle, share, sense, reach, nudge):
         if met is None or met[1] < FLAT:
             break
     return best
-
-
-def across(middle, share, sense, reach):
-    """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than
-    ``reach``.
-    """
-
-    def place(t):
-        return middle, share + t
-
-    answer = yield from ask(middle, share, FINEST)
-    distance, first = FAINT**3 * reach, (0.0, answer)
-    while distance < 4.0 * reach and not isnan(answer.miss):
-        for t in (-sense * distance, sense * distance):
-            other = yield from ask(*place(t), FINEST)
-            if other.miss * answer.miss < 0.0:
-                met = yield from crossing(place, first, (t, other), tries=FINEST)
-                if met is None:
-                    return None
-                t, found, _ = met
-                return share + t, (found.doubt + abs(found.miss)) / slope_of(*met) + FLAT * FAINT
-        distance *= WIDER
-    return None

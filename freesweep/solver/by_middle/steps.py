@@ -5,10 +5,11 @@ the sign changes on a circle: round a corner, where fibers go slack, or a fold a
 it is smooth, and never to another branch beside it, which has its signs the other way round.
 """
 
+from itertools import pairwise
 from math import atan2, cos, exp, hypot, isnan, pi, sin
 from typing import NamedTuple
 
-from .question import SHARPLY, WIDER, ask, crossing
+from .question import SHARPLY, WIDER, across, ask, crossing
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
 SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
@@ -20,6 +21,9 @@ SMALL = 0.1  # of the step before: a step for which a point has to be known to r
 SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be known along it
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
+LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; parts that are looked at
+UNEVEN = 4.0  # times what the share changes on another part
+NOTHING_LESS = 1e-11  # of the share
 BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed
 LEAST_SHARE, EARLY = 1e-9, 0.05  # of the way, where it is looked for, and up to where it has hardly begun
 ARRIVED, TURNED, LOST = range(3)
@@ -86,6 +90,12 @@ def follow(point, sense, far, answer):
             return LOST, points
         points = [*points[1 - KEPT :], ahead]
         if (yield from goes_on(points, sense)):
+            inner = yield from looked_between(points, sense)
+            if (turned := turns_between([*points[:-2][-1:], *inner], sense)) is not None:
+                return TURNED, turned
+            if is_uneven(inner) and SHORTER * ahead.step > SMALLEST_STEP:
+                points, step = points[:-1], SHORTER * ahead.step
+                continue
             yield from answer(*points[-2:])
             step = longer
         elif len(points) > 2:
@@ -161,6 +171,42 @@ def goes_on(points, sense):
     if abs(there.share - here.share) < FLAT * SHARP * (here.step + there.step):
         points[-2], points[-1] = (yield from sharpened(here)), (yield from sharpened(there))
     return sense * points[-1].share > sense * points[-2].share
+
+
+def looked_between(points, sense):
+    """The last step of a branch that hardly leads on, as points of the branch at even stretches, in which a small snap would
+    show; else its two ends.
+    """
+    here, there = points[-2:]
+    if abs(there.share - here.share) > LEVEL * there.step:
+        return points[-2:]
+    points[-2], points[-1] = here, there = (yield from sharpened(here)), (yield from sharpened(there))
+    inner = [here]
+    for k in range(1, LOOKS):
+        part = k / LOOKS
+        middle = here.middle + part * (there.middle - here.middle)
+        share = here.share + part * (there.share - here.share)
+        met = yield from across(middle, share, sense, there.step, SHARPLY)
+        if met is None:
+            return points[-2:]
+        inner.append(there._replace(middle=middle, share=met[0]))
+    return [*inner, there]
+
+
+def turns_between(inner, sense):
+    """Three points, of which the middle one is the first that no one behind it passes; None where each one passes the one
+    before it.
+    """
+    for k in range(1, len(inner) - 1):
+        if sense * inner[k + 1].share < sense * inner[k].share - NOTHING_LESS:
+            return inner[k - 1 : k + 2]
+    return None
+
+
+def is_uneven(inner):
+    """Whether the share hardly changes on a part of a step, beside others."""
+    changes = [abs(there.share - here.share) for here, there in pairwise(inner)]
+    return max(changes) > UNEVEN * min(changes)
 
 
 def sharpened(here):
