@@ -21,6 +21,7 @@ SMALL = 0.1  # of the step before: a step for which a point has to be known to r
 SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be known along it
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
+BENT = 0.2  # from one step to the next [radian], from which on a snap may hide in it
 LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; parts that are looked at
 UNEVEN = 4.0  # times what the share changes on another part
 NOTHING_LESS = 1e-11  # of the share
@@ -174,11 +175,11 @@ def goes_on(points, sense):
 
 
 def looked_between(points, sense):
-    """The last step of a branch that hardly leads on, as points of the branch at even stretches, in which a small snap would
-    show; else its two ends.
+    """The last step of a branch that hardly leads on, or bends, as points of the branch at even stretches, in which a small
+    snap would show; else its two ends.
     """
     here, there = points[-2:]
-    if abs(there.share - here.share) > LEVEL * there.step:
+    if abs(there.share - here.share) > LEVEL * there.step and not abs(there.chord - here.chord) > BENT:
         return points[-2:]
     points[-2], points[-1] = here, there = (yield from sharpened(here)), (yield from sharpened(there))
     inner = [here]
