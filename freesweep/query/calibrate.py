@@ -61,7 +61,7 @@ def _by_class(needed, classes, beside):
     for kind in range(LYING):
         for k in range(CLASSES):
             for reach in range(CLASSES):
-                first, last = (kind * CLASSES + int(np.clip(at, 0, CLASSES)) for at in (k - reach, k + reach + 1))
+                first, last = kind * CLASSES + max(k - reach, 0), kind * CLASSES + min(k + reach + 1, CLASSES)
                 if edges[last] - edges[first] >= ENOUGH:
                     break
             else:  # too few of the kind: all designs

@@ -14,9 +14,10 @@ from .cells import Cells
 from .family import TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
-from .missing_nodes import cell_codes, fill, slopes
+from .missing_nodes import cell_codes, fill, weights_beyond
 from .predictor import Predictor
 from .reference import COLUMNS
+from .slopes import tabulate
 from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
@@ -58,7 +59,7 @@ class Table:
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
         self.knots, self.windows, self.coordinates = self._packed()
         self._place()
-        self._variables, self._stored, self._errors, self._states, self._taut = {}, {}, {}, None, None
+        self._variables, self._spare, self._stored, self._errors, self._states, self._taut = {}, [], {}, {}, None, None
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
@@ -99,6 +100,16 @@ class Table:
             columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
         ]
         self.options = (frame.fiber_share, by_length, self.family.status is not None, *angles)
+
+    @functools.cached_property
+    def _nodes(self):
+        """Nodes of the axes (d, n)."""
+        return self.knots[:, :, PLACE].copy()
+
+    @functools.cached_property
+    def _beyond(self):
+        """What numbers are put in with beyond the last of those that there are."""
+        return weights_beyond(self._nodes, self.shape)
 
     def _packed(self):
         """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`.spline` knows of the axes."""
@@ -175,9 +186,10 @@ class Table:
         return self._grid(bound) if bound in self.frame.dims else np.zeros(self.size, np.float32)
 
     def forget(self, name):
-        """Let go of the arrays of one variable."""
+        """Let go of the arrays of one variable, of which the largest are used again."""
         for side in self.sides:
-            self._variables.pop((name, side), None)
+            if gone := self._variables.pop((name, side), None):
+                self._spare.append(gone.values)
         for kept in (self._stored, self._errors):
             kept.pop(name, None)
 
@@ -209,15 +221,12 @@ class Table:
         effects, noise = self._end_effects(name)
         if len(self.sides) > 1:
             effects[self._sides_of_nodes() != side] = np.nan
-        bad = ~np.isfinite(effects)
-        doubt = fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
-        doubt[bad], noise[bad] = np.maximum(doubt[bad], np.finfo(np.float32).tiny), 0.0
-        table = np.empty((len(effects), NODE))
-        table[:, 0] = effects
-        for column, source, axis in ((1, 0, -1), (2, 0, -2), (3, 1, -2)):
-            nodes, knots, step = self.axes[axis].nodes, self.knots[axis], int(self.strides[axis])
-            slopes(table, source, column, nodes, knots, int(self.windows[axis]), step)
-        return Interpolant(table.ravel(), Cells(effects, noise, doubt, self.axes, self.knots))
+        holes = np.flatnonzero(~np.isfinite(effects))
+        doubt = fill(effects, self.shape, self.strides, self._nodes, self._beyond)
+        doubt[holes], noise[holes] = np.maximum(doubt[holes], np.finfo(np.float32).tiny), 0.0
+        table = self._spare.pop() if self._spare else np.empty(NODE * self.size)
+        tabulate(effects, self.knots, self.windows, self.shape, table)
+        return Interpolant(table, Cells(effects, noise, doubt, self.axes, self.knots))
 
     def states(self) -> GridStates:
         """Uniform states of the grid."""
