@@ -1,5 +1,6 @@
 """An atlas measures itself: random designs between its nodes are solved exactly and compared with what it would answer."""
 
+import functools
 import json
 from concurrent.futures import ThreadPoolExecutor
 
@@ -51,17 +52,23 @@ def measured(data, designs=None) -> dict:
             continue
         table = reader.table(key)
         inquiry = Inquiry(table, _draw(reader, table, count // (HELD_SHARE if key.startswith("blocked") else 1)))
-        inquiry.flags()
-        kind = family.kind, tuple(table.names)
-        if kind not in solved:  # once for all that is told of it
-            solved[kind] = _solved(reader, key, inquiry)
-        answered[key], results = _family(reader, key, names, inquiry, told_of(reader, key, names, solved[kind]))
+        kind = family.kind, tuple(table.names)  # solved once for all that is told of it
+        solve = functools.partial(_solved, reader, key, inquiry, solved, kind)
+        answered[key], results = _family(reader, key, names, inquiry, solve)
         variables |= results
     head = {"designs": count, "seed": SEED, "estimates": calibration.ESTIMATES}
     return head | {"answered": answered, "variables": variables}
 
 
-def _solved(reader, key, inquiry):
+def _solved(reader, key, inquiry, known, kind):
+    """Exact states (n,) by name where numbers are given, those of a kind that is ``known``, or found and added there."""
+    inquiry.flags()
+    if kind not in known:
+        known[kind] = _solve(reader, key, inquiry)
+    return known[kind]
+
+
+def _solve(reader, key, inquiry):
     """Exact states (n,) by name where numbers are given: what vectors do not find is not solved, but for held physical
     tubes, of which they know nothing.
     """
@@ -91,16 +98,25 @@ def _draw(reader, table, count):
     return reader.complete(values, count)
 
 
-def _family(reader, key, names, inquiry, exact):
-    """Share answered of one family, and what was measured of its variables, from ``exact`` answers (n,) by name."""
+def _family(reader, key, names, inquiry, solve):
+    """Share answered of one family, and what was measured of its variables, beside exact states that ``solve()`` gives.
+
+    These are solved while the first tables are made.
+    """
     table = inquiry.table
+    with ThreadPoolExecutor(1) as aside, ThreadPoolExecutor(table.together) as pool:
+        solving = aside.submit(solve)
+
+        def compare(name):
+            interpolated = inquiry.interpolated(name)
+            states = solving.result()
+            places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
+            exact = told_of(reader, key, [name], states)
+            solved = np.isin(exact[FAMILIES[key].answer_status][places], VALUED)
+            return _compare(inquiry, name, places, exact[name][places], solved, interpolated, reader.tolerance)
+
+        kept = dict(zip(names, pool.map(compare, names)))
     places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
-    exact = {name: array[places] for name, array in exact.items()}
-    solved = np.isin(exact[FAMILIES[key].answer_status], VALUED)
-    with ThreadPoolExecutor(table.together) as pool:
-        kept = dict(
-            zip(names, pool.map(lambda name: _compare(inquiry, name, places, exact[name], solved, reader), names))
-        )
     good = np.ones(len(places), bool)
     for _, stated, _, allowed, _ in kept.values():
         good &= stated <= allowed
@@ -120,14 +136,13 @@ def _family(reader, key, names, inquiry, exact):
     return float(answered.mean()), results
 
 
-def _compare(inquiry, name, places, exact, solved, reader):
+def _compare(inquiry, name, places, exact, solved, interpolated, tolerance):
     """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared."""
-    interpolated = inquiry.interpolated(name)
     scales = piece_scales(inquiry, name, interpolated, places, np.where(solved, exact, np.nan))
     value, estimate, bound, beside = inquiry.estimate(name, scales, interpolated)
     size = inquiry.natural_size(name, value)[places]
     value, estimate, bound, beside = value[places], estimate[places], bound[places], beside[places]
-    allowed = reader.tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
+    allowed = tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
     error = np.where(solved, np.abs(value - exact), np.inf)
     factors = calibrate(error, estimate, bound, size, beside, allowed)._replace(scales=scales)
     inquiry.table.forget(name)

@@ -2,6 +2,7 @@
 
 import functools
 from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
@@ -60,6 +61,7 @@ class Table:
         self.knots, self.windows, self.coordinates = self._packed()
         self._place()
         self._variables, self._spare, self._stored, self._errors, self._states, self._taut = {}, [], {}, {}, None, None
+        self._making = {}  # locks of what one thread makes and others may ask for meanwhile
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
@@ -196,9 +198,10 @@ class Table:
     def variable(self, name, side) -> Interpolant:
         """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
         key = TOLD_FROM.get(name, name), side
-        if key not in self._variables:
-            self._variables[key] = self._interpolant(*key)
-        return self._variables[key]
+        with self._making.setdefault(key, Lock()):
+            if key not in self._variables:
+                self._variables[key] = self._interpolant(*key)
+            return self._variables[key]
 
     def make(self, names):
         """Make what :meth:`variable` tells of several, on all sides, some at a time."""
@@ -230,11 +233,12 @@ class Table:
 
     def states(self) -> GridStates:
         """Uniform states of the grid."""
-        if self._states is None:
-            of_tubes = self.family.kind in (reference.LOADED, reference.LOCKED) and self.predictor.bodies is None
-            without = ("length",) if of_tubes else ()
-            self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
-        return self._states
+        with self._making.setdefault("states", Lock()):
+            if self._states is None:
+                of_tubes = self.family.kind in (reference.LOADED, reference.LOCKED) and self.predictor.bodies is None
+                without = ("length",) if of_tubes else ()
+                self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
+            return self._states
 
     @functools.cached_property
     def sides(self) -> list:
