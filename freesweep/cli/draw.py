@@ -4,6 +4,7 @@ import os
 
 from .picked import read, selection
 
+DRAWING = ("freesweep.plot.map", "matplotlib.pyplot", "matplotlib.backends.backend_agg")  # what :func:`draw_map` imports
 STILL = ".png, .svg or .pdf"
 FINEST = (40.0, 1200.0)  # resolutions that may be asked for [dots per inch]
 
@@ -153,7 +154,7 @@ def _shape(kinds):
 
 
 def _run_shape(options):
-    from ..plot.style import SUFFIXES
+    from ..plot.suffixes import SUFFIXES
     from .single import inflated, tube_of
 
     out = _target(options, "shape.png", (*SUFFIXES, ".gif"))
@@ -191,7 +192,7 @@ def check_map(sweep, path):
     """Refuse a map that could not be drawn before anything is solved."""
     from pathlib import Path
 
-    from ..plot.style import SUFFIXES
+    from ..plot.suffixes import SUFFIXES
 
     faults = []
     if Path(path).suffix.lower() not in SUFFIXES:
@@ -220,7 +221,7 @@ def _target(options, default, suffixes=None):
     """The file to make, once its suffix (default: those of pictures) and the resolution are checked."""
     from pathlib import Path
 
-    from ..plot.style import SUFFIXES
+    from ..plot.suffixes import SUFFIXES
 
     out, suffixes = options.out or default, suffixes or SUFFIXES
     if Path(out).suffix.lower() not in suffixes:

@@ -19,11 +19,11 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
 from ..atlas.files import write_whole
+from .suffixes import SUFFIXES
 
 INCH = 25.4  # [mm]
 RESOLUTION = 300.0  # of PNG files [dots per inch]
 COLUMN, PAGE = 85.0, 170.0  # widths in print [mm]
-SUFFIXES = (".png", ".svg", ".pdf")
 
 INK = "#23272e"
 QUIET = "#6b717b"

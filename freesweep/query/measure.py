@@ -16,6 +16,7 @@ from .family import FAMILIES, FAMILY_OF
 from .query import Reader
 from .reference import ALPHA, BETA
 from .refine import solved_states, told_of
+from .table import MUCH, TOGETHER
 
 SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
@@ -42,30 +43,44 @@ def measured(data, designs=None) -> dict:
     reader = Reader(data)
     if not reader.frame.in_numbers:
         return {}
-    answered, variables, solved = {}, {}, {}
     least, most = (LEAST, MOST) if reader.frame.bodies is None else BODIES
     count = designs or int(np.clip(data["status"].size // EACH, least, most))
+    kinds = {}  # of states that are solved: their families
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data and FAMILY_OF[name] == key]
-        names.sort(key=lambda name: name != "mid_radius")
-        if key == "limit" or not names or not reader.table(key).names:
-            continue
-        table = reader.table(key)
-        inquiry = Inquiry(table, _draw(reader, table, count // (HELD_SHARE if key.startswith("blocked") else 1)))
-        kind = family.kind, tuple(table.names)  # solved once for all that is told of it
-        solve = functools.partial(_solved, reader, key, inquiry, solved, kind)
-        answered[key], results = _family(reader, key, names, inquiry, solve)
-        variables |= results
+        if names and key != "limit":
+            kinds.setdefault(family.kind, {})[key] = sorted(names, key=lambda name: name != "mid_radius")
+    with ThreadPoolExecutor(TOGETHER if data["status"].size <= MUCH else 1) as pool:
+        found = list(pool.map(lambda families: _of_kind(reader, families, count), kinds.values()))
+    found = {key: result for own in found for key, result in own.items()}
+    found = {key: found[key] for key in FAMILIES if key in found}
     head = {"designs": count, "seed": SEED, "estimates": calibration.ESTIMATES}
-    return head | {"answered": answered, "variables": variables}
+    return head | {
+        "answered": {key: share for key, (share, _) in found.items()},
+        "variables": {name: result for _, results in found.values() for name, result in results.items()},
+    }
 
 
-def _solved(reader, key, inquiry, known, kind):
-    """Exact states (n,) by name where numbers are given, those of a kind that is ``known``, or found and added there."""
+def _of_kind(reader, families, count):
+    """Share answered and what was measured of the variables (key -> names) of ``families`` that tell of the same states."""
+    found, solved = {}, {}
+    for key, names in families.items():
+        table = reader.table(key)
+        if not table.names:
+            continue
+        inquiry = Inquiry(table, _draw(reader, table, count // (HELD_SHARE if key.startswith("blocked") else 1)))
+        solve = functools.partial(_solved, reader, key, inquiry, solved)
+        found[key] = _family(reader, key, names, inquiry, solve)
+    return found
+
+
+def _solved(reader, key, inquiry, known):
+    """Exact states (n,) by name where numbers are given: those ``known`` by the axes that they vary in, or found for it."""
     inquiry.flags()
-    if kind not in known:
-        known[kind] = _solve(reader, key, inquiry)
-    return known[kind]
+    axes = tuple(inquiry.table.names)
+    if axes not in known:
+        known[axes] = _solve(reader, key, inquiry)
+    return known[axes]
 
 
 def _solve(reader, key, inquiry):
