@@ -9,7 +9,7 @@ import sys
 
 from .calibrate import add_calibrate
 from .design import add_design
-from .draw import DRAWING, add_plot, check_map, draw_map
+from .draw import Map, add_plot, check_map
 from .explore import add_explore
 from .export import add_export
 from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
@@ -173,10 +173,11 @@ def _run_sweep(options):
     from ..sweep.run import run
 
     with _executor(options) as executor:
-        then = DRAWING if options.map else ()
-        atlas = run(sweep, out, options.threads, executor, not options.quiet, options.overwrite, 2, then)
-    if options.map:
-        draw_map(atlas.data, options.map)
+        drawn = Map(options.map) if options.map else None
+        modules = drawn.modules if drawn else ()
+        atlas = run(sweep, out, options.threads, executor, not options.quiet, options.overwrite, 2, modules, drawn)
+    if drawn:
+        drawn.save(atlas.data)
 
 
 def _executor(options):

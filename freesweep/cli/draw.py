@@ -4,7 +4,6 @@ import os
 
 from .picked import read, selection
 
-DRAWING = ("freesweep.plot.map", "matplotlib.pyplot", "matplotlib.backends.backend_agg")  # what :func:`draw_map` imports
 STILL = ".png, .svg or .pdf"
 FINEST = (40.0, 1200.0)  # resolutions that may be asked for [dots per inch]
 
@@ -208,13 +207,32 @@ def check_map(sweep, path):
         raise EnvironmentFault(f"--map: the folder {folder} {absent}")
 
 
-def draw_map(data, out):
-    """Draws the map of rotation over both fiber angles into a file."""
-    from ..plot.map import design_map
-    from ..plot.style import save
+class Map:
+    """The map of rotation over both fiber angles that a sweep draws into the file ``out``."""
 
-    save(design_map(data, "rotation"), out)
-    print(out)
+    modules = ("freesweep.plot.map", "matplotlib.backends.backend_agg")  # half a second to import
+
+    def __init__(self, out):
+        self.out, self.content = out, None
+
+    def __call__(self, data):
+        """Draw it, of a Dataset that is not an atlas yet."""
+        self.content = self._drawn(data)
+
+    def save(self, data):
+        """Write the file, once there is an atlas with that ``data``."""
+        from ..atlas.files import write_whole
+
+        write_whole(self.out, self.content or self._drawn(data))
+        print(self.out)
+
+    def _drawn(self, data):
+        from ..plot import map as maps
+        from ..plot import style
+
+        with style.context():
+            ax = style.new_figure(*maps.SIZE).add_subplot()  # no window shows it, so that any thread may draw it
+        return style.drawn(maps.design_map(data, "rotation", ax), self.out)
 
 
 def _target(options, default, suffixes=None):

@@ -12,7 +12,7 @@ WRITING = ("netCDF4", "h5py", "xarray")  # atlases
 
 
 def make_ready(sweep, modules):
-    """Import what writes atlases and ``modules``, and load, if they lie on disk, the kernels that measure those of such sweeps.
+    """Import what writes atlases, and ``modules``, and load, if they lie on disk, the kernels that measure those of a sweep.
 
     What cannot be done will be heard of where it is needed.
     """

@@ -68,9 +68,11 @@ def run_sweep(
     return run(spec, out, threads, executor, progress, overwrite, stacklevel=3)
 
 
-def run(spec, out, threads, executor, progress, overwrite, stacklevel, then=()) -> Atlas:
-    """What :func:`run_sweep` does; warnings name the line ``stacklevel`` calls above. The modules that are needed ``then``
-    are imported meanwhile.
+def run(spec, out, threads, executor, progress, overwrite, stacklevel, modules=(), look=None) -> Atlas:
+    """What :func:`run_sweep` does; warnings name the line ``stacklevel`` calls above.
+
+    ``modules`` are imported while it solves, and ``look(data)`` is called beside the rest with the Dataset before it is an
+    atlas, if the atlas measures itself; nobody hears of a fault there.
     """
     begun = time.perf_counter()
     spec, out, threads, progress, overwrite = _read(spec, out, threads, executor, progress, overwrite)
@@ -92,17 +94,19 @@ def run(spec, out, threads, executor, progress, overwrite, stacklevel, then=()) 
         done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, sweep.text, overwrite)
         needed = estimate.check_disk(sweep, {kind: table.equilibria for kind, table in tables.items()}, out, done)
         threads = threads or estimate.cores()
-        todo = [(kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done]
+        todo = [
+            (kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done
+        ]
         if executor is None:
             kernels.load(dict.fromkeys(kind for kind, *_ in todo), sweep, progress)
         with ThreadPoolExecutor(1) as aside:  # begun when nothing else is imported or loaded
-            aside.submit(make_ready, sweep, then)
+            aside.submit(make_ready, sweep, modules)
             records = _solve_all(sweep, tables, split_up, todo, done, shards, threads, executor, progress)
         solved = time.perf_counter()
         lost = _lost(tables, split_up, done)
         attrs = provenance(sweep, tables, identity, shards.started) | ({"not_solved": lost} if lost else {})
         try:
-            _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite)
+            _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite, look)
         except FileExistsError:  # it appeared meanwhile, perhaps from the same sweep on a network disk
             if not (atlas := _complete(out, identity, sweep.text, overwrite, False)):
                 raise
@@ -220,8 +224,8 @@ def _lost(tables, split_up, done):
     return f"{states:,} states of problems that killed their workers: {where}" if parts else ""
 
 
-def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite):
-    """The atlas, chunk by chunk: made and compressed on threads, written here."""
+def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite, look):
+    """The atlas, chunk by chunk: made and compressed on threads, written here; ``look(data)`` while it measures itself."""
     made = groups(sweep)
     steps = max(len(tables["free"].pressure), 1)
     sizes = dict(zip(sweep.dims, sweep.shape))
@@ -249,7 +253,9 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwr
 
             if progress:
                 print("comparing answers between the nodes with exact ones")
-            with writer.dataset() as data:
+            with writer.dataset() as data, ThreadPoolExecutor(1) as aside:
+                if look:
+                    aside.submit(look, data)
                 found = measure(data)
             writer.describe(found)
         writer.publish(replace=overwrite)
