@@ -75,7 +75,7 @@ def of_nodes(knots, count, window, first, weights):
 
 @kernel
 def some_slope(values, at, index, step, first, weights, window, knots, count):
-    """The slope at a node whose window has holes: those of weight zero do not count; if others lack, from the nodes beside."""
+    """The slope at a node whose window has holes: those of weight zero do not count; else from the nodes beside it."""
     total, low = 0.0, at + (first[index] - index) * step
     for j in range(window):
         total += product_term(weights[index, j], values[low + j * step])
