@@ -40,6 +40,13 @@ class Cells:
         self._rows, self._count = np.empty((FIRST_ROWS, ROUGH + len(axes)), np.float32), 1
         self._lock = Lock()
 
+    def doubts(self, places, cell, pieces, shares, out):
+        """Into ``out`` (n,) at ``places`` (k,) what :func:`.doubts.doubts_at` tells of points."""
+        from .doubts import doubts_at
+
+        _, _, doubt, _, _, strides, windows, knots, _ = self._grid
+        doubts_at(places, cell, pieces, shares, doubt, strides, windows, knots, out)
+
     def at(self, cells) -> np.ndarray:
         """What is known of cells (n,): (n, ROUGH + d)."""
         slots = self._slots[cells]
@@ -84,14 +91,14 @@ def _describe(cells, values, noise, doubt, doubtful, shape, strides, windows, kn
             piece = (cell // step) % count
             many = corners(lines, cell, a, strides, windows)
             corners(blocks, cell // inner, a, apart, windows)
-            low, high = all_around(around, knots[a], weights[a], windows[a], piece, count)
+            low, high, many_around = all_around(around, knots[a], weights[a], windows[a], piece, count)
             first = int(knots[a, piece, FIRST])
             worst = 0.0
             for k in range(many):
                 at = lines[k]
                 begin = at - piece * step
                 before, here, after = rough_line(around, values, begin + low * step, step, high - low)
-                worst = max(worst, smoothed(before, here, after, piece, count))
+                worst = max(worst, smoothed(before, here, after, many_around))
                 if piece > 0:
                     loudest = max(loudest, WEIGHT * noise[at - step])
                 if piece + 2 < count:
@@ -150,28 +157,32 @@ def rough_line(around, values, begin, step, many):
 @kernel
 def all_around(around, knots, weights, window, piece, count):
     """Into ``around`` (3, WINDOW + 2) the weights of what the next order would add in the piece before, in a piece, and in
-    the one after it; returns which nodes of the axis they are of: (first, last + 1).
+    the one after it; returns which nodes of the axis they are of, (first, last + 1), and how many pieces they are.
+
+    A piece on the other side of a bend, where windows do not overlap as elsewhere, is not beside this one.
     """
-    low = int(knots[max(piece - 1, 0), FIRST])
-    high = int(knots[min(piece + 1, count - 2), FIRST]) + window
+    own, many = int(knots[piece, FIRST]), 1
+    low = high = own
+    for i in range(0, 3, 2):
+        other = piece - 1 + i
+        if 0 <= other < count - 1 and abs(int(knots[other, FIRST]) - own) <= 1:
+            low, high = min(low, int(knots[other, FIRST])), max(high, int(knots[other, FIRST]))
+            many += 1
+    high += window
     for i in range(3):
         for j in range(high - low):
             around[i, j] = 0.0
         other = piece - 1 + i
-        if 0 <= other < count - 1:
+        if 0 <= other < count - 1 and abs(int(knots[other, FIRST]) - own) <= 1:
             for j in range(window):
                 around[i, int(knots[other, FIRST]) + j - low] = weights[other, j]
-    return low, high
+    return low, high, many
 
 
 @kernel
-def smoothed(before, here, after, piece, count):
-    """A remainder may vanish by chance in one piece: it is no less than in both beside it.
+def smoothed(before, here, after, many):
+    """A remainder may vanish by chance in one piece: it is no less than in both beside it, or in the only one that is.
 
     Not the larger of those: a coarse or wild piece says nothing of a fine one beside it.
     """
-    if piece == 0 or piece == count - 2:
-        beside = abs(before + after) if count > 2 else 0.0  # one of them is not there
-    else:
-        beside = min(abs(before), abs(after))
-    return max(abs(here), beside)
+    return max(abs(here), min(abs(before), abs(after)) if many == 3 else abs(before + after))

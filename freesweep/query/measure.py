@@ -143,7 +143,7 @@ def _family(reader, key, names, inquiry, solve):
         for region in ("all", *REGIONS):
             where = np.ones(inquiry.size, bool) if region == "all" else regions == region
             if where.any():
-                pick = where[places] & good
+                pick = where[places] & good & np.isfinite(error)  # what was solved
                 rows[region] = _row(int(where.sum()), answered[where].mean(), error[pick], stated[pick], size[pick])
         axes = {axis.name: row.tolist() for axis, row in zip(table.axes, factors.scales) if np.any(row != 1.0)}
         found = {"factors": factors.classes.tolist(), "bound": factors.bound, "scales": axes}

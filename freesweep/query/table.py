@@ -10,9 +10,9 @@ import numpy as np
 from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
-from .axis import LABEL, WINDOW, make_axis, part_of, ranks
+from .axis import LABEL, WINDOW, bent, make_axis, part_of, ranks
 from .cells import Cells
-from .family import TOLD_FROM, family_of
+from .family import SLACK_FLAGS, TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
 from .missing_nodes import cell_codes, fill, weights_beyond
@@ -24,6 +24,7 @@ from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
+STRAIGHT = ("alpha", "beta")  # axes that have a family of straight fibers where they are 0
 TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
@@ -48,12 +49,12 @@ class Table:
         self.predictor = Predictor(frame.model, frame.energy, frame.bodies, frame.families)
         self.names = frame.axes_of(self.family.variables)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
-        whole = [frame.axis(name) for name in self.names]
-        self.ranks = [ranks(len(axis.nodes))[slice(*self.box[axis.name])] for axis in whole]
+        whole = self._whole_axes()
+        self.ranks = [ranks(axis)[slice(*self.box[axis.name])] for axis in whole]
         self.axes = [part_of(axis, *self.box[axis.name]) for axis in whole]
         self.padding = max(0, 2 - sum(axis.kind != LABEL for axis in self.axes))
-        self.axes += [make_axis(f"none {k}", [0.0, 1.0]) for k in range(self.padding)]
-        self.ranks += [ranks(2)] * self.padding
+        none = [make_axis(f"none {k}", [0.0, 1.0]) for k in range(self.padding)]
+        self.axes, self.ranks = self.axes + none, self.ranks + [ranks(axis) for axis in none]
         self.shape = np.array([len(axis.nodes) for axis in self.axes], np.int64)
         self.strides = np.array([int(np.prod(self.shape[k + 1 :])) for k in range(len(self.shape))], np.int64)
         self.size = int(np.prod(self.shape))
@@ -72,6 +73,16 @@ class Table:
         self.is_untold = held and (frame.model.is_loose or self.tells_slack)
         self.codes = np.stack([self._codes(), self._beyond_rest(slack) if self.is_kinked else slack])
         self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
+
+    def _whole_axes(self):
+        """The axes of the family. Of loose fibers a kink lies where one family is straight: on one side of it clamped ends
+        leave some slack. The two inner axes have one slope at each node, and are taken as they are.
+        """
+        whole = [self.frame.axis(name) for name in self.names]
+        outer = len(whole) - (2 if sum(axis.kind != LABEL for axis in whole) > 1 else 1)
+        if not self.frame.model.is_loose or self.family.kind not in (reference.LOADED, reference.LOCKED):
+            return whole
+        return [bent(axis, 0.0) if k < outer and axis.name in STRAIGHT else axis for k, axis in enumerate(whole)]
 
     def _place(self):
         """What :func:`place` has to know of the columns of a question."""
@@ -148,8 +159,10 @@ class Table:
         if self.has_flag:
             codes |= self._grid(flag).astype(np.uint8) << 4
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
-            some = [(self._grid(name) > 0.0).astype(np.uint8) for name in self.family.variables]
-            codes |= (self._beyond_rest(self._taut_nodes() | some[0] << 2 | some[1] << 3)) << 4
+            flags = self._taut_nodes()
+            for name, variable in self.family.variables.items():
+                flags = flags | (self._grid(name) > 0.0) * np.uint8(SLACK_FLAGS[variable])
+            codes |= self._beyond_rest(flags) << 4
         return codes
 
     def _beyond_rest(self, slack):
