@@ -9,7 +9,7 @@ import numpy as np
 from .. import closed_form
 from ..scaling import ACCURACIES
 from ..status import NOT_CONVERGED, VALUED
-from . import calibration, errors
+from . import calibration, errors, exact
 from .answer import Inquiry
 from .calibrate import calibrate, piece_scales
 from .family import FAMILIES, FAMILY_OF
@@ -50,6 +50,7 @@ def measured(data, designs=None) -> dict:
         names = [name for name in family.variables if name in data and FAMILY_OF[name] == key]
         if names and key != "limit":
             kinds.setdefault(family.kind, {})[key] = sorted(names, key=lambda name: name != "mid_radius")
+    exact.load()  # no thread shall import what others compile with
     with ThreadPoolExecutor(TOGETHER if data["status"].size <= MUCH else 1) as pool:
         found = list(pool.map(lambda families: _of_kind(reader, families, count), kinds.values()))
     found = {key: result for own in found for key, result in own.items()}
