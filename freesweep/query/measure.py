@@ -132,6 +132,7 @@ def _family(reader, key, names, inquiry, solve):
             return _compare(inquiry, name, places, exact[name][places], solved, interpolated, reader.tolerance)
 
         kept = dict(zip(names, pool.map(compare, names)))
+    table.release()
     places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
     good = np.ones(len(places), bool)
     for _, stated, _, allowed, _ in kept.values():

@@ -15,6 +15,7 @@ from .cells import Cells
 from .family import SLACK_FLAGS, TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
+from .locate import CLOSEST
 from .missing_nodes import cell_codes, fill, weights_beyond
 from .predictor import Predictor
 from .reference import COLUMNS
@@ -112,7 +113,9 @@ class Table:
         angles = [
             columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
         ]
-        self.options = (frame.fiber_share, by_length, self.family.status is not None, *angles)
+        # of loose fibers one family holds the wall on either side of where both have one angle
+        nearest = 0.0 if frame.model.is_loose and kind == reference.LOADED else CLOSEST
+        self.options = (frame.fiber_share, by_length, self.family.status is not None, nearest, *angles)
 
     @functools.cached_property
     def _nodes(self):
@@ -207,6 +210,10 @@ class Table:
                 self._spare.append(gone.values)
         for kept in (self._stored, self._errors):
             kept.pop(name, None)
+
+    def release(self):
+        """Let go of what was kept to be used again."""
+        self._spare.clear()
 
     def variable(self, name, side) -> Interpolant:
         """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
