@@ -105,7 +105,8 @@ def bent(axis: Axis, value) -> Axis:
     bend = int(at[0])
     below, above = make_axis(axis.name, axis.values[: bend + 1]), make_axis(axis.name, axis.values[bend:])
     weights = {
-        name: np.concatenate([getattr(below, name)[:-1], getattr(above, name)]) for name in ("left", "right", "remainder")
+        name: np.concatenate([getattr(below, name)[:-1], getattr(above, name)])
+        for name in ("left", "right", "remainder")
     }
     return replace(axis, first=np.concatenate([below.first[:-1], above.first + bend]), **weights, bend=bend)
 

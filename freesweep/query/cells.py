@@ -11,6 +11,7 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from .axis import LABEL, WINDOW
+from .doubts import corners, doubts_at
 from .spline import FIRST, LEFT, RIGHT, product_term
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
@@ -42,8 +43,6 @@ class Cells:
 
     def doubts(self, places, cell, pieces, shares, out):
         """Into ``out`` (n,) at ``places`` (k,) what :func:`.doubts.doubts_at` tells of points."""
-        from .doubts import doubts_at
-
         _, _, doubt, _, _, strides, windows, knots, _ = self._grid
         doubts_at(places, cell, pieces, shares, doubt, strides, windows, knots, out)
 
@@ -114,18 +113,6 @@ def _describe(cells, values, noise, doubt, doubtful, shape, strides, windows, kn
         out[NOISE], out[DOUBT] = loudest, worry
         for k in range(ROUGH + d):
             rows[n, k] = out[k]
-
-
-@kernel
-def corners(lines, cell, along, strides, windows):
-    """Corners of a cell into ``lines``, those at the near end of its edges ``along`` an axis (-1: all); returns how many."""
-    many, lines[0] = 1, cell
-    for b in range(len(strides)):
-        if b != along and windows[b] > 0:
-            for k in range(many):
-                lines[many + k] = lines[k] + strides[b]
-            many *= 2
-    return many
 
 
 @kernel
