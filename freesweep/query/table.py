@@ -212,8 +212,9 @@ class Table:
             kept.pop(name, None)
 
     def release(self):
-        """Let go of what was kept to be used again."""
-        self._spare.clear()
+        """Let go of the arrays of all variables."""
+        for kept in (self._variables, self._spare, self._stored, self._errors):
+            kept.clear()
 
     def variable(self, name, side) -> Interpolant:
         """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
