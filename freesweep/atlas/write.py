@@ -5,7 +5,9 @@ ours, which sees every fault; each chunk is read back before the file appears.
 """
 
 import math
+import struct
 import zlib
+from concurrent.futures import ThreadPoolExecutor
 from io import SEEK_END
 from itertools import product
 
@@ -19,8 +21,9 @@ from .store import FORMAT
 
 CHUNK = 1 << 16  # numbers in one chunk
 LEVEL = 1  # higher ones gain 3 %
-PIECE, NOISE = 4096, 0.95  # bytes that are tried, and the share of them that is not worth deflating
+PIECE, NOISE = 4096, 0.85  # bytes that are tried, and the share of them that is not worth deflating
 ZLIB, RAW, LAST_BLOCK = b"\x78\x01", -15, b"\x03\x00"  # head of a zlib stream, blocks without one, an empty last block
+STORED, STORED_BLOCK = (1 << 16) - 1, struct.Struct("<BHH")  # most bytes of a block that is not packed, and its head
 
 
 def chunks_of(shape) -> tuple:
@@ -54,10 +57,20 @@ def packed(array, shape) -> bytes:
     if size <= PIECE:
         return zlib.compress(content, LEVEL)
     pieces = [ZLIB]
-    for plane in content:
-        packer = zlib.compressobj(0 if _is_noise(plane) else LEVEL, zlib.DEFLATED, RAW)
-        pieces += [packer.compress(plane), packer.flush(zlib.Z_SYNC_FLUSH)]
+    for plane, noise in zip(content, _noisy(content)):
+        pieces += _stored(plane) if noise else _deflated(plane)
     return b"".join([*pieces, LAST_BLOCK, zlib.adler32(content).to_bytes(4, "big")])
+
+
+def _noisy(planes):
+    """Which planes of bytes (item, n) hardly become smaller: looked for from the last ones, the first of a number, on."""
+    found = [False] * len(planes)
+    for k in reversed(range(len(planes))):
+        if _is_noise(planes[k]):
+            found[k] = True
+            found[:k] = [True] * k if _is_noise(planes[0]) else [_is_noise(plane) for plane in planes[:k]]
+            break
+    return found
 
 
 def _is_noise(plane) -> bool:
@@ -65,6 +78,21 @@ def _is_noise(plane) -> bool:
     begin = (len(plane) - PIECE) // 2
     piece = plane[begin : begin + PIECE]
     return len(zlib.compress(piece, LEVEL)) > NOISE * len(piece)
+
+
+def _deflated(plane):
+    """Blocks of a zlib stream that hold a plane of bytes, and end where a byte does."""
+    packer = zlib.compressobj(LEVEL, zlib.DEFLATED, RAW)
+    return packer.compress(plane), packer.flush(zlib.Z_SYNC_FLUSH)
+
+
+def _stored(plane):
+    """Blocks of a zlib stream that hold a plane of bytes as it is."""
+    content = memoryview(plane)
+    for begin in range(0, len(content), STORED):
+        block = content[begin : begin + STORED]
+        yield STORED_BLOCK.pack(0, len(block), len(block) ^ 0xFFFF)
+        yield block
 
 
 class AtlasWriter:
@@ -127,10 +155,12 @@ class AtlasWriter:
         """Finish the file, read it back, and let it appear; without ``replace`` only where no file is: FileExistsError."""
         self._close()
         self.file.check()
-        if not self._is_as_written():
-            self.file.check()
-            raise self.file.misread()
-        last = seal(self.file.digest())
+        with ThreadPoolExecutor(1) as aside:
+            digest = aside.submit(self.file.digest)
+            if not self._is_as_written():
+                self.file.check()
+                raise self.file.misread()
+        last = seal(digest.result())
         place = self.file.seek(0, SEEK_END)
         self.file.write(last)
         self.file.check()

@@ -9,7 +9,7 @@ import sys
 
 from .calibrate import add_calibrate
 from .design import add_design
-from .draw import add_plot, check_map, draw_map
+from .draw import Map, add_plot, check_map
 from .explore import add_explore
 from .export import add_export
 from .interrupt import INTERRUPTED, SENTENCE, ends_in_time
@@ -170,19 +170,14 @@ def _run_sweep(options):
         warn_of(doubts_of(sweep), stacklevel=1)
         print(dry_run(sweep, out, options.threads))
         return
-    from ..sweep.run import run_sweep
+    from ..sweep.run import run
 
     with _executor(options) as executor:
-        atlas = run_sweep(
-            sweep,
-            out,
-            threads=options.threads,
-            executor=executor,
-            progress=not options.quiet,
-            overwrite=options.overwrite,
-        )
-    if options.map:
-        draw_map(atlas.data, options.map)
+        drawn = Map(options.map) if options.map else None
+        modules = drawn.modules if drawn else ()
+        atlas = run(sweep, out, options.threads, executor, not options.quiet, options.overwrite, 2, modules, drawn)
+    if drawn:
+        drawn.save(atlas.data)
 
 
 def _executor(options):

@@ -153,7 +153,7 @@ def _shape(kinds):
 
 
 def _run_shape(options):
-    from ..plot.style import SUFFIXES
+    from ..plot.suffixes import SUFFIXES
     from .single import inflated, tube_of
 
     out = _target(options, "shape.png", (*SUFFIXES, ".gif"))
@@ -191,7 +191,7 @@ def check_map(sweep, path):
     """Refuse a map that could not be drawn before anything is solved."""
     from pathlib import Path
 
-    from ..plot.style import SUFFIXES
+    from ..plot.suffixes import SUFFIXES
 
     faults = []
     if Path(path).suffix.lower() not in SUFFIXES:
@@ -207,20 +207,39 @@ def check_map(sweep, path):
         raise EnvironmentFault(f"--map: the folder {folder} {absent}")
 
 
-def draw_map(data, out):
-    """Draws the map of rotation over both fiber angles into a file."""
-    from ..plot.map import design_map
-    from ..plot.style import save
+class Map:
+    """The map of rotation over both fiber angles that a sweep draws into the file ``out``."""
 
-    save(design_map(data, "rotation"), out)
-    print(out)
+    modules = ("freesweep.plot.map", "matplotlib.backends.backend_agg")  # half a second to import
+
+    def __init__(self, out):
+        self.out, self.content = out, None
+
+    def __call__(self, data):
+        """Draw it, of a Dataset that is not an atlas yet."""
+        self.content = self._drawn(data)
+
+    def save(self, data):
+        """Write the file, once there is an atlas with that ``data``."""
+        from ..atlas.files import write_whole
+
+        write_whole(self.out, self.content or self._drawn(data))
+        print(self.out)
+
+    def _drawn(self, data):
+        from ..plot import map as maps
+        from ..plot import style
+
+        with style.context():
+            ax = style.new_figure(*maps.SIZE).add_subplot()  # no window shows it, so that any thread may draw it
+        return style.drawn(maps.design_map(data, "rotation", ax), self.out)
 
 
 def _target(options, default, suffixes=None):
     """The file to make, once its suffix (default: those of pictures) and the resolution are checked."""
     from pathlib import Path
 
-    from ..plot.style import SUFFIXES
+    from ..plot.suffixes import SUFFIXES
 
     out, suffixes = options.out or default, suffixes or SUFFIXES
     if Path(out).suffix.lower() not in suffixes:

@@ -19,11 +19,11 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
 from ..atlas.files import write_whole
+from .suffixes import SUFFIXES
 
 INCH = 25.4  # [mm]
 RESOLUTION = 300.0  # of PNG files [dots per inch]
 COLUMN, PAGE = 85.0, 170.0  # widths in print [mm]
-SUFFIXES = (".png", ".svg", ".pdf")
 
 INK = "#23272e"
 QUIET = "#6b717b"
@@ -181,6 +181,12 @@ def save(drawing: Axes | Figure, path: str | os.PathLike[str], resolution: float
     ``resolution`` is that of a PNG, and of shaded surfaces and map cells in the others [dots per inch].
     The file is complete or not there. Raises ValueError for any other suffix, OSError where the path cannot be written.
     """
+    write_whole(path, drawn(drawing, path, resolution))
+    return Path(path)
+
+
+def drawn(drawing: Axes | Figure, path: str | os.PathLike[str], resolution: float = RESOLUTION) -> bytes:
+    """What :func:`save` writes."""
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
@@ -192,5 +198,4 @@ def save(drawing: Axes | Figure, path: str | os.PathLike[str], resolution: float
     content = io.BytesIO()
     with context():
         figure.savefig(content, format=suffix[1:], dpi=resolution, metadata=undated)
-    write_whole(path, content.getvalue())
-    return path
+    return content.getvalue()

@@ -7,7 +7,7 @@ from ..status import DEGENERATE, INACCURATE, NOT_INTERPOLABLE, OK
 from . import errors, reference, spline
 from .calibration import CLEAR, FILLED, NEAR_HOLES
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
-from .family import LOOSE, MIRRORED, TOLD, TOLD_FROM
+from .family import LOOSE, MIRRORED, SLACK_FLAGS, TOLD, TOLD_FROM
 from .locate import place
 from .missing_nodes import MIXED
 from .slack import UNKNOWN
@@ -83,10 +83,22 @@ class Inquiry:
             found[some] = self.table.variable(name, side).cells.at(self.cell[some])
         return found
 
+    def doubts(self, name, known):
+        """How far end effects may be off for what was put into holes (n,), where it is ``known`` of the cells that any are
+        near.
+        """
+        found = np.zeros(self.size)
+        for side, some in self._by_side(np.flatnonzero((known[:, BESIDE] > 0.0) | (known[:, DOUBT] > 0.0))):
+            self.table.variable(name, side).cells.doubts(some, self.cell, self.pieces, self.shares, found)
+        return found
+
     def interpolated(self, name):
-        """End effects of one variable (n,), and what is known of the cells that they lie in (n, ROUGH + d)."""
+        """End effects of one variable (n,), what is known of the cells that they lie in (n, ROUGH + d), and how far they
+        may be off for what was put into holes (n,).
+        """
         name = TOLD_FROM.get(name, name)
-        return self.effects(name, self.orders()), self.known(name)
+        known = self.known(name)
+        return self.effects(name, self.orders()), known, self.doubts(name, known)
 
     def estimate(self, name, scales, interpolated=None):
         """``(value, estimate, bound, beside)``: interpolated, what the next order would add, what was stored wrongly, and
@@ -99,14 +111,24 @@ class Inquiry:
                 self._told = *self.table.predictor.worst_places(self.points, *told), beside
             *told, beside = self._told
             return *(array[list(TOLD).index(name)] for array in told), beside
-        effects, known = interpolated or self.interpolated(name)
-        doubt, rest = known[:, DOUBT].astype(float), self.rests(known, scales).sum(axis=1)
+        effects, known, doubt = interpolated or self.interpolated(name)
+        rest = self.rests(known, scales).sum(axis=1)
         beside = np.where(known[:, BESIDE] > 0.0, np.where(doubt > rest, FILLED, NEAR_HOLES), CLEAR)
         rest += doubt
         if self.method == LINEAR:
             rest += np.abs(effects - self.effects(name, np.zeros(len(self.table.axes), np.int64)))
         noise = known[:, NOISE].astype(float)
-        return *self._restored(name, slice(None), effects, rest, noise), beside
+        value, estimate, bound = self._restored(name, slice(None), effects, rest, noise)
+        if (variable := self.table.family.variables[name]) in SLACK_FLAGS:
+            value, estimate = self._share(SLACK_FLAGS[variable], value, estimate)
+        return value, estimate, bound, beside
+
+    def _share(self, flag, value, estimate):
+        """Shares of the length (n,) where a family is slack, and their estimates: none where none is at any corner of a
+        cell, whatever begins beyond it, and windows reach to.
+        """
+        none = (self.codes != MIXED) & (self.codes >> 4 & flag == 0)
+        return np.where(none, 0.0, np.clip(value, 0.0, 1.0)), np.where(none, estimate + np.abs(value), estimate)
 
     def rests(self, known, scales, places=slice(None)):
         """What the next order would add along each axis (k, d) at some places, from what is ``known`` of their cells.

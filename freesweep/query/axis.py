@@ -20,7 +20,8 @@ class Axis:
     """Nodes (n,) in the unit of the atlas, the coordinate's kind, and per piece i (from node i to i + 1):
 
     ``first`` (n,) where its window begins; ``left`` and ``right`` (n, 6) slopes at its ends times its width, as weights of
-    the window's nodes; ``remainder`` (n, 6): weights of what the next order would add in the middle of the piece.
+    the window's nodes; ``remainder`` (n, 6): weights of what the next order would add in the middle of the piece. ``bend``:
+    the node across which no window reaches; 0: there is none.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Axis:
     left: np.ndarray
     right: np.ndarray
     remainder: np.ndarray
+    bend: int = 0
 
     def forward(self, values):
         """The axis' coordinate at ``values``."""
@@ -93,6 +95,22 @@ def make_axis(name: str, values) -> Axis:
     return Axis(name, values, kind, nodes, first, left, right, remainder)
 
 
+def bent(axis: Axis, value) -> Axis:
+    """The axis without windows across the node with that ``value``, where numbers have a kink; as it is, if there are too
+    few nodes on either side for windows of their own, or no such node.
+    """
+    at = np.flatnonzero(axis.values == value)
+    if not len(at) or not WINDOW - 1 <= at[0] <= len(axis.nodes) - WINDOW:
+        return axis
+    bend = int(at[0])
+    below, above = make_axis(axis.name, axis.values[: bend + 1]), make_axis(axis.name, axis.values[bend:])
+    weights = {
+        name: np.concatenate([getattr(below, name)[:-1], getattr(above, name)])
+        for name in ("left", "right", "remainder")
+    }
+    return replace(axis, first=np.concatenate([below.first[:-1], above.first + bend]), **weights, bend=bend)
+
+
 def part_of(axis: Axis, start, stop) -> Axis:
     """Nodes ``start`` to ``stop`` of an axis; pieces whose window lies among them keep it, others have one that does."""
     if stop - start == len(axis.nodes):
@@ -107,8 +125,13 @@ def part_of(axis: Axis, start, stop) -> Axis:
     return replace(part, first=first, left=weights[0], right=weights[1], remainder=weights[2])
 
 
-def ranks(count) -> np.ndarray:
-    """Which of calibration.RANKS each piece of an axis of ``count`` nodes is; (count,)."""
+def ranks(axis: Axis) -> np.ndarray:
+    """Which of calibration.RANKS each piece of an axis is; (n,). One with a bend is two."""
+    count = len(axis.nodes)
+    return np.concatenate([_ranks(axis.bend + 1)[:-1], _ranks(count - axis.bend)]) if axis.bend else _ranks(count)
+
+
+def _ranks(count):
     piece = np.arange(count)
     from_end = count - 2 - piece
     return np.where((piece < 2) & (piece <= from_end), piece, np.where(from_end < 2, np.minimum(4 - from_end, 4), 2))

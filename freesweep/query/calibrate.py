@@ -1,5 +1,7 @@
 """The least factors with which stated errors hold, found from true errors at many designs."""
 
+import functools
+
 import numpy as np
 
 from . import calibration, errors
@@ -47,17 +49,24 @@ def calibrate(error, estimate, bound, size, beside, allowed) -> calibration.Fact
 def _by_class(needed, classes, beside):
     """Largest factor but a few of each class, as it lies to holes; classes with few designs ask their neighbours."""
     known = np.isfinite(needed)
-    lists = [[needed[known & (classes == k) & (beside == kind)] for k in range(CLASSES)] for kind in range(LYING)]
+    key = (np.asarray(beside, np.int8) * CLASSES + classes.astype(np.int8))[known]
+    order = np.argsort(key, kind="stable")
+    numbers, edges = needed[known][order], np.searchsorted(key[order], np.arange(LYING * CLASSES + 1))
+
+    @functools.cache
+    def factor(first, last):
+        return float(f"{max(SMALLEST, _high(numbers[edges[first] : edges[last]])):.3g}")
+
     found = np.empty((LYING, CLASSES))
-    for kind, own in enumerate(lists):
+    for kind in range(LYING):
         for k in range(CLASSES):
             for reach in range(CLASSES):
-                near = own[max(k - reach, 0) : k + reach + 1]
-                if sum(map(len, near)) >= ENOUGH:
+                first, last = kind * CLASSES + max(k - reach, 0), kind * CLASSES + min(k + reach + 1, CLASSES)
+                if edges[last] - edges[first] >= ENOUGH:
                     break
             else:  # too few of the kind: all designs
-                near = [numbers for other in lists for numbers in other]
-            found[kind, k] = float(f"{max(SMALLEST, _high(np.concatenate(near))):.3g}")
+                first, last = 0, LYING * CLASSES
+            found[kind, k] = factor(first, last)
     return found
 
 
@@ -66,7 +75,15 @@ def _high(numbers):
     if not len(numbers):
         return calibration.UNMEASURED
     few = max(1.0 + FEW / len(numbers), (BEYOND * len(numbers)) ** -TAIL)
-    return few * np.quantile(numbers, 1.0 - BEYOND)
+    return few * _quantile(numbers, 1.0 - BEYOND)
+
+
+def _quantile(numbers, share):
+    """As ``np.quantile``, which takes longer to begin than a few numbers to be put in order."""
+    place = share * (len(numbers) - 1)
+    low, high = int(place), min(int(place) + 1, len(numbers) - 1)
+    sorted_there = np.partition(numbers, (low, high))
+    return sorted_there[low] + (place - low) * (sorted_there[high] - sorted_there[low])
 
 
 def piece_scales(inquiry, name, interpolated, places, exact):
@@ -86,12 +103,12 @@ def piece_scales(inquiry, name, interpolated, places, exact):
     summed = table.family.variables[name] != MID_RADIUS and name not in TOLD_FROM
     if use.sum() < SPEAK or not summed:  # an estimate that is no sum over axes
         return scales
-    usual = np.quantile(ratio[use & alone.any(axis=1)], HIGH) if (use & alone.any(axis=1)).any() else 0.0
+    usual = _quantile(ratio[use & alone.any(axis=1)], HIGH) if (use & alone.any(axis=1)).any() else 0.0
     for a in range(len(table.axes)):
         ranks = table.knots[a, pieces[:, a], RANK]
         for rank in range(RANKS):
             mine = ratio[use & alone[:, a] & (ranks == rank)]
             if len(mine) >= SPEAK and usual > 0.0:
-                scale = np.clip(np.quantile(mine, HIGH) / usual, 1.0 / WIDEST, WIDEST)
+                scale = np.clip(_quantile(mine, HIGH) / usual, 1.0 / WIDEST, WIDEST)
                 scales[a, rank] = float(f"{scale:.3g}")
     return scales

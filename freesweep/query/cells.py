@@ -11,7 +11,8 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from .axis import LABEL, WINDOW
-from .spline import FIRST, LEFT, RIGHT
+from .doubts import corners, doubts_at
+from .spline import FIRST, LEFT, RIGHT, product_term
 
 NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; one of roughness for each axis
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
@@ -33,10 +34,17 @@ class Cells:
         weights = np.zeros((len(axes), knots.shape[1], WINDOW))  # of what the next order would add
         for own, axis in zip(weights, axes):
             own[: len(axis.nodes)] = axis.remainder
-        self._grid = values, noise, doubt, shape, strides, windows, knots, weights
+        inner = int(np.prod(shape[-2:]))  # nodes of one block of the last two axes
+        doubtful = doubt.reshape(-1, inner).any(axis=1)  # few blocks are: what others hold need not be looked at
+        self._grid = values, noise, doubt, doubtful, shape, strides, windows, knots, weights
         self._slots = np.zeros(len(values), np.int32)  # of each cell in what is known; 0: nothing yet
         self._rows, self._count = np.empty((FIRST_ROWS, ROUGH + len(axes)), np.float32), 1
         self._lock = Lock()
+
+    def doubts(self, places, cell, pieces, shares, out):
+        """Into ``out`` (n,) at ``places`` (k,) what :func:`.doubts.doubts_at` tells of points."""
+        _, _, doubt, _, _, strides, windows, knots, _ = self._grid
+        doubts_at(places, cell, pieces, shares, doubt, strides, windows, knots, out)
 
     def at(self, cells) -> np.ndarray:
         """What is known of cells (n,): (n, ROUGH + d)."""
@@ -60,90 +68,108 @@ class Cells:
 
 
 @entry_point
-def _describe(cells, values, noise, doubt, shape, strides, windows, knots, weights, rows):
+def _describe(cells, values, noise, doubt, doubtful, shape, strides, windows, knots, weights, rows):
     """Into ``rows`` (k, ROUGH + d) what is known of ``cells`` (k,)."""
     d = len(shape)
-    lines, out = np.empty(1 << d, np.int64), np.empty(ROUGH + d)
-    around, sums = np.empty((3, WINDOW + 2)), np.empty(3)
+    lines, blocks, out = np.empty(1 << d, np.int64), np.empty(1 << d, np.int64), np.empty(ROUGH + d)
+    around = np.empty((3, WINDOW + 2))
+    inner = shape[d - 1] * shape[d - 2]
+    apart = strides // inner  # blocks from node to node: 0 along the last two axes
     for n in range(len(cells)):
         cell = cells[n]
         for k in range(ROUGH + d):
             out[k] = 0.0
+        many = corners(lines, cell, -1, strides, windows)
+        loudest, worry = 0.0, 0.0
+        for k in range(many):
+            loudest, worry = max(loudest, noise[lines[k]]), max(worry, doubt[lines[k]])
         for a in range(d):
             if windows[a] == 0:  # labels have nothing beside them
                 continue
             count, step = shape[a], strides[a]
             piece = (cell // step) % count
-            many, lines[0] = 1, cell
-            for b in range(d):
-                if b != a and windows[b] > 0:
-                    for k in range(many):
-                        lines[many + k] = lines[k] + strides[b]
-                    many *= 2
-            low, high = all_around(around, knots[a], weights[a], windows[a], piece, count)
+            many = corners(lines, cell, a, strides, windows)
+            corners(blocks, cell // inner, a, apart, windows)
+            low, high, many_around = all_around(around, knots[a], weights[a], windows[a], piece, count)
             first = int(knots[a, piece, FIRST])
-            worst, loudest, doubtful = 0.0, out[NOISE], out[DOUBT]
+            worst = 0.0
             for k in range(many):
                 at = lines[k]
                 begin = at - piece * step
-                for i in range(3):
-                    sums[i] = 0.0
-                for j in range(high - low):
-                    number = values[begin + (low + j) * step]
-                    for i in range(3):
-                        sums[i] += around[i, j] * number
-                if not math.isfinite(
-                    sums[0] + sums[1] + sums[2]
-                ):  # numbers of weight zero do not count, whatever they are
-                    for i in range(3):
-                        sums[i] = 0.0
-                        for j in range(high - low):
-                            if around[i, j] != 0.0:
-                                sums[i] += around[i, j] * values[begin + (low + j) * step]
-                        sums[i] = sums[i] if math.isfinite(sums[i]) else math.inf
-                worst = max(worst, smoothed(sums, piece, count))
-                for j in range(windows[a]):
-                    lacks = doubt[begin + (first + j) * step]
-                    if lacks > 0.0:
-                        share = STEEPEST * (abs(knots[a, piece, LEFT + j]) + abs(knots[a, piece, RIGHT + j]))
-                        out[BESIDE], doubtful = 1.0, max(doubtful, share * lacks)
-                for j in range(2):
-                    doubtful = max(doubtful, doubt[at + j * step])
-                    loudest = max(loudest, noise[at + j * step])
+                before, here, after = rough_line(around, values, begin + low * step, step, high - low)
+                worst = max(worst, smoothed(before, here, after, many_around))
                 if piece > 0:
                     loudest = max(loudest, WEIGHT * noise[at - step])
                 if piece + 2 < count:
                     loudest = max(loudest, WEIGHT * noise[at + 2 * step])
-            out[ROUGH + a], out[NOISE], out[DOUBT] = worst, loudest, doubtful
+            out[ROUGH + a] = worst
+            for j in range(windows[a]):
+                for k in range(many):
+                    if doubtful[blocks[k] + (first + j - piece) * apart[a]]:
+                        lacks = doubt[lines[k] + (first + j - piece) * step]
+                        if lacks > 0.0:
+                            share = STEEPEST * (abs(knots[a, piece, LEFT + j]) + abs(knots[a, piece, RIGHT + j]))
+                            out[BESIDE], worry = 1.0, max(worry, share * lacks)
+        out[NOISE], out[DOUBT] = loudest, worry
         for k in range(ROUGH + d):
             rows[n, k] = out[k]
 
 
 @kernel
+def rough_line(around, values, begin, step, many):
+    """What the next order would add in the piece before, in a piece, and in the one after it, on a line of nodes that
+    ``around`` weighs: ``many`` of them, from ``begin`` on.
+    """
+    before = here = after = 0.0
+    for j in range(many):
+        number = values[begin + j * step]
+        before += around[0, j] * number
+        here += around[1, j] * number
+        after += around[2, j] * number
+    if math.isfinite(before + here + after):
+        return before, here, after
+    before = here = after = 0.0
+    for j in range(many):
+        number = values[begin + j * step]
+        before += product_term(around[0, j], number)
+        here += product_term(around[1, j], number)
+        after += product_term(around[2, j], number)
+    return (
+        before if math.isfinite(before) else math.inf,
+        here if math.isfinite(here) else math.inf,
+        after if math.isfinite(after) else math.inf,
+    )
+
+
+@kernel
 def all_around(around, knots, weights, window, piece, count):
     """Into ``around`` (3, WINDOW + 2) the weights of what the next order would add in the piece before, in a piece, and in
-    the one after it; returns which nodes of the axis they are of: (first, last + 1).
+    the one after it; returns which nodes of the axis they are of, (first, last + 1), and how many pieces they are.
+
+    A piece on the other side of a bend, where windows do not overlap as elsewhere, is not beside this one.
     """
-    low = int(knots[max(piece - 1, 0), FIRST])
-    high = int(knots[min(piece + 1, count - 2), FIRST]) + window
+    own, many = int(knots[piece, FIRST]), 1
+    low = high = own
+    for i in range(0, 3, 2):
+        other = piece - 1 + i
+        if 0 <= other < count - 1 and abs(int(knots[other, FIRST]) - own) <= 1:
+            low, high = min(low, int(knots[other, FIRST])), max(high, int(knots[other, FIRST]))
+            many += 1
+    high += window
     for i in range(3):
         for j in range(high - low):
             around[i, j] = 0.0
         other = piece - 1 + i
-        if 0 <= other < count - 1:
+        if 0 <= other < count - 1 and abs(int(knots[other, FIRST]) - own) <= 1:
             for j in range(window):
                 around[i, int(knots[other, FIRST]) + j - low] = weights[other, j]
-    return low, high
+    return low, high, many
 
 
 @kernel
-def smoothed(sums, piece, count):
-    """A remainder may vanish by chance in one piece: it is no less than in both beside it.
+def smoothed(before, here, after, many):
+    """A remainder may vanish by chance in one piece: it is no less than in both beside it, or in the only one that is.
 
     Not the larger of those: a coarse or wild piece says nothing of a fine one beside it.
     """
-    if piece == 0 or piece == count - 2:
-        beside = abs(sums[0] + sums[2]) if count > 2 else 0.0  # one of them is not there
-    else:
-        beside = min(abs(sums[0]), abs(sums[2]))
-    return max(abs(sums[1]), beside)
+    return max(abs(here), min(abs(before), abs(after)) if many == 3 else abs(before + after))

@@ -1,5 +1,6 @@
 """Exact solution at points of an atlas, many in one call: the only door from the query to the solver."""
 
+import importlib
 import os
 from concurrent.futures import ThreadPoolExecutor
 
@@ -19,7 +20,14 @@ from . import reference
 from .reference import COLUMNS
 
 CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
+LATER = ("..solver.batch", "..solver.hold_batch", "..solver.lanes.by_middle", "..solver.lanes.held", ".physical_tube")
 SHARE = 512  # points that one thread solves at a time
+
+
+def load():
+    """Import what is imported where it is first needed: no thread may do so while another compiles."""
+    for name in LATER:
+        importlib.import_module(name, __package__)
 
 
 def solve(

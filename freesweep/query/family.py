@@ -41,6 +41,7 @@ TOLD = {  # from the radius in the middle, by the first integral
     "least_tension_alpha": r.LEAST_TENSION_ALPHA,
     "least_tension_beta": r.LEAST_TENSION_BETA,
 }
+SLACK_FLAGS = {r.SLACK_ALPHA: 4, r.SLACK_BETA: 8}  # of nodes, beside which families pull in the middle: slack somewhere
 TOLD_FROM = dict.fromkeys(TOLD, "mid_radius")
 PULLS = ("least_tension_alpha", "least_tension_beta")  # less well than the others
 TABLE_OF = {"tension": "state"}  # families that are told from another's table

@@ -1,6 +1,8 @@
 """The points of a grid, slab by slab along its first axis, without a list of all of them."""
 
 import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -22,20 +24,23 @@ class GridPoints:
         self.shape = tuple(len(axis.nodes) for axis in axes)
 
     def slabs(self):
-        """Points (slab, 17) of each slab in turn, in an array that is used again."""
+        """Points (slab, 17) of each slab in turn."""
+        return (self.slab(k) for k in range(self.shape[0]))
+
+    def slab(self, k):
+        """Points (slab, 17) of one slab."""
         points = np.empty((*self.shape[1:], len(COLUMNS)))
-        for k in range(self.shape[0]):
-            points[...] = self.fixed[k if self.axes[0].kind == LABEL else 0]
-            for a, (axis, column) in enumerate(zip(self.axes, self.columns)):
-                if column >= 0:
-                    along = [-1 if other == a else 1 for other in range(1, len(self.shape))]
-                    points[..., column] = axis.values[k] if a == 0 else axis.values.reshape(along)
-            if self.fiber_share >= 0.0:
-                inside = self.fiber_share * points[..., WALL] if self.fiber_share > 0.0 else 0.0
-                points[..., FIBERS] = points[..., RADIUS] + inside
-            if self.by_length:
-                points[..., HELD] /= points[..., LENGTH]
-            yield points.reshape(-1, len(COLUMNS))
+        points[...] = self.fixed[k if self.axes[0].kind == LABEL else 0]
+        for a, (axis, column) in enumerate(zip(self.axes, self.columns)):
+            if column >= 0:
+                along = [-1 if other == a else 1 for other in range(1, len(self.shape))]
+                points[..., column] = axis.values[k] if a == 0 else axis.values.reshape(along)
+        if self.fiber_share >= 0.0:
+            inside = self.fiber_share * points[..., WALL] if self.fiber_share > 0.0 else 0.0
+            points[..., FIBERS] = points[..., RADIUS] + inside
+        if self.by_length:
+            points[..., HELD] /= points[..., LENGTH]
+        return points.reshape(-1, len(COLUMNS))
 
 
 class GridStates:
@@ -52,8 +57,15 @@ class GridStates:
             if column >= 0 and COLUMNS[column] in without:
                 fixed[:, column] = axis.values[0]
         own = GridPoints(axes, columns, fixed, points.fiber_share, points.by_length)
-        found = [predictor.states(kind, slab) for slab in own.slabs()]
-        self.states = np.concatenate(found).reshape(*self.shape, found[0].shape[1])
+        first = predictor.states(kind, own.slab(0))
+        states = np.empty((own.shape[0], *first.shape))
+
+        def solve(k):
+            states[k] = predictor.states(kind, own.slab(k)) if k > 0 else first
+
+        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+            list(pool.map(solve, range(own.shape[0])))
+        self.states = states.reshape(*self.shape, first.shape[1])
         self.points, self.whole = points, points.shape
 
     def slab(self, k):
@@ -87,10 +99,18 @@ def _end_effects(
     good, apart, effects, noise,
 ):  # fmt: skip
     index, point = np.zeros(len(shape), np.int64), np.empty(fixed.shape[1])
+    last = len(shape) - 1
+    column = columns[last]  # what else of a point it changes
+    alone = column != RADIUS and column != WALL and column != LENGTH and column != HELD and (last > 0 or not labelled)
+    row = 0
     for k in range(len(stored)):
         effects[k], noise[k] = math.nan, 0.0
-        if good[k]:
+        if index[last] == 0 or not alone:
             row = put(point, index, values, columns, steps, fixed, labelled, fiber_share, by_length)
+        else:
+            row += steps[last]
+            if column >= 0:
+                point[column] = values[last, index[last]]
         if good[k] and not (apart and point[ALPHA] == point[BETA]):
             if len(terms) > 0:
                 term = terms[k, 0], terms[k, 1], terms[k, 2]
@@ -98,7 +118,7 @@ def _end_effects(
                 term = reference(variable, point, states[row])
             args = point[PRESSURE], states[row, 0], states[row, 3], term, stored[k], errors[k]
             effects[k], noise[k] = end_effect(variable, kind, *args)
-        a = len(shape) - 1
+        a = last
         index[a] += 1
         while index[a] == shape[a] and a > 0:
             index[a] = 0

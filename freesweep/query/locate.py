@@ -49,12 +49,13 @@ def place(
 
     ``fixed`` (designs, 17): what the atlas fixes of a point. ``options``: share of the wall inside the fibers (-1: their
     radius is given), whether
-    HELD is given as a length, whether there are statuses; which of what is asked are both angles and the design (-1: none).
+    HELD is given as a length, whether there are statuses; how near to one angle a cell may hold designs [degree]; which of
+    what is asked are both angles and the design (-1: none).
     ``codes`` and ``cells`` (2, nodes): codes, and those of slack fibers, of the nodes and of their cells. Out: ``points``
     (n, 17), ``pieces`` and ``shares`` (n, d), ``marks`` (n, 7): status, code, code of slack fibers, cell, node (-1: between
     nodes), 1 if exchanged, 1 if mirrored.
     """
-    fiber_share, by_length, has_status, a, b, design = options
+    fiber_share, by_length, has_status, nearest, a, b, design = options
     d, many = len(strides), asked.shape[1]
     row = np.empty(many)
     angles = a >= 0 and b >= 0
@@ -119,7 +120,7 @@ def place(
                         status = DEGENERATE
                     elif abs(alpha - beta) < CLOSEST or max(abs(alpha), abs(beta)) >= LARGEST:
                         status = INVALID
-                    elif least < CLOSEST and most > -CLOSEST:
+                    elif least < nearest and most > -nearest:
                         status = NOT_INTERPOLABLE
         marks[k, 0], marks[k, 3], marks[k, 4] = status, cell, node if exact else -1
         marks[k, 5], marks[k, 6] = exchanged, mirrored

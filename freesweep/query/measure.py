@@ -1,5 +1,6 @@
 """An atlas measures itself: random designs between its nodes are solved exactly and compared with what it would answer."""
 
+import functools
 import json
 from concurrent.futures import ThreadPoolExecutor
 
@@ -8,13 +9,14 @@ import numpy as np
 from .. import closed_form
 from ..scaling import ACCURACIES
 from ..status import NOT_CONVERGED, VALUED
-from . import calibration, errors
+from . import calibration, errors, exact
 from .answer import Inquiry
 from .calibrate import calibrate, piece_scales
 from .family import FAMILIES, FAMILY_OF
 from .query import Reader
 from .reference import ALPHA, BETA
 from .refine import solved_states, told_of
+from .table import MUCH, TOGETHER
 
 SEED = 20260101
 MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
@@ -41,27 +43,48 @@ def measured(data, designs=None) -> dict:
     reader = Reader(data)
     if not reader.frame.in_numbers:
         return {}
-    answered, variables, solved = {}, {}, {}
     least, most = (LEAST, MOST) if reader.frame.bodies is None else BODIES
     count = designs or int(np.clip(data["status"].size // EACH, least, most))
+    kinds = {}  # of states that are solved: their families
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data and FAMILY_OF[name] == key]
-        names.sort(key=lambda name: name != "mid_radius")
-        if key == "limit" or not names or not reader.table(key).names:
-            continue
-        table = reader.table(key)
-        inquiry = Inquiry(table, _draw(reader, table, count // (HELD_SHARE if key.startswith("blocked") else 1)))
-        inquiry.flags()
-        kind = family.kind, tuple(table.names)
-        if kind not in solved:  # once for all that is told of it
-            solved[kind] = _solved(reader, key, inquiry)
-        answered[key], results = _family(reader, key, names, inquiry, told_of(reader, key, names, solved[kind]))
-        variables |= results
+        if names and key != "limit":
+            kinds.setdefault(family.kind, {})[key] = sorted(names, key=lambda name: name != "mid_radius")
+    exact.load()  # no thread shall import what others compile with
+    with ThreadPoolExecutor(TOGETHER if data["status"].size <= MUCH else 1) as pool:
+        found = list(pool.map(lambda families: _of_kind(reader, families, count), kinds.values()))
+    found = {key: result for own in found for key, result in own.items()}
+    found = {key: found[key] for key in FAMILIES if key in found}
     head = {"designs": count, "seed": SEED, "estimates": calibration.ESTIMATES}
-    return head | {"answered": answered, "variables": variables}
+    return head | {
+        "answered": {key: share for key, (share, _) in found.items()},
+        "variables": {name: result for _, results in found.values() for name, result in results.items()},
+    }
 
 
-def _solved(reader, key, inquiry):
+def _of_kind(reader, families, count):
+    """Share answered and what was measured of the variables (key -> names) of ``families`` that tell of the same states."""
+    found, solved = {}, {}
+    for key, names in families.items():
+        table = reader.table(key)
+        if not table.names:
+            continue
+        inquiry = Inquiry(table, _draw(reader, table, count // (HELD_SHARE if key.startswith("blocked") else 1)))
+        solve = functools.partial(_solved, reader, key, inquiry, solved)
+        found[key] = _family(reader, key, names, inquiry, solve)
+    return found
+
+
+def _solved(reader, key, inquiry, known):
+    """Exact states (n,) by name where numbers are given: those ``known`` by the axes that they vary in, or found for it."""
+    inquiry.flags()
+    axes = tuple(inquiry.table.names)
+    if axes not in known:
+        known[axes] = _solve(reader, key, inquiry)
+    return known[axes]
+
+
+def _solve(reader, key, inquiry):
     """Exact states (n,) by name where numbers are given: what vectors do not find is not solved, but for held physical
     tubes, of which they know nothing.
     """
@@ -91,16 +114,26 @@ def _draw(reader, table, count):
     return reader.complete(values, count)
 
 
-def _family(reader, key, names, inquiry, exact):
-    """Share answered of one family, and what was measured of its variables, from ``exact`` answers (n,) by name."""
+def _family(reader, key, names, inquiry, solve):
+    """Share answered of one family, and what was measured of its variables, beside exact states that ``solve()`` gives.
+
+    These are solved while the first tables are made.
+    """
     table = inquiry.table
+    with ThreadPoolExecutor(1) as aside, ThreadPoolExecutor(table.together) as pool:
+        solving = aside.submit(solve)
+
+        def compare(name):
+            interpolated = inquiry.interpolated(name)
+            states = solving.result()
+            places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
+            exact = told_of(reader, key, [name], states)
+            solved = np.isin(exact[FAMILIES[key].answer_status][places], VALUED)
+            return _compare(inquiry, name, places, exact[name][places], solved, interpolated, reader.tolerance)
+
+        kept = dict(zip(names, pool.map(compare, names)))
+    table.release()
     places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
-    exact = {name: array[places] for name, array in exact.items()}
-    solved = np.isin(exact[FAMILIES[key].answer_status], VALUED)
-    with ThreadPoolExecutor(table.together) as pool:
-        kept = dict(
-            zip(names, pool.map(lambda name: _compare(inquiry, name, places, exact[name], solved, reader), names))
-        )
     good = np.ones(len(places), bool)
     for _, stated, _, allowed, _ in kept.values():
         good &= stated <= allowed
@@ -112,7 +145,7 @@ def _family(reader, key, names, inquiry, exact):
         for region in ("all", *REGIONS):
             where = np.ones(inquiry.size, bool) if region == "all" else regions == region
             if where.any():
-                pick = where[places] & good
+                pick = where[places] & good & np.isfinite(error)  # what was solved
                 rows[region] = _row(int(where.sum()), answered[where].mean(), error[pick], stated[pick], size[pick])
         axes = {axis.name: row.tolist() for axis, row in zip(table.axes, factors.scales) if np.any(row != 1.0)}
         found = {"factors": factors.classes.tolist(), "bound": factors.bound, "scales": axes}
@@ -120,14 +153,13 @@ def _family(reader, key, names, inquiry, exact):
     return float(answered.mean()), results
 
 
-def _compare(inquiry, name, places, exact, solved, reader):
+def _compare(inquiry, name, places, exact, solved, interpolated, tolerance):
     """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared."""
-    interpolated = inquiry.interpolated(name)
     scales = piece_scales(inquiry, name, interpolated, places, np.where(solved, exact, np.nan))
     value, estimate, bound, beside = inquiry.estimate(name, scales, interpolated)
     size = inquiry.natural_size(name, value)[places]
     value, estimate, bound, beside = value[places], estimate[places], bound[places], beside[places]
-    allowed = reader.tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
+    allowed = tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
     error = np.where(solved, np.abs(value - exact), np.inf)
     factors = calibrate(error, estimate, bound, size, beside, allowed)._replace(scales=scales)
     inquiry.table.forget(name)

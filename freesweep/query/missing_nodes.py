@@ -12,7 +12,6 @@ import numpy as np
 from ..jit import entry_point, kernel
 from ..status import INACCURATE, OK
 from .axis import lagrange
-from .spline import FIRST, LEFT, RIGHT, product_term
 
 SWEEPS = 6  # how far from good nodes numbers are put, in steps along the axes: windows reach two nodes beyond a cell
 REACH = 4  # nodes along an axis that a hole looks at, on either side
@@ -127,6 +126,25 @@ def weights_beyond(nodes, shape):
 
 
 @entry_point
+def with_numbers_beside(values, holes, shape, strides, seen, found):
+    """Put those of ``holes`` (k,) that lie beside nodes with numbers into ``found`` (nodes,), and mark them as ``seen``
+    (nodes,); returns how many.
+    """
+    many = 0
+    for k in range(len(holes)):
+        beside, at = False, holes[k]
+        for a in range(len(shape)):
+            index, step = (at // strides[a]) % shape[a], strides[a]
+            beside = beside or (index > 0 and math.isfinite(values[at - step]))
+            beside = beside or (index + 1 < shape[a] and math.isfinite(values[at + step]))
+        if beside:
+            seen[at] = True
+            found[many] = at
+            many += 1
+    return many
+
+
+@entry_point
 def beside_numbers(values, around, shape, strides, seen, found):
     """Put the nodes without numbers that lie beside nodes ``around`` (k,), and were not ``seen`` (nodes,) before, into
     ``found`` (nodes,); returns how many.
@@ -144,16 +162,18 @@ def beside_numbers(values, around, shape, strides, seen, found):
     return many
 
 
-def fill(values, shape, strides, nodes):
-    """Put numbers on the NaN of ``values`` (nodes,) that lie beside numbers; returns how doubtful each is (nodes,)."""
-    doubt = np.zeros(len(values), np.float32)
-    numbered = np.isfinite(values)
-    if numbered.all() or not numbered.any():
+def fill(values, shape, strides, nodes, beyond=None):
+    """Put numbers on the NaN of ``values`` (nodes,) that lie beside numbers; returns how doubtful each is (nodes,).
+
+    ``beyond``: :func:`weights_beyond` of the axes, where it is known.
+    """
+    doubt, holes = np.zeros(len(values), np.float32), np.flatnonzero(~np.isfinite(values))
+    if len(holes) in (0, len(values)):
         return doubt
-    beyond, seen = weights_beyond(nodes, shape), np.zeros(len(values), bool)
-    new, left, beside = np.flatnonzero(numbered), np.empty(0, np.int64), np.empty(len(values), np.int64)
+    beyond = weights_beyond(nodes, shape) if beyond is None else beyond
+    seen, beside = np.zeros(len(values), bool), np.empty(len(holes), np.int64)
+    bad = beside[: with_numbers_beside(values, holes, shape, strides, seen, beside)].copy()
     for _ in range(SWEEPS):
-        bad = np.concatenate([left, beside[: beside_numbers(values, new, shape, strides, seen, beside)]])
         if not len(bad):
             break
         numbers, doubts = np.empty((2, len(bad)))
@@ -161,47 +181,8 @@ def fill(values, shape, strides, nodes):
         put = np.isfinite(numbers)
         new, left = bad[put], bad[~put]
         values[new], doubt[new] = numbers[put], doubts[put]
+        bad = np.concatenate([left, beside[: beside_numbers(values, new, shape, strides, seen, beside)]])
     return doubt
-
-
-@entry_point
-def slopes(table, source, column, nodes, knots, window, step):
-    """Put slopes of a column of ``table`` (nodes, NODE) into another, along an axis with ``nodes`` that are ``step`` apart.
-
-    Where the window of a node has holes, from the nodes next to it.
-    """
-    count, weights = len(nodes), np.empty(window)
-    for block in range(len(table) // (count * step)):
-        for index in range(count):
-            own = min(index, count - 2)
-            side, width = LEFT if own == index else RIGHT, nodes[own + 1] - nodes[own]
-            for j in range(window):
-                weights[j] = knots[own, side + j] / width
-            begin = (block * count + int(knots[own, FIRST])) * step
-            for at in range((block * count + index) * step, (block * count + index + 1) * step):
-                total = 0.0
-                for j in range(window):
-                    total += weights[j] * table[begin + j * step, source]
-                if not math.isfinite(total):  # nodes of weight zero do not count
-                    total = 0.0
-                    for j in range(window):
-                        total += product_term(weights[j], table[begin + j * step, source])
-                table[at, column] = total if math.isfinite(total) else beside(table, source, nodes, at, index, step)
-                begin += 1
-
-
-@kernel
-def beside(table, source, nodes, at, index, step):
-    """The slope at a node from those next to it."""
-    before = after = math.nan
-    if index > 0:
-        before = (table[at, source] - table[at - step, source]) / (nodes[index] - nodes[index - 1])
-    if index + 1 < len(nodes):
-        after = (table[at + step, source] - table[at, source]) / (nodes[index + 1] - nodes[index])
-    if math.isfinite(before) and math.isfinite(after):
-        h, k = nodes[index] - nodes[index - 1], nodes[index + 1] - nodes[index]
-        return (k * before + h * after) / (h + k)
-    return before if math.isfinite(before) else after
 
 
 @kernel

@@ -2,6 +2,7 @@
 
 import functools
 from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
@@ -9,19 +10,22 @@ import numpy as np
 from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
-from .axis import LABEL, WINDOW, make_axis, part_of, ranks
+from .axis import LABEL, WINDOW, bent, make_axis, part_of, ranks
 from .cells import Cells
-from .family import TOLD_FROM, family_of
+from .family import SLACK_FLAGS, TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
 from .grid_axes import DEFAULTS
-from .missing_nodes import cell_codes, fill, slopes
+from .locate import CLOSEST
+from .missing_nodes import cell_codes, fill, weights_beyond
 from .predictor import Predictor
 from .reference import COLUMNS
+from .slopes import tabulate
 from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
 HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
 HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
+STRAIGHT = ("alpha", "beta")  # axes that have a family of straight fibers where they are 0
 TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
@@ -46,19 +50,20 @@ class Table:
         self.predictor = Predictor(frame.model, frame.energy, frame.bodies, frame.families)
         self.names = frame.axes_of(self.family.variables)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
-        whole = [frame.axis(name) for name in self.names]
-        self.ranks = [ranks(len(axis.nodes))[slice(*self.box[axis.name])] for axis in whole]
+        whole = self._whole_axes()
+        self.ranks = [ranks(axis)[slice(*self.box[axis.name])] for axis in whole]
         self.axes = [part_of(axis, *self.box[axis.name]) for axis in whole]
         self.padding = max(0, 2 - sum(axis.kind != LABEL for axis in self.axes))
-        self.axes += [make_axis(f"none {k}", [0.0, 1.0]) for k in range(self.padding)]
-        self.ranks += [ranks(2)] * self.padding
+        none = [make_axis(f"none {k}", [0.0, 1.0]) for k in range(self.padding)]
+        self.axes, self.ranks = self.axes + none, self.ranks + [ranks(axis) for axis in none]
         self.shape = np.array([len(axis.nodes) for axis in self.axes], np.int64)
         self.strides = np.array([int(np.prod(self.shape[k + 1 :])) for k in range(len(self.shape))], np.int64)
         self.size = int(np.prod(self.shape))
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
         self.knots, self.windows, self.coordinates = self._packed()
         self._place()
-        self._variables, self._stored, self._errors, self._states, self._taut = {}, {}, {}, None, None
+        self._variables, self._spare, self._stored, self._errors, self._states, self._taut = {}, [], {}, {}, None, None
+        self._making = {}  # locks of what one thread makes and others may ask for meanwhile
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
@@ -69,6 +74,16 @@ class Table:
         self.is_untold = held and (frame.model.is_loose or self.tells_slack)
         self.codes = np.stack([self._codes(), self._beyond_rest(slack) if self.is_kinked else slack])
         self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
+
+    def _whole_axes(self):
+        """The axes of the family. Of loose fibers a kink lies where one family is straight: on one side of it clamped ends
+        leave some slack. The two inner axes have one slope at each node, and are taken as they are.
+        """
+        whole = [self.frame.axis(name) for name in self.names]
+        outer = len(whole) - (2 if sum(axis.kind != LABEL for axis in whole) > 1 else 1)
+        if not self.frame.model.is_loose or self.family.kind not in (reference.LOADED, reference.LOCKED):
+            return whole
+        return [bent(axis, 0.0) if k < outer and axis.name in STRAIGHT else axis for k, axis in enumerate(whole)]
 
     def _place(self):
         """What :func:`place` has to know of the columns of a question."""
@@ -98,7 +113,19 @@ class Table:
         angles = [
             columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
         ]
-        self.options = (frame.fiber_share, by_length, self.family.status is not None, *angles)
+        # of loose fibers one family holds the wall on either side of where both have one angle
+        nearest = 0.0 if frame.model.is_loose and kind == reference.LOADED else CLOSEST
+        self.options = (frame.fiber_share, by_length, self.family.status is not None, nearest, *angles)
+
+    @functools.cached_property
+    def _nodes(self):
+        """Nodes of the axes (d, n)."""
+        return self.knots[:, :, PLACE].copy()
+
+    @functools.cached_property
+    def _beyond(self):
+        """What numbers are put in with beyond the last of those that there are."""
+        return weights_beyond(self._nodes, self.shape)
 
     def _packed(self):
         """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`.spline` knows of the axes."""
@@ -135,8 +162,10 @@ class Table:
         if self.has_flag:
             codes |= self._grid(flag).astype(np.uint8) << 4
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
-            some = [(self._grid(name) > 0.0).astype(np.uint8) for name in self.family.variables]
-            codes |= (self._beyond_rest(self._taut_nodes() | some[0] << 2 | some[1] << 3)) << 4
+            flags = self._taut_nodes()
+            for name, variable in self.family.variables.items():
+                flags = flags | (self._grid(name) > 0.0) * np.uint8(SLACK_FLAGS[variable])
+            codes |= self._beyond_rest(flags) << 4
         return codes
 
     def _beyond_rest(self, slack):
@@ -175,18 +204,25 @@ class Table:
         return self._grid(bound) if bound in self.frame.dims else np.zeros(self.size, np.float32)
 
     def forget(self, name):
-        """Let go of the arrays of one variable."""
+        """Let go of the arrays of one variable, of which the largest are used again."""
         for side in self.sides:
-            self._variables.pop((name, side), None)
+            if gone := self._variables.pop((name, side), None):
+                self._spare.append(gone.values)
         for kept in (self._stored, self._errors):
             kept.pop(name, None)
+
+    def release(self):
+        """Let go of the arrays of all variables."""
+        for kept in (self._variables, self._spare, self._stored, self._errors):
+            kept.clear()
 
     def variable(self, name, side) -> Interpolant:
         """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
         key = TOLD_FROM.get(name, name), side
-        if key not in self._variables:
-            self._variables[key] = self._interpolant(*key)
-        return self._variables[key]
+        with self._making.setdefault(key, Lock()):
+            if key not in self._variables:
+                self._variables[key] = self._interpolant(*key)
+            return self._variables[key]
 
     def make(self, names):
         """Make what :meth:`variable` tells of several, on all sides, some at a time."""
@@ -209,23 +245,21 @@ class Table:
         effects, noise = self._end_effects(name)
         if len(self.sides) > 1:
             effects[self._sides_of_nodes() != side] = np.nan
-        bad = ~np.isfinite(effects)
-        doubt = fill(effects, self.shape, self.strides, self.knots[:, :, PLACE].copy())
-        doubt[bad], noise[bad] = np.maximum(doubt[bad], np.finfo(np.float32).tiny), 0.0
-        table = np.empty((len(effects), NODE))
-        table[:, 0] = effects
-        for column, source, axis in ((1, 0, -1), (2, 0, -2), (3, 1, -2)):
-            nodes, knots, step = self.axes[axis].nodes, self.knots[axis], int(self.strides[axis])
-            slopes(table, source, column, nodes, knots, int(self.windows[axis]), step)
-        return Interpolant(table.ravel(), Cells(effects, noise, doubt, self.axes, self.knots))
+        holes = np.flatnonzero(~np.isfinite(effects))
+        doubt = fill(effects, self.shape, self.strides, self._nodes, self._beyond)
+        doubt[holes], noise[holes] = np.maximum(doubt[holes], np.finfo(np.float32).tiny), 0.0
+        table = self._spare.pop() if self._spare else np.empty(NODE * self.size)
+        tabulate(effects, self.knots, self.windows, self.shape, table)
+        return Interpolant(table, Cells(effects, noise, doubt, self.axes, self.knots))
 
     def states(self) -> GridStates:
         """Uniform states of the grid."""
-        if self._states is None:
-            of_tubes = self.family.kind in (reference.LOADED, reference.LOCKED) and self.predictor.bodies is None
-            without = ("length",) if of_tubes else ()
-            self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
-        return self._states
+        with self._making.setdefault("states", Lock()):
+            if self._states is None:
+                of_tubes = self.family.kind in (reference.LOADED, reference.LOCKED) and self.predictor.bodies is None
+                without = ("length",) if of_tubes else ()
+                self._states = GridStates(self._points(), self.family.kind, self.predictor, without)
+            return self._states
 
     @functools.cached_property
     def sides(self) -> list:

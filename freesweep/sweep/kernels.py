@@ -78,17 +78,32 @@ def _missing(kinds, sweep):
     return missing
 
 
+def of_measuring(sweep) -> tuple:
+    """What :func:`compile_idle` loads, and does not compile, of the kernels with which an atlas measures itself."""
+    names = {ANSWERS: "query"} | ({"physical_states": "physical_states"} if sweep.is_physical else {})
+    if not is_measured(sweep) or sweep.varies or not names.keys() <= _on_disk("query"):
+        return ()
+    return (*names.values(), *_families(_rubbers(sweep)))
+
+
 def _stored(room):
     """Names of the entry points of a room whose machine code lies on disk, and all of them where none can."""
     from numba import config
 
     from ..jit import cache_folder
-    from ..kernel_cache import compiled
 
     folder = cache_folder(room)
     if folder is None or config.DISABLE_JIT or not _can_keep(folder):  # each process compiles for itself, or nothing is
         return {*SOLVING, *THE_REST, ANSWERS}
-    return {name.rpartition(".")[2] for name in compiled(folder)}
+    return _on_disk(room)
+
+
+def _on_disk(room):
+    """Names of the entry points of a room whose machine code lies on disk."""
+    from ..jit import cache_folder
+    from ..kernel_cache import compiled
+
+    return {name.rpartition(".")[2] for name in compiled(cache_folder(room))}
 
 
 def _can_keep(folder):
@@ -102,7 +117,7 @@ def _can_keep(folder):
 
 def _compile_aside(missing, rubbers):
     """Let two other processes compile what is ``missing``; what they could not do is left to this one."""
-    families = ["Yeoh" if rubber else "Mooney-Rivlin" for rubber in rubbers]
+    families = _families(rubbers)
     with contextlib.ExitStack() as running, contextlib.suppress(OSError):
         children = []
         for part in (SOLVING, THE_REST):
@@ -113,6 +128,10 @@ def _compile_aside(missing, rubbers):
                 running.callback(children[-1].kill)
         for child in children:
             child.wait()
+
+
+def _families(rubbers):
+    return ["Yeoh" if rubber else "Mooney-Rivlin" for rubber in rubbers]
 
 
 def compile_idle(words):

@@ -4,6 +4,7 @@ import contextlib
 import os
 import time
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from .collect import groups
 from .grid import coordinates
 from .identity import fingerprint, identify
 from .jobs import bar, in_order
+from .meanwhile import make_ready
 from .plan import plan as make_plan
 from .provenance import provenance
 from .records import Records, state
@@ -66,8 +68,12 @@ def run_sweep(
     return run(spec, out, threads, executor, progress, overwrite, stacklevel=3)
 
 
-def run(spec, out, threads, executor, progress, overwrite, stacklevel) -> Atlas:
-    """What :func:`run_sweep` does; warnings name the line ``stacklevel`` calls above."""
+def run(spec, out, threads, executor, progress, overwrite, stacklevel, modules=(), look=None) -> Atlas:
+    """What :func:`run_sweep` does; warnings name the line ``stacklevel`` calls above.
+
+    ``modules`` are imported while it solves, and ``look(data)`` is called beside the rest with the Dataset before it is an
+    atlas, if the atlas measures itself; nobody hears of a fault there.
+    """
     begun = time.perf_counter()
     spec, out, threads, progress, overwrite = _read(spec, out, threads, executor, progress, overwrite)
     sweep = spec if isinstance(spec, Sweep) else read_file(spec)
@@ -88,12 +94,19 @@ def run(spec, out, threads, executor, progress, overwrite, stacklevel) -> Atlas:
         done = shards.open(identity | {"plan_sha256": fingerprint(tables, split_up)}, sweep.text, overwrite)
         needed = estimate.check_disk(sweep, {kind: table.equilibria for kind, table in tables.items()}, out, done)
         threads = threads or estimate.cores()
-        records = _solve_all(sweep, tables, split_up, done, shards, threads, executor, progress)
+        todo = [
+            (kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done
+        ]
+        if executor is None:
+            kernels.load(dict.fromkeys(kind for kind, *_ in todo), sweep, progress)
+        with ThreadPoolExecutor(1) as aside:  # begun when nothing else is imported or loaded
+            aside.submit(make_ready, sweep, modules)
+            records = _solve_all(sweep, tables, split_up, todo, done, shards, threads, executor, progress)
         solved = time.perf_counter()
         lost = _lost(tables, split_up, done)
         attrs = provenance(sweep, tables, identity, shards.started) | ({"not_solved": lost} if lost else {})
         try:
-            _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite)
+            _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite, look)
         except FileExistsError:  # it appeared meanwhile, perhaps from the same sweep on a network disk
             if not (atlas := _complete(out, identity, sweep.text, overwrite, False)):
                 raise
@@ -166,13 +179,13 @@ def split(table, sweep):
     return found
 
 
-def _solve_all(sweep, tables, split_up, done, shards, threads, executor, progress):
-    """Records of all shards, those found on disk among them: kind -> Records; ``done`` gets the file of each, or None."""
-    todo = [(kind, k, a, b) for kind, own in split_up.items() for k, (a, b) in enumerate(own) if (kind, k) not in done]
+def _solve_all(sweep, tables, split_up, todo, done, shards, threads, executor, progress):
+    """Records of all shards, those found on disk among them: kind -> Records; ``done`` gets the file of each that is to do,
+    or None.
+    """
     total = sum(table.equilibria for table in tables.values())
     left = sum(int(tables[kind].first[b] - tables[kind].first[a]) for kind, _, a, b in todo)
     if executor is None:
-        kernels.load(dict.fromkeys(kind for kind, *_ in todo), sweep, progress)
         solved = _solve_here(tables, todo, shards, sweep.accuracy, threads)
     else:
         solved = solve_remotely(executor, tables, todo, shards, sweep.accuracy)
@@ -211,8 +224,8 @@ def _lost(tables, split_up, done):
     return f"{states:,} states of problems that killed their workers: {where}" if parts else ""
 
 
-def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite):
-    """The atlas, chunk by chunk: made and compressed on threads, written here."""
+def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwrite, look):
+    """The atlas, chunk by chunk: made and compressed on threads, written here; ``look(data)`` while it measures itself."""
     made = groups(sweep)
     steps = max(len(tables["free"].pressure), 1)
     sizes = dict(zip(sweep.dims, sweep.shape))
@@ -240,7 +253,9 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwr
 
             if progress:
                 print("comparing answers between the nodes with exact ones")
-            with writer.dataset() as data:
+            with writer.dataset() as data, ThreadPoolExecutor(1) as aside:
+                if look:
+                    aside.submit(look, data)
                 found = measure(data)
             writer.describe(found)
         writer.publish(replace=overwrite)

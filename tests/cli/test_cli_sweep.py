@@ -182,7 +182,7 @@ def test_too_little_memory_is_one_line(specification, capsys, monkeypatch):
     def fill(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("freesweep.sweep.run.run_sweep", fill)
+    monkeypatch.setattr("freesweep.sweep.run.run", fill)
     error = refused(capsys, "sweep", specification, code=ENVIRONMENT)
     assert error.startswith("freesweep: not enough memory; ")
     assert error.count("\n") == 1
@@ -192,5 +192,5 @@ def test_an_interruption_has_its_own_exit_code(specification, capsys, monkeypatc
     def interrupt(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("freesweep.sweep.run.run_sweep", interrupt)
+    monkeypatch.setattr("freesweep.sweep.run.run", interrupt)
     assert "the same command goes on from there" in refused(capsys, "sweep", specification, code=INTERRUPTED)

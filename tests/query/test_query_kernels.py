@@ -5,9 +5,11 @@ import pytest
 
 from freesweep import Actuator, MooneyRivlin, closed_form, inflate
 from freesweep.query import reference, spline
-from freesweep.query.axis import make_axis
+from freesweep.query.axis import bent, make_axis, ranks
+from freesweep.query.doubts import doubts_at
 from freesweep.query.missing_nodes import fill
 from freesweep.query.slack import UNKNOWN, slack_families
+from freesweep.query.slopes import tabulate
 from freesweep.query.uniform_tube import balance, energy, kinematics, squared_stretch
 
 RUBBER = MooneyRivlin(0.17e6, 0.08e6)
@@ -62,6 +64,73 @@ def test_tensor_cubics_reproduce_cubics_on_any_grid():
     np.testing.assert_allclose(found, 3 * a**2 - 2 * b**3 - b * f * m**3, rtol=1e-4, atol=1e-4)
     spline.interpolate(*args, np.array([0, 0, 0, 1]), found)
     np.testing.assert_allclose(found, f**3 - 3 * a * b * f * m**2 + 2 * m, rtol=1e-4, atol=1e-4)
+
+
+THREE = [
+    make_axis("alpha", np.linspace(0.0, 7.0, 8)),
+    make_axis("beta", np.linspace(-1.0, 1.0, 8)),
+    make_axis("torque", [0.0, 0.4, 1.0, 1.5, 2.5, 3.0]),
+]
+
+
+def test_slopes_beside_the_numbers_are_exact_for_quartics_and_come_from_the_nodes_beside_where_one_lacks():
+    a, b, m = np.meshgrid(*(axis.nodes for axis in THREE), indexing="ij")
+    values = (1.0 + a) * (b**4 - m**4 + b * m**2)
+    table, windows, _ = knots(THREE)
+    shape, found = np.array(values.shape), np.empty(4 * values.size)
+    tabulate(values.ravel(), table, windows, shape, found)
+    own = found.reshape(*values.shape, 4)
+    exact = values, (1.0 + a) * (2.0 * b * m - 4.0 * m**3), (1.0 + a) * (4.0 * b**3 + m**2), (1.0 + a) * 2.0 * m
+    for k, array in enumerate(exact):
+        np.testing.assert_allclose(own[..., k], array, rtol=1e-10, atol=1e-9)
+    values[2, 0, 0] = np.nan
+    tabulate(values.ravel(), table, windows, shape, found)
+    assert own[2, 0, 1, 1] == pytest.approx((values[2, 0, 2] - values[2, 0, 1]) / 0.6)
+    assert own[2, 1, 0, 2] == pytest.approx((values[2, 2, 0] - values[2, 1, 0]) / (2.0 / 7.0))
+    np.testing.assert_array_equal(np.isnan(own[..., 1]).sum(), 1)  # at the hole itself
+    np.testing.assert_allclose(own[3, ..., 1], exact[1][3], rtol=1e-10, atol=1e-9)
+
+
+def test_what_is_doubtful_of_one_node_counts_as_much_as_the_node():
+    shape = np.array([len(axis.nodes) for axis in THREE])
+    strides = np.array([48, 6, 1])
+    table, windows, labels = knots(THREE)
+    pieces, shares = np.array([[3, 4, 2]]), np.array([[0.3, 0.6, 0.45]])
+    cell = pieces @ strides
+    for apart in ((0, 0, 0), (1, 0, 1), (2, 0, 0), (-1, 1, 0), (0, 2, 1), (1, 1, -2), (0, -3, 0), (2, 2, 0)):
+        one, numbers = np.zeros(shape.prod()), np.empty(4 * shape.prod())
+        one[cell + np.array(apart) @ strides] = 1.0
+        tabulate(one, table, windows, shape, numbers)
+        weight, doubt = np.empty(1), np.empty(1)
+        place = (pieces, shares, np.array([0]))
+        spline.interpolate(numbers, table, windows, labels, strides, *place, np.zeros(3, np.int64), weight)
+        single = one.astype(np.float32)
+        doubts_at(np.array([0]), cell, pieces, shares, single, strides, windows, table, doubt)
+        if apart == (2, 2, 0):  # beyond the cell along two axes: little, and not counted
+            assert 0.0 < abs(weight[0]) < 0.01
+            assert doubt[0] == 0.0
+        else:
+            assert doubt[0] == pytest.approx(abs(weight[0]), rel=1e-6, abs=1e-12), apart
+            assert (doubt[0] > 0.0) == (apart != (0, -3, 0))
+
+
+def test_no_window_reaches_across_a_bend():
+    plain = make_axis("beta", np.linspace(-10.0, 10.0, 21))
+    axis = bent(plain, 0.0)
+    assert axis.bend == 10
+    assert (axis.first[:10] + axis.window <= 11).all()
+    assert (axis.first[10:] >= 10).all()
+    values = np.abs(axis.nodes) * (1.0 + 0.3 * axis.nodes**2)
+    for own, worst in ((axis, 1e-12), (plain, 1.0)):
+        windows = values[own.first[:20, None] + np.arange(6)]
+        middle = 0.5 * (values[:-1] + values[1:]) + 0.125 * ((own.left - own.right)[:20] * windows).sum(axis=1)
+        between = 0.5 * (own.nodes[:-1] + own.nodes[1:])
+        gap = np.abs(middle - np.abs(between) * (1.0 + 0.3 * between**2)).max()
+        assert gap < worst
+    assert gap > 0.01
+    assert ranks(axis).tolist() == [0, 1, 2, 2, 2, 2, 2, 2, 3, 4, 0, 1, 2, 2, 2, 2, 2, 2, 3, 4, 4]
+    assert bent(plain, 0.5) is plain
+    assert bent(plain, 8.0) is plain  # too few nodes beyond
 
 
 @pytest.mark.parametrize("count", [17, 33])

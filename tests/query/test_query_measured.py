@@ -20,6 +20,7 @@ from freesweep.query.reference import VOLUME
 from freesweep.query.refine import as_points, exact_answers
 from freesweep.query.spline import KNOT, RANK
 from freesweep.sweep.refine_axes import graded
+from freesweep.sweep.run import run as run_looked_at
 from freesweep.sweep.spec import SpecificationError, parse
 from freesweep.verification.verify import faults as verify
 
@@ -349,3 +350,26 @@ def test_the_benchmark_of_the_query_is_one_table():
     text = table({"nodes": 10, "repeats": 3, "rows": [{"way": "a way", **row}]})
     assert "1,000,000" in text
     assert "1.0e-07" in text
+
+
+def test_who_looks_at_an_atlas_while_it_measures_itself_sees_its_numbers_and_disturbs_nothing(made, tmp_path):
+    seen = {}
+
+    def look(data):
+        seen["rotation"] = data["rotation"].values
+        raise RuntimeError("of no interest to a sweep")
+
+    sweep = parse(spec(AXES))
+    with run_looked_at(sweep, tmp_path / "again.nc", 2, None, False, False, 2, ["json"], look) as again:
+        np.testing.assert_array_equal(seen["rotation"], made.data["rotation"].values)
+        assert again.data.attrs[calibration.ATTRIBUTE] == made.data.attrs[calibration.ATTRIBUTE]
+    path = tmp_path / "sweep.toml"
+    path.write_text(spec(AXES))
+    for name in ("one.png", "two.png"):
+        assert (
+            run("sweep", str(path), "-o", str(tmp_path / "map.nc"), "--map", str(tmp_path / name), "--overwrite")
+            == DONE
+        )
+    assert run("plot", "map", str(tmp_path / "map.nc"), "-o", str(tmp_path / "plain.png")) == DONE
+    pictures = {(tmp_path / name).read_bytes() for name in ("one.png", "two.png", "plain.png")}
+    assert len(pictures) == 1

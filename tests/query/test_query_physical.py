@@ -163,6 +163,29 @@ def test_designs_of_one_angle_say_nothing_of_those_of_two(tmp_path):
         assert (np.diagonal(doubt) > 0.0).all()
 
 
+def test_beside_the_designs_of_one_angle_and_of_straight_threads_answers_keep_their_bounds(tmp_path):
+    """A cell that touches the diagonal has nodes of one family at a corner, and no window reaches across beta = 0."""
+    grid = {"alpha": np.linspace(60.0, 85.0, 11).tolist(), "beta": np.linspace(-25.0, 75.0, 41).tolist(),
+            "length": [0.08, 0.1, 0.13, 0.17, 0.22, 0.3], "pressure": [1e4, 2e4, 3e4, 4e4]}  # fmt: skip
+    sweep = parse(spec(grid).replace("[actuator]", '[actuator]\nmodel = "physical"'))
+    atlas = Atlas(make(tmp_path / "atlas.nc", sweep).assign_attrs(interpolation_tolerance=3e-3), "touching.nc")
+    draw, reader = np.random.default_rng(6), atlas._reader
+    touching = {"alpha": draw.uniform(72.6, 75.0, 60), "length": draw.uniform(0.1, 0.2, 60)}
+    touching |= {"beta": draw.uniform(70.0, 72.4, 60), "pressure": draw.uniform(1.5e4, 3.5e4, 60)}
+    straight = touching | {"beta": draw.uniform(-2.5, 2.5, 60)}
+    for asked, least in ((touching, 0.3), (straight, 0.7)):
+        found = atlas.query(**asked, variables=NAMES)
+        exact = exact_answers(reader, "state", as_points(reader, "state", reader.complete(asked, 60)), NAMES)
+        given = found["status"].values == status.OK
+        assert given.mean() > least
+        for name in NAMES:
+            gap = np.abs(found[name].values - exact[name]) - exact[f"{name}_error"]
+            assert (gap <= found[f"{name}_error"].values)[given].all(), name
+    assert atlas.query(alpha=73.1, beta=73.9, length=0.15, pressure=2e4)["status"].item() == status.NOT_INTERPOLABLE
+    bends = {key: [axis.bend for axis in reader.table(key).axes] for key in ("state", "locked")}
+    assert bends == {"state": [0, 10, 0, 0], "locked": [0, 0, 0]}  # of the last two there is one slope at each node
+
+
 def test_at_nodes_and_at_rest_numbers_are_those_stored(crossed):
     nodes = crossed["pressure"].values
     found = Atlas(crossed, "crossed.nc").query(pressure=nodes, variables=NAMES)
@@ -200,6 +223,10 @@ def test_shares_of_slack_are_answered_between_nodes_that_are_alike_and_change_pl
         gap = np.abs(found[name].values - exact[name]) - exact[f"{name}_error"]
         assert (gap <= found[f"{name}_error"].values)[given].all(), name
         assert np.isnan(found[name].values[~given]).all()
+        # where nothing is slack on either side nothing is, though the windows know better
+        none = given & (stored[cells] == 0.0) & (stored[cells + 1] == 0.0) & (cells > 0)
+        assert (found[name].values[none] == 0.0).all()
+        assert (none & (stored[cells - 1] > 0.0)).any() == (name == "slack_alpha")
     turned = atlas.query(alpha=36.0, beta=8.0, pressure=pressure, variables=names)
     for name, other in zip(names, reversed(names)):
         np.testing.assert_array_equal(turned[name].values, found[other].values)
