@@ -67,7 +67,7 @@ class Audit:
         """Values (n, k) with those of the finer mesh; ``judge`` gives values and errors of rows by the second method."""
         bounds, difference = bounds.astype(float), np.abs(values - others)
         self.bounds += values.size
-        seen = difference > ROUNDING * measure
+        seen = difference > np.maximum(ROUNDING * measure, other_bounds)  # else it may be the reference's own error
         for k, name in enumerate(names):
             self.compared[name] += len(values)
             self.ratios[name].append(bounds[seen[:, k], k] / difference[seen[:, k], k])

@@ -58,7 +58,7 @@ def test_a_model_s_tubes_are_the_same_in_units_of_their_outer_radius():
 def test_each_model_s_cost_is_told_beside_the_source_s(monkeypatch):
     seconds = iter([2.0, 5.0, 6.0, 12.0])
     monkeypatch.setattr("freesweep.solver.batch.walk_by_vectors", lambda *_: SimpleNamespace(status=np.array([0, -1])))
-    found = models.models(sample(2, 2), 1e-6, 24, lambda run: (next(seconds), run()))
+    found = models.models(sample(2, 2), 1e-6, lambda run: (next(seconds), run()))
     assert [row["times_source"] for row in found] == [1.0, 2.5, 3.0, 6.0]
     assert "  thick, loose        3e+06 us a state, 6 times the source's, 50.0 % solved" in table._models(found)
 

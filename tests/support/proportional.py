@@ -16,7 +16,7 @@ def in_proportion(problems, first, pressures):
     problems, pressures = np.ascontiguousarray(problems), np.ascontiguousarray(pressures, dtype=float)
     first, found = np.asarray(first), batch._nothing(problems, len(pressures), batch.NOTHING)
     kinds = [(kind, some) for _, _, kind, some in batch._kinds(problems)]
-    with mock.patch.object(many, "settling_pressure", lambda _: pressures[first[:-1]]):
+    with mock.patch.object(many, "settling_pressure", return_value=pressures[first[:-1]]):
         many.follow_branches(problems, first, pressures, kinds, 1e-6, found)
     found.status[found.status == PENDING] = NOT_CONVERGED
     return found

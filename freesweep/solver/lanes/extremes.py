@@ -8,7 +8,7 @@ through three it may be wrong, and by a little of what bends it.
 from ...jit import kernel
 from .vector import get, select
 
-CAUTION, BENT = 3.0, 0.1  # times what two curves differ by, and times the fourth difference
+CAUTION, BENT = 6.0, 0.2  # times what two curves differ by, and times the fourth difference
 
 
 @kernel
