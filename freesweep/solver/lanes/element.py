@@ -17,7 +17,7 @@ from ...jit import kernel
 from .second import BY_V, BY_Y, LOADS, NUMBERS, OF_LOADS, VV, WEIGHT, YV, YY
 from .vector import get, put, select, spread
 
-COUNT, BUBBLES = 12, 10
+COUNT, BUBBLES = 16, 14
 LEFT, RIGHT = BUBBLES, BUBBLES + 1  # behind the bubbles
 SIZE = RIGHT + 1
 _AT, _WEIGHTS = np.polynomial.legendre.leggauss(COUNT)
