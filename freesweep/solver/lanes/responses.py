@@ -3,7 +3,10 @@
 A state that is known is one number, the stretch in the middle: it tells every place of half the tube (:mod:`meridian`), part
 by part between the places where families go slack. There the density's second derivatives (:mod:`second`) are summed to
 those of the functional (:mod:`element`), by which all that loads are conjugate to, the outputs, change with any number. How
-the half changes with its length is known in the middle alone.
+they change with the length of the half is known in the middle alone: there the functional grows by L, and the middle by what
+it answers with to a push.
+
+Where hardly anything is left of the layer in the middle, the middle is the uniform tube, and answers as that does.
 """
 
 from math import sqrt
@@ -12,25 +15,44 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from ..cells import nothing_yet
+from ..physics.wall import may_go_slack
 from ..problem import PHYSICAL
-from . import second, slack_ends
-from .element import BUBBLES, COUNT, PLACES, SIZE, WEIGHTS, assemble, eliminate, gather, weigh
-from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look, look_down, middle_at
+from . import slack_ends
+from .element import (
+    COUNT,
+    LOST,
+    OF_STATE,
+    PIVOT,
+    PLACES,
+    SIZE,
+    SQUARES,
+    TRIANGLE,
+    WEIGHTS,
+    assemble,
+    derive,
+    eliminate,
+    gather,
+    weigh,
+)
+from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import NARROW, find_ends, scan
 from .rule import LAST
-from .second import LOADS, NUMBERS, ROWS, YY, bends
+from .second import BY_Y, LOADS, NUMBERS, OF_LOADS, ROWS, YY, bends
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
-PASSES = 4
-CLOSE = 1e-10
-SPLIT, BEFORE = 100.0, 6.0
+OUTPUTS, TOLD = LOADS + 1, NUMBERS + 2  # what is told of each: itself, its derivatives by the numbers, and by the length
+PASSES, CLOSE = 4, 1e-10  # to a middle whose half has its length; share of the strain in the middle that may be wrong
+UNIFORM = 17.0  # depth from which on the middle answers as the uniform tube does
+# of errors: of what FEWER bubbles lose; of the force that is left; where ends of slack lie; of rounding; of what is left of a layer
+SAFETY, FORCED, ENDS, ROUNDING, SHALLOW = 0.5, 3.0, 3e-9, 1e-11, 4.0
+TINY = 1e-300
 
 
 @kernel
 def seated(y, cell, load, half, scratch):
-    """The :class:`.meridian.Middle` of a tube whose middle has the stretch ``y``; where hardly a drive is left it is the
-    uniform tube.
+    """The :class:`.meridian.Middle` of a tube whose middle has the stretch ``y``; where no drive is left it is the uniform
+    tube.
     """
     mid, driven, _ = middle_at(y, cell, load, half, scratch)
     far = ~driven | (mid.depth >= DEEPEST)
@@ -47,154 +69,187 @@ def seated(y, cell, load, half, scratch):
 def down(share, left, width):
     """``(depth, its derivative)`` at a share of a part, from ``left`` on: slow where the layer begins."""
     even = max(1.0 - width / EVEN, LEAST_EVEN)
-    return left + width * share * (even + (1.0 - even) * share * share), width * (even + 3.0 * (1.0 - even) * share * share)
-
-
-@kernel
-def by_depth(parts, edges, mid, counts):
-    """Turn the shares of the depth between which no family goes slack into depths, and of those that are deep add one
-    edge that lies before the middle; returns how many parts there are.
-    """
-    for j in range(parts + 1):
-        put(edges, j, deep(get(edges, j), mid.depth)[0])
-    split = mid.depth > SPLIT
-    if not some(split):
-        return parts
-    put(edges, parts + 1, select(split, mid.depth - BEFORE, mid.depth))
-    for lane in range(WIDTH):
-        depth, i = edges[parts + 1, lane], parts + 1
-        while i > 1 and edges[i - 1, lane] > depth:
-            edges[i, lane] = edges[i - 1, lane]
-            i -= 1
-        edges[i, lane] = depth
-    return parts + 1
+    bent = (1.0 - even) * share * share
+    return left + width * share * (even + bent), width * (even + 3.0 * bent)
 
 
 @kernel
 def slope_at(y, per_share, steep, mid):
-    """Slope of a place whose depth grows by ``steep`` with a share, x by ``per_share``: without a cosine's difference from 1."""
+    """Slope of a place whose depth grows by ``steep`` with a share, and x by ``per_share``: no cosine tells it near the
+    middle.
+    """
     fall = sqrt(max((y - mid.y) * ((y - mid.u) + (mid.y - mid.u)), 0.0))
     return select(mid.u > 1.0, fall, -fall) * steep / per_share
 
 
 @kernel
-def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, bent, pushed, lower, inverse, halves, carried, sums, tails, scratch):
-    """Sum all parts of half a tube; returns lanes that may be, and the length."""
+def clear(array):
+    """Write 0 to all rows."""
+    for i in range(len(array)):
+        put(array, i, 0.0)
+
+
+@kernel
+def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, room, carried, sums, known, scratch):
+    """Sum all parts between the ``edges``, each in so many ``pieces``: ``sums`` (2, ...) take derivatives at a fixed shape, and
+    what is answered. Returns the lanes in which each part is of one kind, and the length.
+    """
     valid, near, fixed, length = mask_of(-1), nothing_yet(spread(0.0)), mask_of(-1), spread(0.0)
-    for i in range(len(sums)):
-        put(sums, i, 0.0)
-        put(tails, i, 0.0)
-    for i in range(len(carried)):
-        put(carried, i, 0.0)
-    for i in range(parts * pieces):
-        j = i // pieces
-        width = (get(edges, j + 1) - get(edges, j)) / pieces
-        left = get(edges, j) + (i % pieces) * width
+    pulls = load.f, load.p, load.m, load.e
+    for i in range(2):
+        clear(sums[i])
+        clear(carried[i])
+    for i in range(len(known)):
+        clear(known[i])
+    for j in range(parts):
+        first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
+        width = (width - first) / pieces
         own = width > NARROW * mid.depth
-        kind = spread(-1.0)
-        for k in range(COUNT):
-            depth, steep = down(PLACES[k], left, width)
-            here = look_down(depth, steep, mid, cell, load, near, scratch)
-            near = handed_on(here.y, here.at, near)
-            kind = here.at.kind if k == 0 else kind
-            valid = valid & (((here.at.room > 0.0) & (here.at.kind == kind)) | ~own)
-            bends(here.y, slope_at(here.y, here.per_share, steep, mid), here.cosine, here.at, cell, load, rows)
-            weight = WEIGHTS[k] * here.per_share
-            weigh(k, own, weight, 1.0 / here.per_share, rows, used, fields, sums)
-            tell(select(own, weight, 0.0), rows, sums)
-            length = length + select(own, weight, 0.0)
-        assemble(fields, len(used), bent, pushed, halves)
-        eliminate(own, fixed, used, bent, pushed, lower, inverse, carried, sums, tails)
-        fixed = fixed & ~own
+        for i in range(pieces):
+            kind = spread(-1.0)
+            for k in range(COUNT):
+                depth, steep = down(PLACES[k], first + i * width, width)
+                here = look_down(depth, steep, mid, cell, load, near, scratch)
+                near = handed_on(here.y, here.at, near)
+                if k == 0:
+                    kind = here.at.kind
+                valid = valid & (((here.at.room > 0.0) & (here.at.kind == kind)) | ~own)
+                bends(here.y, slope_at(here.y, here.per_share, steep, mid), here.cosine, here.at, cell, load, rows)
+                weight = WEIGHTS[k] * here.per_share
+                weigh(k, weight, 1.0 / here.per_share, rows, used, fields)
+                weight = select(own, weight, 0.0)
+                gather(weight, rows, used, sums[0])
+                length = length + weight
+            assemble(fields, len(used), matrix[0], pushed, room)
+            eliminate(own, fixed, used, matrix[0], pushed, matrix[1], matrix[2], carried, known)
+            derive(own, used, pulls, pushed, matrix[2], room[0], sums[1], known)
+            fixed = fixed & ~own
     return valid, length
 
 
 @kernel
-def tell(weight, rows, sums):
-    """Add to the sums, behind the derivatives, what loads are conjugate to."""
+def finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known, out, scratch):
+    """Add the ``rest`` of the half, which is uniform, and write what is told, ``out`` (2, OUTPUTS TOLD, WIDTH), values and
+    what they may miss. Returns how the middle grows with the length, and the largest ...
+    """
+    count, still, flat = len(used), spread(0.0), spread(1.0)
+    here = look_down(mid.depth, flat, mid, cell, load, nothing_yet(still), scratch)
+    bends(mid.y, still, flat, here.at, cell, load, rows)
+    gather(rest, rows, used, sums[0])
+    stiff = -get(rows, YY)
+    pivot = 1.0 / (get(carried[0], PIVOT) + rest * stiff)
+    fewer_pivot = 1.0 / (get(carried[1], PIVOT) + rest * stiff)
+    force, work, pulls = spread(0.0), spread(TINY), (load.f, load.p, load.m, load.e)
+    for j in range(count):
+        own, fewer = (
+            get(carried[0], 1 + j) + rest * get(rows, BY_Y + used[j]),
+            get(carried[1], 1 + j) + rest * get(rows, BY_Y + used[j]),
+        )
+        put(carried[0], 1 + j, own)
+        put(carried[1], 1 + j, fewer)
+        put(known[SQUARES], j, get(known[SQUARES], j) + own * own * pivot)
+        put(known[LOST], j, abs(get(known[LOST], j) + own * own * pivot - fewer * fewer * fewer_pivot))
     for i in range(LOADS):
-        put(sums, LOADS * NUMBERS + i, get(sums, LOADS * NUMBERS + i) + weight * get(rows[0], ROWS - LOADS + i))
+        j = count - LOADS + i
+        force = force + pulls[i] * get(carried[0], 1 + j)
+        work = work + pulls[i] * pulls[i] * get(known[SQUARES], j)
+    missed = FORCED * sqrt(abs((get(known[2], 0) + force * force * pivot) / work)) + select(loose, ENDS, 0.0) + ROUNDING
+    drive = -mid.rise * mid.s
+    uniform, shallow = mid.depth > UNIFORM, SHALLOW * mid.depth * mid.q
+    for i in range(LOADS):
+        one = count - LOADS + i
+        push, sign = get(carried[0], 1 + one) * pivot, -1.0 if i == LOADS - 1 else 1.0
+        value = get(sums[0], LOADS * NUMBERS + i)
+        put(out[0], TOLD * i, sign * value)
+        put(out[1], TOLD * i, missed * abs(value))
+        for j in range(count - 1):
+            n = NUMBERS * i + used[j]
+            answer = get(sums[1], n) + push * get(carried[0], 1 + j)
+            value = get(sums[0], n) + answer
+            lost = sqrt(get(known[LOST], one) * get(known[LOST], j))
+            put(out[0], TOLD * i + 1 + used[j], sign * value)
+            put(out[1], TOLD * i + 1 + used[j], SAFETY * lost + missed * (abs(value) + abs(answer)))
+        value = get(rows, OF_LOADS + LOADS * NUMBERS + i) + drive * push
+        put(out[0], TOLD * i + TOLD - 1, sign * value)
+        put(out[1], TOLD * i + TOLD - 1, missed * abs(value))
+    put(out[0], TOLD * LOADS, mid.y)
+    put(out[1], TOLD * LOADS, CLOSE * abs(1.0 - mid.y) + ROUNDING)
+    for j in range(count - 1):
+        own, even = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff
+        typical = sqrt(get(known[SQUARES], j) / (abs(stiff) * half))
+        doubt = select(uniform, shallow * (abs(even) + typical), SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot))
+        put(out[0], TOLD * LOADS + 1 + used[j], select(uniform, even, own))
+        put(out[1], TOLD * LOADS + 1 + used[j], doubt + missed * (abs(own) + typical))
+    put(out[0], TOLD * OUTPUTS - 1, drive * pivot)
+    put(out[1], TOLD * OUTPUTS - 1, abs(drive) * (SAFETY * abs(pivot - fewer_pivot) + missed * abs(pivot)))
+    return drive * pivot
 
 
 @kernel
-def finish(mid, rest, cell, load, half, used, rows, carried, sums, tails, out, scratch):
-    """Write values and derivatives, in the order of :mod:`.outputs`, to ``out`` (2, ...): rows of 1 + numbers + 1, the last of
-    which is by the length of the half. Returns how the middle changes with the length."""
-    count, zero = len(used), spread(0.0)
-    here = look(spread(1.0), mid, cell, load, nothing_yet(zero), scratch)
-    bends(mid.y, zero, spread(1.0), here.at, cell, load, rows)
-    gather(rest, rows, used, sums)
-    tell(rest, rows, sums)
-    put(carried, 0, get(carried, 0) - rest * get(rows[0], YY))
-    for j in range(count):
-        put(carried, 1 + j, get(carried, 1 + j) + rest * get(rows[0], second.BY_Y + used[j]))
-    pivot = 1.0 / get(carried, 0)
-    drive = -mid.rise * mid.s
-    many = NUMBERS + 2
-    for i in range(LOADS):
-        load_by = get(carried, 1 + count - LOADS + i) * pivot
-        sign = -1.0 if i == LOADS - 1 else 1.0
-        put(out[0], many * i, sign * get(sums, LOADS * NUMBERS + i))
-        for j in range(count):
-            n = NUMBERS * i + used[j]
-            put(out[0], many * i + 1 + used[j], sign * (get(sums, n) + load_by * get(carried, 1 + j)))
-            put(out[1], many * i + 1 + used[j], get(tails, n))
-        put(out[0], many * i + many - 1, sign * (get(rows[0], ROWS - LOADS + i) + drive * load_by))
-    put(out[0], many * LOADS, mid.y)
-    put(out[1], many * LOADS, mid.depth)
-    for j in range(count):
-        put(out[0], many * LOADS + 1 + used[j], get(carried, 1 + j) * pivot)
-        put(out[1], many * LOADS + 1 + used[j], -get(rows[0], second.BY_Y + used[j]) / get(rows[0], YY))  # du
-    put(out[0], many * LOADS + many - 1, drive * pivot)
-    return drive * pivot, get(carried, 0) > 0.0
+def seat(group, count, order, problems, pressures, middles, limp, columns, start):
+    """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too. Returns
+    whether some family of one goes slack somewhere, and not everywhere.
+    """
+    ends = False
+    for lane in range(WIDTH):
+        row = order[group + min(lane, count - 1)]
+        enter(lane, problems[row], columns)
+        start[0, lane] = middles[row]
+        ends = ends or limp[row]
+        if pressures[row] == np.inf:
+            lock(lane, columns)
+        else:
+            columns[PRESSURE, lane] = pressures[row]
+    return ends
 
 
 @entry_point
-def differentiate_physical(problems, pressures, middles, order, constants, layers, pieces, used, values, bounds):
-    """Values and derivatives (rows, 5, 1 + numbers + 1), and bounds."""
-    size, count = SIZE * (SIZE + 1) // 2, len(used)
-    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(1, ROWS)
-    edges, small = aligned(1, slack_ends.MOST + 3)[0], aligned(3, COLUMNS)
+def differentiate_physical(problems, pressures, middles, limp, order, constants, layers, used, pieces, values, bounds):
+    """Values and bounds (rows, OUTPUTS, TOLD) of the rows in the given ``order``, WIDTH at a time: of the outputs, of their
+    derivatives by the numbers of :mod:`second`, and by the length of the half. NaN in rows that no vector could do.
+
+    Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
+    where some family goes slack along a part of it. ``used`` are the numbers that there are, all LOADS among them.
+    Other arguments as of :func:`.free.solve_physical`.
+    """
+    count = len(used)
+    room, ends, edges = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(1, slack_ends.MOST + 2)[0]
+    small, counts = aligned(3, COLUMNS), np.zeros(WIDTH, np.int64)
     columns, start, scratch = small[0], small[1], small[2]
-    counts = np.zeros(WIDTH, np.int64)
-    fields, triangles, pushed = aligned(3 + 2 * count, COUNT), aligned(2, size), aligned(count, SIZE)
-    inverse, halves, carried, sums = aligned(1, SIZE)[0], aligned(2, COUNT), aligned(1, 1 + count)[0], aligned(2, 60)
-    out = aligned(2, 5 * (NUMBERS + 2))
+    rows, fields, pushed = aligned(1, ROWS)[0], aligned(OF_STATE + 2 * count, COUNT), aligned(count, SIZE)
+    matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(3, count)
+    sums, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(2, OUTPUTS * TOLD)
     for group in range(0, len(order), WIDTH):
-        here = min(WIDTH, len(order) - group)
-        for lane in range(WIDTH):
-            row = order[group + min(lane, here - 1)]
-            enter(lane, problems[row], columns)
-            start[0, lane] = middles[row]
-            if pressures[row] == np.inf:
-                lock(lane, columns)
-            else:
-                columns[PRESSURE, lane] = pressures[row]
+        seats = min(WIDTH, len(order) - group)
+        searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)
         cell, _, load = loads(columns, constants, PHYSICAL, layers)
         y, half = get(start, 0), get(columns, LENGTH)
-        active, met = mask_of((1 << here) - 1), mask_of(0)
+        active, wrong, loose = mask_of((1 << seats) - 1), mask_of(0), mask_of(0)
+        searched = searched and may_go_slack(load.wall)
         for i in range(PASSES):
-            mid = seated(y, cell, load, half, scratch)
-            _, _, _, doubts, fine, _ = scan(pieces, mid, cell, load, room, ends[:5], counts, ends[5:], scratch)
-            active = active & fine & (doubts[0] + doubts[1] == 0.0)
-            parts, unsure = find_ends(mid, cell, load, active, ends[:5], counts, ends[5:], edges, scratch)
-            parts = by_depth(parts, edges, mid, counts)
+            mid, parts = seated(y, cell, load, half, scratch), 1
+            put(edges, 0, 0.0)
+            put(edges, 1, 1.0)
+            if searched:
+                _, _, _, doubts, valid, _ = scan(pieces, mid, cell, load, room, ends[:5], counts, ends[5:], scratch)
+                active = active & valid & (doubts[0] + doubts[1] == 0.0)
+                parts, unsure = find_ends(mid, cell, load, active, ends[:5], counts, ends[5:], edges, scratch)
+                active, loose = active & (unsure < slack_ends.ENOUGH), unsure > 0.0
             valid, length = over_parts(
-                parts, pieces, edges, mid, cell, load, used, numbers, fields, triangles[0], pushed, triangles[1], inverse, halves,
-                carried, sums[0], sums[1], scratch,
+                parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, halves, carried, sums, known,
+                scratch,
             )  # fmt: skip
             rest = half - length
-            per_length, stable = finish(mid, rest, cell, load, half, used, numbers, carried, sums[0], sums[1], out, scratch)
+            grown = finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known, out, scratch) * rest
             active = active & valid
-            wrong = active & (abs(rest * per_length) > CLOSE * abs(1.0 - y))
-            y = select(wrong, y + rest * per_length, y)
+            wrong = active & (abs(grown) > CLOSE * abs(1.0 - y))
+            y = select(wrong, y + grown, y)
             if not some(wrong):
                 break
         met = bits(active & ~wrong)
-        for lane in range(here):
+        for lane in range(seats):
             if (met >> lane) & 1:
                 row = order[group + lane]
-                for i in range(5):
-                    for j in range(NUMBERS + 2):
-                        k = (NUMBERS + 2) * i + j
-                        values[row, i, j], bounds[row, i, j] = out[0, k, lane], out[1, k, lane]
+                for i in range(OUTPUTS):
+                    for j in range(TOLD):
+                        values[row, i, j], bounds[row, i, j] = out[0, TOLD * i + j, lane], out[1, TOLD * i + j, lane]

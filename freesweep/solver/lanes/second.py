@@ -115,17 +115,17 @@ def enter(k, dG, dp, M_y, M_G, M_p, W_by, here, rows):
     M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, per_s, yy, W_G, W_p = here
     half = 0.5 * per_s * dG
     pull_G, pull_p = M_G + M_GG * dG + M_Gp * dp, M_p + M_Gp * dG + M_pp * dp
-    put(rows[0], BY_Y + k, M_y + M_yG * dG + M_yp * dp + G_y * pull_G + p_y * pull_p)
-    put(rows[0], BY_V + k, M_vG * dG)
-    put(rows[0], OF_LOADS + k, half)
-    put(rows[0], OF_LOADS + NUMBERS + k, yy * half)
-    put(rows[0], OF_LOADS + 2 * NUMBERS + k, dp)
-    put(rows[0], OF_LOADS + 3 * NUMBERS + k, -(W_by + W_G * dG + W_p * dp))
+    put(rows, BY_Y + k, M_y + M_yG * dG + M_yp * dp + G_y * pull_G + p_y * pull_p)
+    put(rows, BY_V + k, M_vG * dG)
+    put(rows, OF_LOADS + k, half)
+    put(rows, OF_LOADS + NUMBERS + k, yy * half)
+    put(rows, OF_LOADS + 2 * NUMBERS + k, dp)
+    put(rows, OF_LOADS + 3 * NUMBERS + k, -(W_by + W_G * dG + W_p * dp))
 
 
 @kernel
 def bends(y, v, cosine, at, cell, load, rows):
-    """Write all second derivatives of the density at one place, and its first ones by the loads, to ``rows`` (1, ROWS,
+    """Write all second derivatives of the density at one place, and its first ones by the loads, to ``rows`` (ROWS,
     WIDTH); ``at`` is the :class:`..physics.first_integral.Level` there.
     """
     H, D, gamma, e = cell[0], cell[1], load.gamma, load.e
@@ -152,18 +152,18 @@ def bends(y, v, cosine, at, cell, load, rows):
     G_y, p_y = answer(spot, M_yG, M_yp, 2.0 * y * on_a * on_a, 2.0 * y * on_b * on_b)
     G_v, p_v = answer(spot, M_vG, zero, zero, zero)
     L_yy = M_yy + 2.0 * (M_yG * G_y + M_yp * p_y) + (M_GG * G_y + 2.0 * M_Gp * p_y) * G_y + M_pp * p_y * p_y
-    put(rows[0], YY, L_yy)
-    put(rows[0], YV, 2.0 * load.p * y * flat + M_vG * G_y)
-    put(rows[0], VV, -T * (1.0 + G_1) * i * i * i + M_vG * G_v)
+    put(rows, YY, L_yy)
+    put(rows, YV, 2.0 * load.p * y * flat + M_vG * G_y)
+    put(rows, VV, -T * (1.0 + G_1) * i * i * i + M_vG * G_v)
     s_y, s_v = 0.5 * i * G_y, 0.5 * i * G_v + flat
-    put(rows[0], BY_Y + FORCE, s_y)
-    put(rows[0], BY_V + FORCE, s_v)
-    put(rows[0], BY_Y + PRESSURE, yy * s_y + 2.0 * y * s)
-    put(rows[0], BY_V + PRESSURE, yy * s_v)
-    put(rows[0], BY_Y + TORQUE, p_y)
-    put(rows[0], BY_V + TORQUE, p_v)
-    put(rows[0], BY_Y + WEIGHT, -(W_y + W_G * G_y + W_p * p_y))
-    put(rows[0], BY_V + WEIGHT, -(W_G * G_v + W_p * p_v))
+    put(rows, BY_Y + FORCE, s_y)
+    put(rows, BY_V + FORCE, s_v)
+    put(rows, BY_Y + PRESSURE, yy * s_y + 2.0 * y * s)
+    put(rows, BY_V + PRESSURE, yy * s_v)
+    put(rows, BY_Y + TORQUE, p_y)
+    put(rows, BY_V + TORQUE, p_v)
+    put(rows, BY_Y + WEIGHT, -(W_y + W_G * G_y + W_p * p_y))
+    put(rows, BY_V + WEIGHT, -(W_G * G_v + W_p * p_v))
 
     here = M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, i, yy, W_G, W_p
     gg = gamma * gamma
@@ -189,10 +189,10 @@ def bends(y, v, cosine, at, cell, load, rows):
     by_load(PRESSURE, yy * half, yy * dp, yy * dG, yy, W_G, W_p, rows)
     dG, dp = answer(spot, zero, spread(1.0), zero, zero)
     by_load(TORQUE, 0.5 * i * dG, dp, dG, yy, W_G, W_p, rows)
-    put(rows[0], ROWS - 4, s)
-    put(rows[0], ROWS - 3, yy * s)
-    put(rows[0], ROWS - 2, psi)
-    put(rows[0], ROWS - 1, -W)
+    put(rows, ROWS - 4, s)
+    put(rows, ROWS - 3, yy * s)
+    put(rows, ROWS - 2, psi)
+    put(rows, ROWS - 1, -W)
 
 
 @kernel
@@ -207,7 +207,7 @@ def by_wall(k, changed, e, spot, here, rows):
 @kernel
 def by_load(k, half, dp, dG, yy, W_G, W_p, rows):
     """Write what load k changes of what loads are conjugate to."""
-    put(rows[0], OF_LOADS + k, half)
-    put(rows[0], OF_LOADS + NUMBERS + k, yy * half)
-    put(rows[0], OF_LOADS + 2 * NUMBERS + k, dp)
-    put(rows[0], OF_LOADS + 3 * NUMBERS + k, -(W_G * dG + W_p * dp))
+    put(rows, OF_LOADS + k, half)
+    put(rows, OF_LOADS + NUMBERS + k, yy * half)
+    put(rows, OF_LOADS + 2 * NUMBERS + k, dp)
+    put(rows, OF_LOADS + 3 * NUMBERS + k, -(W_G * dG + W_p * dp))
