@@ -11,8 +11,8 @@ so nothing is substituted back, and what dy misses counts by its square. Parts a
 left of one, at the end that it shares with the next, is carried on.
 
 What it misses is told by FEWER bubbles, eliminated beside: what they lose is a positive form, of which
-``|lost_ij|^2 <= lost_ii lost_jj``. And J is stationary: so the ``force`` that the loads leave, by each of them times its g,
-is none but for what places and state miss.
+``|lost_ij|^2 <= lost_ii lost_jj``. And as J is stationary the g of the loads, each times its load, are none together, but for
+what places and state miss.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ SHAPES = np.column_stack([_BUBBLES, 1.0 - PLACES, PLACES])
 SLOPES = np.column_stack([2.0 * _LEGENDRE[:, 1 : BUBBLES + 1], -np.ones(COUNT), np.ones(COUNT)])
 OF_STATE = 3  # fields before those of the numbers
 PIVOT = 0  # rows of what is carried on: A, and behind it g of each number
-SQUARES, LOST, FORCE_LEFT = range(3)  # rows of what is known of errors: g A^-1 g of each number, what FEWER lose; the force
+SQUARES, LOST = range(2)  # rows of what is known of errors: g A^-1 g of each number, and what FEWER lose of it
 
 
 @kernel
@@ -119,7 +119,7 @@ def between(n, m, bubbles, bent, lower):
 @kernel
 def eliminate(own, fixed, used, bent, pushed, lower, inverse, carried, known):
     """Eliminate all but the right end of a part: ``carried`` (2, 1 + numbers, WIDTH) takes over what is left of A and g there,
-    with all bubbles and with FEWER; ``known`` (3, ...) what is known of errors. Only in the lanes that have it for their
+    with all bubbles and with FEWER; ``known`` (2, ...) what is known of errors. Only in the lanes that have it for their
     ``own``; where its left end is ``fixed`` it does not move. ``pushed`` becomes g eliminated, ``inverse`` takes 1/pivot.
     """
     count = len(used)
@@ -160,21 +160,9 @@ def eliminate(own, fixed, used, bent, pushed, lower, inverse, carried, known):
 
 
 @kernel
-def derive(own, used, load, pushed, inverse, room, answers, known):
-    """Add to the ``answers`` (LOADS NUMBERS, WIDTH) what J is derived to by what a part answers with, and to what is
-    ``known`` of errors the square of the force that the ``load`` leaves.
-    """
+def derive(own, used, pushed, inverse, room, answers):
+    """Add to the ``answers`` (LOADS NUMBERS, WIDTH) what J is derived to by what a part answers with."""
     count = len(used)
-    for n in range(RIGHT):
-        put(room, n, 0.0)
-    for i in range(LOADS):
-        g = pushed[count - LOADS + i]
-        for n in range(RIGHT):
-            put(room, n, get(room, n) + load[i] * get(g, n))
-    left = get(known[FORCE_LEFT], 0)
-    for n in range(RIGHT):
-        left = left + select(own, get(room, n) * get(room, n) * get(inverse, n), 0.0)
-    put(known[FORCE_LEFT], 0, left)
     for i in range(LOADS):
         for n in range(RIGHT):
             put(room, n, get(pushed[count - LOADS + i], n) * get(inverse, n))

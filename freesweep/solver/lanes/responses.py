@@ -45,7 +45,7 @@ OUTPUTS, TOLD = LOADS + 1, NUMBERS + 2  # what is told of each: itself, its deri
 PASSES, CLOSE = 4, 1e-10  # to a middle whose half has its length; share of the strain in the middle that may be wrong
 UNIFORM = 17.0  # depth from which on the middle answers as the uniform tube does
 # of errors: of what FEWER bubbles lose; of the force that is left; where ends of slack lie; of rounding; of what is left of a layer
-SAFETY, FORCED, ENDS, ROUNDING, SHALLOW = 0.5, 3.0, 3e-9, 1e-11, 4.0
+SAFETY, FORCED, ENDS, ROUNDING, SHALLOW = 0.5, 10.0, 3e-9, 1e-11, 4.0
 TINY = 1e-300
 
 
@@ -95,7 +95,6 @@ def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, matrix
     what is answered. Returns the lanes in which each part is of one kind, and the length.
     """
     valid, near, fixed, length = mask_of(-1), nothing_yet(spread(0.0)), mask_of(-1), spread(0.0)
-    pulls = load.f, load.p, load.m, load.e
     for i in range(2):
         clear(sums[i])
         clear(carried[i])
@@ -122,7 +121,7 @@ def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, matrix
                 length = length + weight
             assemble(fields, len(used), matrix[0], pushed, room)
             eliminate(own, fixed, used, matrix[0], pushed, matrix[1], matrix[2], carried, known)
-            derive(own, used, pulls, pushed, matrix[2], room[0], sums[1], known)
+            derive(own, used, pushed, matrix[2], room[0], sums[1])
             fixed = fixed & ~own
     return valid, length
 
@@ -139,7 +138,7 @@ def finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known,
     stiff = -get(rows, YY)
     pivot = 1.0 / (get(carried[0], PIVOT) + rest * stiff)
     fewer_pivot = 1.0 / (get(carried[1], PIVOT) + rest * stiff)
-    force, work, pulls = spread(0.0), spread(TINY), (load.f, load.p, load.m, load.e)
+    work, pulls = spread(0.0), (load.f, load.p, load.m, load.e)
     for j in range(count):
         own, fewer = (
             get(carried[0], 1 + j) + rest * get(rows, BY_Y + used[j]),
@@ -150,10 +149,19 @@ def finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known,
         put(known[SQUARES], j, get(known[SQUARES], j) + own * own * pivot)
         put(known[LOST], j, abs(get(known[LOST], j) + own * own * pivot - fewer * fewer * fewer_pivot))
     for i in range(LOADS):
-        j = count - LOADS + i
-        force = force + pulls[i] * get(carried[0], 1 + j)
-        work = work + pulls[i] * pulls[i] * get(known[SQUARES], j)
-    missed = FORCED * sqrt(abs((get(known[2], 0) + force * force * pivot) / work)) + select(loose, ENDS, 0.0) + ROUNDING
+        one = count - LOADS + i
+        push = get(carried[0], 1 + one) * pivot
+        work = work + pulls[i] * pulls[i] * get(known[SQUARES], one)
+        for j in range(count - 1):
+            n = NUMBERS * i + used[j]
+            put(sums[1], n, get(sums[1], n) + push * get(carried[0], 1 + j))
+    force = spread(0.0)
+    for j in range(count - 1):
+        own = spread(0.0)
+        for i in range(LOADS):
+            own = own + pulls[i] * get(sums[1], NUMBERS * i + used[j])
+        force = max(force, abs(own) / sqrt(work * get(known[SQUARES], j) + TINY))
+    missed = FORCED * force + select(loose, ENDS, 0.0) + ROUNDING
     drive = -mid.rise * mid.s
     uniform, shallow = mid.depth > UNIFORM, SHALLOW * mid.depth * mid.q
     for i in range(LOADS):
@@ -164,11 +172,10 @@ def finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known,
         put(out[1], TOLD * i, missed * abs(value))
         for j in range(count - 1):
             n = NUMBERS * i + used[j]
-            answer = get(sums[1], n) + push * get(carried[0], 1 + j)
-            value = get(sums[0], n) + answer
+            value = get(sums[0], n) + get(sums[1], n)
             lost = sqrt(get(known[LOST], one) * get(known[LOST], j))
             put(out[0], TOLD * i + 1 + used[j], sign * value)
-            put(out[1], TOLD * i + 1 + used[j], SAFETY * lost + missed * (abs(value) + abs(answer)))
+            put(out[1], TOLD * i + 1 + used[j], SAFETY * lost + missed * (abs(value) + abs(get(sums[1], n))))
         value = get(rows, OF_LOADS + LOADS * NUMBERS + i) + drive * push
         put(out[0], TOLD * i + TOLD - 1, sign * value)
         put(out[1], TOLD * i + TOLD - 1, missed * abs(value))
@@ -217,7 +224,7 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
     small, counts = aligned(3, COLUMNS), np.zeros(WIDTH, np.int64)
     columns, start, scratch = small[0], small[1], small[2]
     rows, fields, pushed = aligned(1, ROWS)[0], aligned(OF_STATE + 2 * count, COUNT), aligned(count, SIZE)
-    matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(3, count)
+    matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(2, count)
     sums, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(2, OUTPUTS * TOLD)
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
