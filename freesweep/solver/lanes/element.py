@@ -22,6 +22,7 @@ from .second import BY_V, BY_Y, LOADS, NUMBERS, OF_LOADS, VV, YV, YY
 from .vector import get, put, select, spread
 
 COUNT, BUBBLES, FEWER = 16, 14, 10
+TINY = 1e-140
 LEFT, RIGHT = BUBBLES, BUBBLES + 1  # behind the bubbles
 SIZE = RIGHT + 1
 TRIANGLE = SIZE * (SIZE + 1) // 2
@@ -31,16 +32,19 @@ _LEGENDRE = np.polynomial.legendre.legvander(_AT, BUBBLES + 1)
 _BUBBLES = (_LEGENDRE[:, 2:] - _LEGENDRE[:, :-2]) / (2.0 * np.arange(1, BUBBLES + 1) + 1.0)
 SHAPES = np.column_stack([_BUBBLES, 1.0 - PLACES, PLACES])
 SLOPES = np.column_stack([2.0 * _LEGENDRE[:, 1 : BUBBLES + 1], -np.ones(COUNT), np.ones(COUNT)])
-OF_STATE = 3  # fields before those of the numbers
+LAST_ONES = 3  # of Legendre's coefficients, which tell how smooth a row is
+_COEFFICIENTS = (2.0 * np.arange(COUNT) + 1.0)[:, None] * (np.polynomial.legendre.legvander(_AT, COUNT - 1).T * WEIGHTS)
+TAILS = np.ascontiguousarray(_COEFFICIENTS[-LAST_ONES:])
+OF_STATE = 3  # fields before those of the numbers; behind them those of what loads are conjugate to
 PIVOT = 0  # rows of what is carried on: A, and behind it g of each number
 SQUARES, LOST = range(2)  # rows of what is known of errors: g A^-1 g of each number, and what FEWER lose of it
 
 
 @kernel
-def weigh(k, weight, per_length, rows, used, fields):
-    """Enter place k of a part into the ``fields`` (OF_STATE + 2 numbers, COUNT, WIDTH) from its ``rows``
-    (:func:`.second.bends`): ``weight`` is its length, ``per_length`` how fast the part's share grows with that; ``used``
-    are the numbers that there are.
+def weigh(k, weight, per_length, rows, middle, used, fields):
+    """Enter place k of a part into the ``fields`` (OF_STATE + 2 numbers + LOADS, COUNT, WIDTH) from its ``rows``
+    (:func:`.second.bends`), and those of the ``middle``: ``weight`` is its length, ``per_length`` how fast the part's share
+    grows with that; ``used`` are the numbers that there are.
     """
     slope = weight * per_length
     put(fields[0], k, weight * get(rows, YY))
@@ -49,6 +53,25 @@ def weigh(k, weight, per_length, rows, used, fields):
     for j in range(len(used)):
         put(fields[OF_STATE + 2 * j], k, weight * get(rows, BY_Y + used[j]))
         put(fields[OF_STATE + 2 * j + 1], k, slope * get(rows, BY_V + used[j]))
+    for i in range(LOADS):
+        n = OF_LOADS + LOADS * NUMBERS + i
+        put(fields[OF_STATE + 2 * len(used) + i], k, weight / WEIGHTS[k] * (get(rows, n) - get(middle, n)))
+
+
+@kernel
+def roughness(row):
+    """The last of Legendre's coefficients of a row, as a share of its largest number, squared: Gauss' rule errs by those that
+    are twice as high.
+    """
+    most, tail = spread(TINY), spread(0.0)
+    for k in range(COUNT):
+        most = max(most, abs(get(row, k)))
+    for i in range(LAST_ONES):
+        total = spread(0.0)
+        for k in range(COUNT):
+            total = total + TAILS[i, k] * get(row, k)
+        tail = max(tail, abs(total))
+    return tail * tail / (most * most)
 
 
 @kernel

@@ -32,6 +32,7 @@ from .element import (
     derive,
     eliminate,
     gather,
+    roughness,
     weigh,
 )
 from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
@@ -45,7 +46,8 @@ OUTPUTS, TOLD = LOADS + 1, NUMBERS + 2  # what is told of each: itself, its deri
 PASSES, CLOSE = 4, 1e-10  # to a middle whose half has its length; share of the strain in the middle that may be wrong
 UNIFORM = 17.0  # depth from which on the middle answers as the uniform tube does
 # of errors: of what FEWER bubbles lose; of the force that is left; where ends of slack lie; of rounding; of what is left of a layer
-SAFETY, FORCED, ENDS, ROUNDING, SHALLOW = 0.5, 10.0, 3e-9, 1e-11, 4.0
+SAFETY, FORCED, ENDS, ROUNDING, SHALLOW, ROUGH = 0.5, 10.0, 3e-9, 1e-11, 4.0, 1e-3
+FAINT = 1e-14
 TINY = 1e-300
 
 
@@ -90,7 +92,9 @@ def clear(array):
 
 
 @kernel
-def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, room, carried, sums, known, scratch):
+def over_parts(
+    parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, room, carried, sums, known, rough, scratch
+):  # fmt: skip
     """Sum all parts between the ``edges``, each in so many ``pieces``: ``sums`` (2, ...) take derivatives at a fixed shape, and
     what is answered. Returns the lanes in which each part is of one kind, and the length.
     """
@@ -98,8 +102,8 @@ def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, matrix
     for i in range(2):
         clear(sums[i])
         clear(carried[i])
-    for i in range(len(known)):
         clear(known[i])
+    clear(rough)
     for j in range(parts):
         first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
         width = (width - first) / pieces
@@ -113,12 +117,15 @@ def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, matrix
                 if k == 0:
                     kind = here.at.kind
                 valid = valid & (((here.at.room > 0.0) & (here.at.kind == kind)) | ~own)
-                bends(here.y, slope_at(here.y, here.per_share, steep, mid), here.cosine, here.at, cell, load, rows)
+                bends(here.y, slope_at(here.y, here.per_share, steep, mid), here.cosine, here.at, cell, load, rows[0])
                 weight = WEIGHTS[k] * here.per_share
-                weigh(k, weight, 1.0 / here.per_share, rows, used, fields)
+                weigh(k, weight, 1.0 / here.per_share, rows[0], rows[1], used, fields)
                 weight = select(own, weight, 0.0)
-                gather(weight, rows, used, sums[0])
+                gather(weight, rows[0], used, sums[0])
                 length = length + weight
+            for n in range(LOADS):
+                here_rough = roughness(fields[OF_STATE + 2 * len(used) + n])
+                put(rough, n, select(own, max(get(rough, n), here_rough), get(rough, n)))
             assemble(fields, len(used), matrix[0], pushed, room)
             eliminate(own, fixed, used, matrix[0], pushed, matrix[1], matrix[2], carried, known)
             derive(own, used, pushed, matrix[2], room[0], sums[1])
@@ -127,13 +134,11 @@ def over_parts(parts, pieces, edges, mid, cell, load, used, rows, fields, matrix
 
 
 @kernel
-def finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known, out, scratch):
+def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough, out):
     """Add the ``rest`` of the half, which is uniform, and write what is told, ``out`` (2, OUTPUTS TOLD, WIDTH), values and
     what they may miss. Returns how the middle grows with the length, and the largest ...
     """
-    count, still, flat = len(used), spread(0.0), spread(1.0)
-    here = look_down(mid.depth, flat, mid, cell, load, nothing_yet(still), scratch)
-    bends(mid.y, still, flat, here.at, cell, load, rows)
+    count = len(used)
     gather(rest, rows, used, sums[0])
     stiff = -get(rows, YY)
     pivot = 1.0 / (get(carried[0], PIVOT) + rest * stiff)
@@ -174,8 +179,13 @@ def finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known,
             n = NUMBERS * i + used[j]
             value = get(sums[0], n) + get(sums[1], n)
             lost = sqrt(get(known[LOST], one) * get(known[LOST], j))
+            both = sqrt(get(known[SQUARES], one) * get(known[SQUARES], j))
+            bent = abs(get(sums[0], n) - half * get(rows, OF_LOADS + n))
             put(out[0], TOLD * i + 1 + used[j], sign * value)
-            put(out[1], TOLD * i + 1 + used[j], SAFETY * lost + missed * (abs(value) + abs(get(sums[1], n))))
+            put(
+                out[1], TOLD * i + 1 + used[j],
+                SAFETY * lost + missed * (abs(get(sums[0], n)) + both) + ROUGH * get(rough, i) * bent,
+            )  # fmt: skip
         value = get(rows, OF_LOADS + LOADS * NUMBERS + i) + drive * push
         put(out[0], TOLD * i + TOLD - 1, sign * value)
         put(out[1], TOLD * i + TOLD - 1, missed * abs(value))
@@ -188,7 +198,11 @@ def finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known,
         put(out[0], TOLD * LOADS + 1 + used[j], select(uniform, even, own))
         put(out[1], TOLD * LOADS + 1 + used[j], doubt + missed * (abs(own) + typical))
     put(out[0], TOLD * OUTPUTS - 1, drive * pivot)
-    put(out[1], TOLD * OUTPUTS - 1, abs(drive) * (SAFETY * abs(pivot - fewer_pivot) + missed * abs(pivot)))
+    faint = FAINT * (load.p * mid.y * mid.y + abs(load.f)) + select(uniform, shallow * abs(1.0 - mid.y) * abs(stiff), 0.0)
+    put(
+        out[1], TOLD * OUTPUTS - 1,
+        abs(drive) * (SAFETY * abs(pivot - fewer_pivot) + missed * abs(pivot)) + faint * abs(pivot),
+    )  # fmt: skip
     return drive * pivot
 
 
@@ -223,9 +237,9 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
     room, ends, edges = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(1, slack_ends.MOST + 2)[0]
     small, counts = aligned(3, COLUMNS), np.zeros(WIDTH, np.int64)
     columns, start, scratch = small[0], small[1], small[2]
-    rows, fields, pushed = aligned(1, ROWS)[0], aligned(OF_STATE + 2 * count, COUNT), aligned(count, SIZE)
+    rows, fields, pushed = aligned(2, ROWS), aligned(OF_STATE + 2 * count + LOADS, COUNT), aligned(count, SIZE)
     matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(2, count)
-    sums, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(2, OUTPUTS * TOLD)
+    sums, rough, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(1, LOADS)[0], aligned(2, OUTPUTS * TOLD)
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
         searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)
@@ -242,12 +256,15 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
                 active = active & valid & (doubts[0] + doubts[1] == 0.0)
                 parts, unsure = find_ends(mid, cell, load, active, ends[:5], counts, ends[5:], edges, scratch)
                 active, loose = active & (unsure < slack_ends.ENOUGH), unsure > 0.0
+            still, flat = spread(0.0), spread(1.0)
+            here = look_down(mid.depth, flat, mid, cell, load, nothing_yet(still), scratch)
+            bends(mid.y, still, flat, here.at, cell, load, rows[1])
             valid, length = over_parts(
                 parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, halves, carried, sums, known,
-                scratch,
+                rough, scratch,
             )  # fmt: skip
             rest = half - length
-            grown = finish(mid, rest, loose, cell, load, half, used, rows, carried, sums, known, out, scratch) * rest
+            grown = finish(mid, rest, loose, load, half, used, rows[1], carried, sums, known, rough, out) * rest
             active = active & valid
             wrong = active & (abs(grown) > CLOSE * abs(1.0 - y))
             y = select(wrong, y + grown, y)
