@@ -14,7 +14,7 @@ from .rest import at_rest
 from .table import Held, rows_of
 from .vectors import differentiated
 
-SHARE, OF_PHYSICAL = 0.01, 0.1  # of the accuracy asked for: what a derivative's bound has to meet, scaled; in vectors
+SHARE, OF_PHYSICAL = 0.01, 1.0  # of the accuracy asked for: what bounds of derivatives have to meet, scaled; in vectors
 TURNS, SETTLED = 4, 1e-10  # of finding the load that holds in vectors, relative
 UNSTRAINED = 1e-9  # of sizes: what a cylinder may differ by from itself
 

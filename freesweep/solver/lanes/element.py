@@ -11,8 +11,8 @@ so nothing is substituted back, and what dy misses counts by its square. Parts a
 left of one, at the end that it shares with the next, is carried on.
 
 What it misses is told by FEWER bubbles, eliminated beside: what they lose is a positive form, of which
-``|lost_ij|^2 <= lost_ii lost_jj``. And as J is stationary the g of the loads, each times its load, are none together, but for
-what places and state miss.
+``|lost_ij|^2 <= lost_ii lost_jj``. And as J is stationary the g of the loads, each times its load, are none together, but
+for what places and state miss.
 """
 
 import numpy as np
@@ -60,8 +60,8 @@ def weigh(k, weight, per_length, rows, middle, used, fields):
 
 @kernel
 def roughness(row):
-    """The last of Legendre's coefficients of a row, as a share of its largest number, squared: Gauss' rule errs by those that
-    are twice as high.
+    """The last of Legendre's coefficients of a row, as a share of its largest number, squared: Gauss' rule errs by those
+    that are twice as high.
     """
     most, tail = spread(TINY), spread(0.0)
     for k in range(COUNT):
@@ -89,7 +89,7 @@ def gather(weight, rows, used, sums):
 
 @kernel
 def assemble(fields, count, bent, pushed, halves):
-    """The lower triangle of a part's A to ``bent`` (TRIANGLE, WIDTH), g of each number to ``pushed`` (numbers, SIZE, WIDTH)."""
+    """The lower triangle of a part's A to ``bent`` (TRIANGLE, WIDTH), g of each number to ``pushed`` (numbers, SIZE, ...)."""
     for n in range(SIZE):
         for k in range(COUNT):
             S, C, V = get(fields[0], k), get(fields[1], k), get(fields[2], k)
@@ -141,8 +141,8 @@ def between(n, m, bubbles, bent, lower):
 
 @kernel
 def eliminate(own, fixed, used, bent, pushed, lower, inverse, carried, known):
-    """Eliminate all but the right end of a part: ``carried`` (2, 1 + numbers, WIDTH) takes over what is left of A and g there,
-    with all bubbles and with FEWER; ``known`` (2, ...) what is known of errors. Only in the lanes that have it for their
+    """Eliminate all but the right end of a part: ``carried`` (2, 1 + numbers, WIDTH) takes over what is left of A and g
+    there, with all bubbles and with FEWER; ``known`` (2, ...) what is known of errors. Only in the lanes that have it for their
     ``own``; where its left end is ``fixed`` it does not move. ``pushed`` becomes g eliminated, ``inverse`` takes 1/pivot.
     """
     count = len(used)

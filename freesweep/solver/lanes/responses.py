@@ -39,14 +39,16 @@ from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import NARROW, find_ends, scan
 from .rule import LAST
-from .second import BY_Y, LOADS, NUMBERS, OF_LOADS, ROWS, YY, bends
+from .second import BY_Y, LOADS, NUMBERS, OF_LOADS, ROWS, VV, YY, bends
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
-OUTPUTS, TOLD = LOADS + 1, NUMBERS + 2  # what is told of each: itself, its derivatives by the numbers, and by the length
+OUTPUTS = LOADS + 1
+TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
 PASSES, CLOSE = 4, 1e-10  # to a middle whose half has its length; share of the strain in the middle that may be wrong
 UNIFORM = 17.0  # depth from which on the middle answers as the uniform tube does
-# of errors: of what FEWER bubbles lose; of the force that is left; where ends of slack lie; of rounding; of what is left of a layer
-SAFETY, FORCED, ENDS, ROUNDING, SHALLOW, ROUGH = 0.5, 10.0, 3e-9, 1e-11, 4.0, 1e-3
+# of errors: of what FEWER bubbles lose; of the force that is left; where ends of slack lie; of rounding; of what is left of
+# a layer; of what is not smooth
+SAFETY, FORCED, ENDS, ROUNDING, SHALLOW, ROUGH = 0.25, 10.0, 3e-9, 1e-11, 4.0, 1e-3
 FAINT = 1e-14
 TINY = 1e-300
 
@@ -95,8 +97,8 @@ def clear(array):
 def over_parts(
     parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, room, carried, sums, known, rough, scratch
 ):  # fmt: skip
-    """Sum all parts between the ``edges``, each in so many ``pieces``: ``sums`` (2, ...) take derivatives at a fixed shape, and
-    what is answered. Returns the lanes in which each part is of one kind, and the length.
+    """Sum all parts between the ``edges``, each in so many ``pieces``: ``sums`` (2, ...) take derivatives at a fixed shape,
+    and what is answered. Returns the lanes in which each part is of one kind, and the length.
     """
     valid, near, fixed, length = mask_of(-1), nothing_yet(spread(0.0)), mask_of(-1), spread(0.0)
     for i in range(2):
@@ -151,7 +153,7 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough
         )
         put(carried[0], 1 + j, own)
         put(carried[1], 1 + j, fewer)
-        put(known[SQUARES], j, get(known[SQUARES], j) + own * own * pivot)
+        put(known[SQUARES], j, max(get(known[SQUARES], j) + own * own * pivot, 0.0))
         put(known[LOST], j, abs(get(known[LOST], j) + own * own * pivot - fewer * fewer * fewer_pivot))
     for i in range(LOADS):
         one = count - LOADS + i
@@ -165,7 +167,7 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough
         own = spread(0.0)
         for i in range(LOADS):
             own = own + pulls[i] * get(sums[1], NUMBERS * i + used[j])
-        force = max(force, abs(own) / sqrt(work * get(known[SQUARES], j) + TINY))
+        force = max(force, abs(own) / sqrt(max(work * get(known[SQUARES], j), TINY)))
     missed = FORCED * force + select(loose, ENDS, 0.0) + ROUNDING
     drive = -mid.rise * mid.s
     uniform, shallow = mid.depth > UNIFORM, SHALLOW * mid.depth * mid.q
@@ -197,12 +199,12 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough
         doubt = select(uniform, shallow * (abs(even) + typical), SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot))
         put(out[0], TOLD * LOADS + 1 + used[j], select(uniform, even, own))
         put(out[1], TOLD * LOADS + 1 + used[j], doubt + missed * (abs(own) + typical))
-    put(out[0], TOLD * OUTPUTS - 1, drive * pivot)
-    faint = FAINT * (load.p * mid.y * mid.y + abs(load.f)) + select(uniform, shallow * abs(1.0 - mid.y) * abs(stiff), 0.0)
-    put(
-        out[1], TOLD * OUTPUTS - 1,
-        abs(drive) * (SAFETY * abs(pivot - fewer_pivot) + missed * abs(pivot)) + faint * abs(pivot),
-    )  # fmt: skip
+    own, unsure = drive * pivot, abs(drive) * SAFETY * abs(pivot - fewer_pivot)
+    even = 1.0 / sqrt(max(-stiff * get(rows, VV), TINY))  # of a long tube that falls toward its middle
+    unmet = abs(even) * (FAINT * (load.p * mid.y * mid.y + abs(load.f)) + 2.0 * mid.q * abs(1.0 - mid.y) * stiff)
+    grown = select(uniform, drive * even, own)
+    put(out[0], TOLD * OUTPUTS - 1, grown)
+    put(out[1], TOLD * OUTPUTS - 1, missed * abs(grown) + select(uniform, shallow * abs(grown) + unmet, unsure))
     return drive * pivot
 
 
@@ -227,7 +229,7 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
 @entry_point
 def differentiate_physical(problems, pressures, middles, limp, order, constants, layers, used, pieces, values, bounds):
     """Values and bounds (rows, OUTPUTS, TOLD) of the rows in the given ``order``, WIDTH at a time: of the outputs, of their
-    derivatives by the numbers of :mod:`second`, and by the length of the half. NaN in rows that no vector could do.
+    derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN in rows that vectors cannot do.
 
     Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
     where some family goes slack along a part of it. ``used`` are the numbers that there are, all LOADS among them.
@@ -247,7 +249,7 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
         y, half = get(start, 0), get(columns, LENGTH)
         active, wrong, loose = mask_of((1 << seats) - 1), mask_of(0), mask_of(0)
         searched = searched and may_go_slack(load.wall)
-        for i in range(PASSES):
+        for _ in range(PASSES):
             mid, parts = seated(y, cell, load, half, scratch), 1
             put(edges, 0, 0.0)
             put(edges, 1, 1.0)
@@ -272,8 +274,9 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
                 break
         met = bits(active & ~wrong)
         for lane in range(seats):
-            if (met >> lane) & 1:
-                row = order[group + lane]
-                for i in range(OUTPUTS):
-                    for j in range(TOLD):
-                        values[row, i, j], bounds[row, i, j] = out[0, TOLD * i + j, lane], out[1, TOLD * i + j, lane]
+            row = order[group + lane]
+            for i in range(OUTPUTS):
+                for j in range(TOLD):
+                    k = TOLD * i + j
+                    values[row, i, j] = out[0, k, lane] if (met >> lane) & 1 else np.nan
+                    bounds[row, i, j] = out[1, k, lane]
