@@ -50,6 +50,7 @@ UNIFORM = 17.0  # depth from which on the middle answers as the uniform tube doe
 # a layer; of what is not smooth
 SAFETY, FORCED, ENDS, ROUNDING, SHALLOW, ROUGH = 0.25, 10.0, 3e-9, 1e-11, 4.0, 1e-3
 FAINT = 1e-14
+SWOLLEN = 0.5
 TINY = 1e-300
 
 
@@ -70,9 +71,11 @@ def seated(y, cell, load, half, scratch):
 
 
 @kernel
-def down(share, left, width):
-    """``(depth, its derivative)`` at a share of a part, from ``left`` on: slow where the layer begins."""
-    even = max(1.0 - width / EVEN, LEAST_EVEN)
+def down(share, left, width, mid):
+    """``(depth, its derivative)`` at a share of a part, from ``left`` on: slow where the layer begins, the more so where a
+    tube swells many times.
+    """
+    even = max(1.0 - width / EVEN, LEAST_EVEN) / (1.0 + SWOLLEN * select(left > 0.0, 0.0, max(mid.y - 1.0, 0.0)))
     bent = (1.0 - even) * share * share
     return left + width * share * (even + bent), width * (even + 3.0 * bent)
 
@@ -113,7 +116,7 @@ def over_parts(
         for i in range(pieces):
             kind = spread(-1.0)
             for k in range(COUNT):
-                depth, steep = down(PLACES[k], first + i * width, width)
+                depth, steep = down(PLACES[k], first + i * width, width, mid)
                 here = look_down(depth, steep, mid, cell, load, near, scratch)
                 near = handed_on(here.y, here.at, near)
                 if k == 0:
@@ -136,7 +139,7 @@ def over_parts(
 
 
 @kernel
-def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough, out):
+def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left, rough, out):
     """Add the ``rest`` of the half, which is uniform, and write what is told, ``out`` (2, OUTPUTS TOLD, WIDTH), values and
     what they may miss. Returns how the middle grows with the length, and the largest ...
     """
@@ -162,12 +165,19 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough
         for j in range(count - 1):
             n = NUMBERS * i + used[j]
             put(sums[1], n, get(sums[1], n) + push * get(carried[0], 1 + j))
-    force = spread(0.0)
+    # the force that the loads leave together, by what each number answers with
+    force, root = spread(0.0), 1.0 / sqrt(max(work, TINY))
     for j in range(count - 1):
         own = spread(0.0)
         for i in range(LOADS):
             own = own + pulls[i] * get(sums[1], NUMBERS * i + used[j])
-        force = max(force, abs(own) / sqrt(max(work * get(known[SQUARES], j), TINY)))
+        put(left, j, abs(own) * root)
+        if j >= count - LOADS:
+            force = max(force, abs(pulls[j - count + LOADS] * own) * root * root)
+    own = spread(0.0)
+    for i in range(LOADS - 1):
+        own = own + pulls[i] * get(left, count - LOADS + i)
+    put(left, count - 1, own)  # what is left of the energy is so of the loads
     missed = FORCED * force + select(loose, ENDS, 0.0) + ROUNDING
     drive = -mid.rise * mid.s
     uniform, shallow = mid.depth > UNIFORM, SHALLOW * mid.depth * mid.q
@@ -181,12 +191,13 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough
             n = NUMBERS * i + used[j]
             value = get(sums[0], n) + get(sums[1], n)
             lost = sqrt(get(known[LOST], one) * get(known[LOST], j))
-            both = sqrt(get(known[SQUARES], one) * get(known[SQUARES], j))
+            first, other = sqrt(get(known[SQUARES], one)), sqrt(get(known[SQUARES], j))
+            unmet = FORCED * (get(left, one) * other + get(left, j) * first)
             bent = abs(get(sums[0], n) - half * get(rows, OF_LOADS + n))
             put(out[0], TOLD * i + 1 + used[j], sign * value)
             put(
                 out[1], TOLD * i + 1 + used[j],
-                SAFETY * lost + missed * (abs(get(sums[0], n)) + both) + ROUGH * get(rough, i) * bent,
+                SAFETY * lost + unmet + missed * (abs(get(sums[0], n)) + first * other) + ROUGH * get(rough, i) * bent,
             )  # fmt: skip
         value = get(rows, OF_LOADS + LOADS * NUMBERS + i) + drive * push
         put(out[0], TOLD * i + TOLD - 1, sign * value)
@@ -196,15 +207,16 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, rough
     for j in range(count - 1):
         own, even = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff
         typical = sqrt(get(known[SQUARES], j) / (abs(stiff) * half))
-        doubt = select(uniform, shallow * (abs(even) + typical), SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot))
-        put(out[0], TOLD * LOADS + 1 + used[j], select(uniform, even, own))
-        put(out[1], TOLD * LOADS + 1 + used[j], doubt + missed * (abs(own) + typical))
-    own, unsure = drive * pivot, abs(drive) * SAFETY * abs(pivot - fewer_pivot)
+        doubt, of_even = SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot), shallow * (abs(even) + typical)
+        put(out[0], TOLD * LOADS + 1 + used[j], select(of_even < doubt, even, own))
+        put(out[1], TOLD * LOADS + 1 + used[j], min(doubt, of_even) + missed * (abs(own) + typical))
     even = 1.0 / sqrt(max(-stiff * get(rows, VV), TINY))  # of a long tube that falls toward its middle
-    unmet = abs(even) * (FAINT * (load.p * mid.y * mid.y + abs(load.f)) + 2.0 * mid.q * abs(1.0 - mid.y) * stiff)
-    grown = select(uniform, drive * even, own)
+    faint = FAINT * (load.p * mid.y * mid.y + abs(load.f))
+    short = shallow * abs(drive) + faint + 2.0 * mid.q * abs(1.0 - mid.y) * stiff
+    near = abs(drive) * SAFETY * abs(pivot - fewer_pivot) + faint * abs(pivot)
+    grown = select(uniform, drive * even, drive * pivot)
     put(out[0], TOLD * OUTPUTS - 1, grown)
-    put(out[1], TOLD * OUTPUTS - 1, missed * abs(grown) + select(uniform, shallow * abs(grown) + unmet, unsure))
+    put(out[1], TOLD * OUTPUTS - 1, missed * abs(grown) + select(uniform, abs(even) * short, near))
     return drive * pivot
 
 
@@ -240,7 +252,7 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
     small, counts = aligned(3, COLUMNS), np.zeros(WIDTH, np.int64)
     columns, start, scratch = small[0], small[1], small[2]
     rows, fields, pushed = aligned(2, ROWS), aligned(OF_STATE + 2 * count + LOADS, COUNT), aligned(count, SIZE)
-    matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(2, count)
+    matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(3, count)
     sums, rough, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(1, LOADS)[0], aligned(2, OUTPUTS * TOLD)
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
@@ -266,7 +278,7 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
                 rough, scratch,
             )  # fmt: skip
             rest = half - length
-            grown = finish(mid, rest, loose, load, half, used, rows[1], carried, sums, known, rough, out) * rest
+            grown = finish(mid, rest, loose, load, half, used, rows[1], carried, sums, known[:2], known[2], rough, out) * rest
             active = active & valid
             wrong = active & (abs(grown) > CLOSE * abs(1.0 - y))
             y = select(wrong, y + grown, y)
