@@ -50,7 +50,8 @@ UNIFORM = 17.0  # depth from which on the middle answers as the uniform tube doe
 # a layer; of what is not smooth
 SAFETY, FORCED, ENDS, ROUNDING, SHALLOW, ROUGH = 0.25, 10.0, 3e-9, 1e-11, 4.0, 1e-3
 FAINT = 1e-14
-SWOLLEN = 0.5
+ALIKE = 0.1
+SWOLLEN = 0.1
 TINY = 1e-300
 
 
@@ -202,12 +203,18 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left,
         value = get(rows, OF_LOADS + LOADS * NUMBERS + i) + drive * push
         put(out[0], TOLD * i + TOLD - 1, sign * value)
         put(out[1], TOLD * i + TOLD - 1, missed * abs(value))
+    lost = spread(0.0)  # of what the middle answers with to the loads
+    for i in range(LOADS):
+        j = count - LOADS + i
+        own = get(carried[0], 1 + j) * pivot - get(carried[1], 1 + j) * fewer_pivot
+        lost = max(lost, abs(pulls[i] * own) / sqrt(max(work, TINY)))
     put(out[0], TOLD * LOADS, mid.y)
     put(out[1], TOLD * LOADS, CLOSE * abs(1.0 - mid.y) + ROUNDING)
     for j in range(count - 1):
         own, even = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff
         typical = sqrt(get(known[SQUARES], j) / (abs(stiff) * half))
-        doubt, of_even = SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot), shallow * (abs(even) + typical)
+        doubt = SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot) + ALIKE * lost * sqrt(get(known[SQUARES], j))
+        of_even = shallow * (abs(even) + typical)
         put(out[0], TOLD * LOADS + 1 + used[j], select(of_even < doubt, even, own))
         put(out[1], TOLD * LOADS + 1 + used[j], min(doubt, of_even) + missed * (abs(own) + typical))
     even = 1.0 / sqrt(max(-stiff * get(rows, VV), TINY))  # of a long tube that falls toward its middle
