@@ -115,7 +115,7 @@ def test_vectors_tell_what_one_state_at_a_time_tells(way, monkeypatch):
     names = ["beta", "length", "wall", "c01", "fiber_extension", *(["pressure"] if pressures else [])]
     found = []
     for vectors in (True, False):
-        monkeypatch.setattr(attach, "is_worth_vectors", lambda count, own=vectors: own)
+        monkeypatch.setattr(attach, "is_worth_vectors", lambda *_, own=vectors: own)
         if vectors:  # not one of them is left to the other way
             monkeypatch.setattr(asked.Asked, "state", None)
         found.append(getattr(fs, way)(tube, *pressures, x=[0.0], derivatives=names))

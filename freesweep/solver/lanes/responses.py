@@ -149,7 +149,8 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left,
     stiff = -get(rows, YY)
     pivot = 1.0 / (get(carried[0], PIVOT) + rest * stiff)
     fewer_pivot = 1.0 / (get(carried[1], PIVOT) + rest * stiff)
-    work, pulls = spread(0.0), (load.f, load.p, load.m, load.e)
+    strain = 1.0 - mid.y
+    work, pulls = abs(stiff) * half * strain * strain, (load.f, load.p, load.m, load.e)
     for j in range(count):
         own, fewer = (
             get(carried[0], 1 + j) + rest * get(rows, BY_Y + used[j]),
