@@ -1,4 +1,4 @@
-"""The chain rule: from derivatives by the numbers of :mod:`second` to those along what the columns of a problem change by."""
+"""The chain rule: from derivatives by the numbers of :mod:`second` to those along what a problem's columns change by."""
 
 import numpy as np
 
@@ -13,8 +13,8 @@ LITTLE, TURN = 1e-2, 0.5  # of the work of the loads, and of half a tube: what e
 @entry_point
 def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
     """Turn what is ``told`` of rows (n, OUTPUTS, TOLD), and the ``doubts`` about it, to ``values`` and ``bounds`` (n, 1 +
-    directions, OUTPUTS) along directions: ``changes`` (n, directions, columns + 1) of the problem's columns and the pressure.
-    ``missed`` (n,): the largest bound, scaled as outputs are, or by what it belongs to.
+    directions, OUTPUTS) along directions: ``changes`` (n, directions, columns + 1) of the problem's columns and the
+    pressure. ``missed`` (n,): the largest bound, scaled as outputs are, or by what it belongs to.
     """
     by, size, last = np.zeros(TOLD), np.zeros(OUTPUTS), problems.shape[1]
     for row in range(len(problems)):
@@ -33,7 +33,11 @@ def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
                 by[1 + second.T_ALPHA], by[1 + second.T_BETA] = own[H] + own[D], own[H] - own[D]
                 by[1 + second.GAMMA], by[1 + second.AREA], by[1 + second.INNER] = own[GAMMA], own[AREA], own[INNER]
                 by[1 + second.RATIO], by[1 + second.SECOND], by[1 + second.THIRD] = own[RATIO], own[SECOND], own[THIRD]
-                by[1 + second.FORCE], by[1 + second.PRESSURE], by[1 + second.TORQUE] = own[FORCE], own[last], own[TORQUE]
+                by[1 + second.FORCE], by[1 + second.PRESSURE], by[1 + second.TORQUE] = (
+                    own[FORCE],
+                    own[last],
+                    own[TORQUE],
+                )
                 by[TOLD - 1] = 0.5 * own[LENGTH]
             for i in range(OUTPUTS):
                 value, bound = 0.0, 0.0

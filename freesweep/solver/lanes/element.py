@@ -89,7 +89,7 @@ def gather(weight, rows, used, sums):
 
 @kernel
 def assemble(fields, count, bent, pushed, halves):
-    """The lower triangle of a part's A to ``bent`` (TRIANGLE, WIDTH), g of each number to ``pushed`` (numbers, SIZE, ...)."""
+    """The lower triangle of a part's A to ``bent`` (TRIANGLE, WIDTH), all g to ``pushed`` (numbers, SIZE, WIDTH)."""
     for n in range(SIZE):
         for k in range(COUNT):
             S, C, V = get(fields[0], k), get(fields[1], k), get(fields[2], k)
@@ -142,8 +142,9 @@ def between(n, m, bubbles, bent, lower):
 @kernel
 def eliminate(own, fixed, used, bent, pushed, lower, inverse, carried, known):
     """Eliminate all but the right end of a part: ``carried`` (2, 1 + numbers, WIDTH) takes over what is left of A and g
-    there, with all bubbles and with FEWER; ``known`` (2, ...) what is known of errors. Only in the lanes that have it for their
-    ``own``; where its left end is ``fixed`` it does not move. ``pushed`` becomes g eliminated, ``inverse`` takes 1/pivot.
+    there, with all bubbles and with FEWER; ``known`` (2, ...) what is known of errors. Only in the lanes that have it for
+    their ``own``; where its left end is ``fixed`` it does not move. ``pushed`` becomes g eliminated,
+    ``inverse`` takes 1/pivot.
     """
     count = len(used)
     divided(bent, lower, inverse)

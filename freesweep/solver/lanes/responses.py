@@ -249,7 +249,7 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
 @entry_point
 def differentiate_physical(problems, pressures, middles, limp, order, constants, layers, used, pieces, values, bounds):
     """Values and bounds (rows, OUTPUTS, TOLD) of the rows in the given ``order``, WIDTH at a time: of the outputs, of their
-    derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN in rows that vectors cannot do.
+    derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where vectors cannot.
 
     Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
     where some family goes slack along a part of it. ``used`` are the numbers that there are, all LOADS among them.
@@ -286,7 +286,10 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
                 rough, scratch,
             )  # fmt: skip
             rest = half - length
-            grown = finish(mid, rest, loose, load, half, used, rows[1], carried, sums, known[:2], known[2], rough, out) * rest
+            grown = (
+                finish(mid, rest, loose, load, half, used, rows[1], carried, sums, known[:2], known[2], rough, out)
+                * rest
+            )
             active = active & valid
             wrong = active & (abs(grown) > CLOSE * abs(1.0 - y))
             y = select(wrong, y + grown, y)

@@ -27,7 +27,9 @@ T_ALPHA, T_BETA, GAMMA, AREA, INNER, RATIO, SECOND, THIRD, FORCE, PRESSURE, TORQ
 LOADS = 4  # the last of them
 BY_Y, BY_V = 0, NUMBERS  # rows of the bends of L along y and v, of each number
 YY, YV, VV = range(2 * NUMBERS, 2 * NUMBERS + 3)
-OF_LOADS = VV + 1  # rows of the bends along a load, of each number that is no load, and of f, p and m; then L by each load
+OF_LOADS = (
+    VV + 1
+)  # rows of the bends along a load, of each number that is no load, and of f, p and m; then L by each load
 ROWS = OF_LOADS + LOADS * NUMBERS + LOADS
 
 slopes, stored, layer = inlined(walls.slopes), inlined(walls.stored), inlined(walls.layer)
