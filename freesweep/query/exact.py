@@ -20,6 +20,10 @@ from .reference import COLUMNS
 
 CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
 SHARE = 512  # points that one thread solves at a time
+FEW, ROUGH = (
+    (1, 3),
+    1e-5,
+)  # tries of vectors that are worth it where a state may be left out; at an accuracy that is rough
 
 
 def solve(
@@ -152,7 +156,8 @@ def _free(rows, pressure, most, accuracy, followed, thorough):
         walks = batch.walk_all(rows, first, pressures, tube, accuracy - SENSITIVITY * error, soon=True)
     else:
         walks = batch._nothing(rows, len(pressures), batch.NOTHING)
-        batch._walk_lanes(rows, first, pressures, int(tube[1][-1]), accuracy, batch.NOTHING, walks)
+        most = FEW[0] if accuracy > ROUGH else FEW[1]  # what is no state would be tried again in ever more pieces
+        batch._walk_lanes(rows, first, pressures, int(tube[1][-1]), accuracy, batch.NOTHING, walks, most)
         walks.status[walks.status == PENDING] = NOT_CONVERGED
     own = slice(0, None, steps)
     bounds, limits = widened(walks.values, walks.bounds, error)[own], walks.limits.copy()

@@ -122,17 +122,17 @@ def _replace(found, rows, better):
     found.status[rows & ~alike & (found.status == OK)] = INACCURATE
 
 
-def _walk_lanes(problems, first, pressures, base, accuracy, stations, found):
-    """Solve what vectors can of tubes that do not vary. A loaded one's stretch is carried up and down from the state at
-    which its loads have settled.
+def _walk_lanes(problems, first, pressures, base, accuracy, stations, found, most=None):
+    """Solve what vectors can of tubes that do not vary, in so many tries at ``most``. A loaded one's stretch is carried up
+    and down from the state at which its loads have settled.
     """
     if not np.any(is_loaded(problems)):
-        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), base, accuracy, stations, found)
+        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), base, accuracy, stations, found, most)
         return
     own = legs(problems, first, pressures)
     asked = own.rows >= 0
     on_the_way = _nothing(problems[own.owners], len(own.pressures), stations)
-    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, base, accuracy, stations, on_the_way)
+    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, base, accuracy, stations, on_the_way, most)
     for name in STATES:
         getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
 
@@ -146,7 +146,7 @@ def _nothing(problems, states, stations):
     )  # fmt: skip
 
 
-def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, found):
+def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, found, most=None):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
     # what shares a vector should need much the same work: as many pressures, and likeness tells the rest
     steps = np.diff(first)
@@ -156,7 +156,7 @@ def _solve_lanes(problems, first, pressures, asked, base, accuracy, stations, fo
     for carry, solve, kind, some in _kinds(problems):
         carry(problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness)
         carried = some[owners] & asked & np.isfinite(stretches)
-        for fineness in tries(problems, base):
+        for fineness in tries(problems, base)[:most]:
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_in_order(likeness[rows]), kind="stable")
             solve(
