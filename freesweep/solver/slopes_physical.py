@@ -57,7 +57,8 @@ def answers(problems, pressures, middles, limp, pieces):
     """Values and bounds (n, 5, 1 + numbers + 1) of :func:`.lanes.responses.differentiate_physical`."""
     from .lanes import second
     from .lanes.pack import count_layers
-    from .lanes.responses import TOLD, differentiate_physical
+    from .lanes.responses import differentiate_physical
+    from .lanes.told import TOLD
 
     values, bounds = (np.empty((len(problems), OUTPUTS, TOLD)) for _ in range(2))
     order = np.lexsort((middles, limp))  # what shares a vector should need much the same work

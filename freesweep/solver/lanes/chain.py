@@ -5,7 +5,7 @@ import numpy as np
 from ...jit import entry_point
 from ..problem import AREA, FORCE, GAMMA, INNER, LENGTH, RATIO, SECOND, THIRD, TORQUE, D, H
 from . import second
-from .responses import OUTPUTS, TOLD
+from .told import OUTPUTS, TOLD
 
 LITTLE, TURN = 1e-2, 0.5  # of the work of the loads, and of half a tube: what energy and twist are measured by at least
 

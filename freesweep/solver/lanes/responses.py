@@ -20,12 +20,10 @@ from ..problem import PHYSICAL
 from . import slack_ends
 from .element import (
     COUNT,
-    LOST,
     OF_STATE,
     PIVOT,
     PLACES,
     SIZE,
-    SQUARES,
     TRIANGLE,
     WEIGHTS,
     assemble,
@@ -39,20 +37,12 @@ from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import NARROW, find_ends, scan
 from .rule import LAST
-from .second import BY_Y, LOADS, NUMBERS, OF_LOADS, ROWS, VV, YY, bends
+from .second import LOADS, NUMBERS, ROWS, bends
+from .told import CLOSE, OUTPUTS, TOLD, finish
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
-OUTPUTS = LOADS + 1
-TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
-PASSES, CLOSE = 4, 1e-10  # to a middle whose half has its length; share of the strain in the middle that may be wrong
-UNIFORM = 17.0  # depth from which on the middle answers as the uniform tube does
-# of errors: of what FEWER bubbles lose; of the force that is left; where ends of slack lie; of rounding; of what is left of
-# a layer; of what is not smooth
-SAFETY, FORCED, ENDS, ROUNDING, SHALLOW, ROUGH = 0.25, 10.0, 3e-9, 1e-11, 4.0, 1e-3
-FAINT = 1e-14
-ALIKE = 0.1
-SWOLLEN = 0.1
-TINY = 1e-300
+PASSES = 4  # to a middle whose half has its length
+SWOLLEN = 0.1  # by which a swelling makes the layer's beginning slower
 
 
 @kernel
@@ -140,95 +130,6 @@ def over_parts(
 
 
 @kernel
-def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left, rough, out):
-    """Add the ``rest`` of the half, which is uniform, and write what is told, ``out`` (2, OUTPUTS TOLD, WIDTH), values and
-    what they may miss. Returns how the middle grows with the length, and the largest ...
-    """
-    count = len(used)
-    gather(rest, rows, used, sums[0])
-    stiff = -get(rows, YY)
-    pivot = 1.0 / (get(carried[0], PIVOT) + rest * stiff)
-    fewer_pivot = 1.0 / (get(carried[1], PIVOT) + rest * stiff)
-    strain = 1.0 - mid.y
-    work, pulls = abs(stiff) * half * strain * strain, (load.f, load.p, load.m, load.e)
-    for j in range(count):
-        own, fewer = (
-            get(carried[0], 1 + j) + rest * get(rows, BY_Y + used[j]),
-            get(carried[1], 1 + j) + rest * get(rows, BY_Y + used[j]),
-        )
-        put(carried[0], 1 + j, own)
-        put(carried[1], 1 + j, fewer)
-        put(known[SQUARES], j, max(get(known[SQUARES], j) + own * own * pivot, 0.0))
-        put(known[LOST], j, abs(get(known[LOST], j) + own * own * pivot - fewer * fewer * fewer_pivot))
-    for i in range(LOADS):
-        one = count - LOADS + i
-        push = get(carried[0], 1 + one) * pivot
-        work = work + pulls[i] * pulls[i] * get(known[SQUARES], one)
-        for j in range(count - 1):
-            n = NUMBERS * i + used[j]
-            put(sums[1], n, get(sums[1], n) + push * get(carried[0], 1 + j))
-    # the force that the loads leave together, by what each number answers with
-    force, root = spread(0.0), 1.0 / sqrt(max(work, TINY))
-    for j in range(count - 1):
-        own = spread(0.0)
-        for i in range(LOADS):
-            own = own + pulls[i] * get(sums[1], NUMBERS * i + used[j])
-        put(left, j, abs(own) * root)
-        if j >= count - LOADS:
-            force = max(force, abs(pulls[j - count + LOADS] * own) * root * root)
-    own = spread(0.0)
-    for i in range(LOADS - 1):
-        own = own + pulls[i] * get(left, count - LOADS + i)
-    put(left, count - 1, own)  # what is left of the energy is so of the loads
-    missed = FORCED * force + select(loose, ENDS, 0.0) + ROUNDING
-    drive = -mid.rise * mid.s
-    uniform, shallow = mid.depth > UNIFORM, SHALLOW * mid.depth * mid.q
-    for i in range(LOADS):
-        one = count - LOADS + i
-        push, sign = get(carried[0], 1 + one) * pivot, -1.0 if i == LOADS - 1 else 1.0
-        value = get(sums[0], LOADS * NUMBERS + i)
-        put(out[0], TOLD * i, sign * value)
-        put(out[1], TOLD * i, missed * abs(value))
-        for j in range(count - 1):
-            n = NUMBERS * i + used[j]
-            value = get(sums[0], n) + get(sums[1], n)
-            lost = sqrt(get(known[LOST], one) * get(known[LOST], j))
-            first, other = sqrt(get(known[SQUARES], one)), sqrt(get(known[SQUARES], j))
-            unmet = FORCED * (get(left, one) * other + get(left, j) * first)
-            bent = abs(get(sums[0], n) - half * get(rows, OF_LOADS + n))
-            put(out[0], TOLD * i + 1 + used[j], sign * value)
-            put(
-                out[1], TOLD * i + 1 + used[j],
-                SAFETY * lost + unmet + missed * (abs(get(sums[0], n)) + first * other) + ROUGH * get(rough, i) * bent,
-            )  # fmt: skip
-        value = get(rows, OF_LOADS + LOADS * NUMBERS + i) + drive * push
-        put(out[0], TOLD * i + TOLD - 1, sign * value)
-        put(out[1], TOLD * i + TOLD - 1, missed * abs(value))
-    lost = spread(0.0)  # of what the middle answers with to the loads
-    for i in range(LOADS):
-        j = count - LOADS + i
-        own = get(carried[0], 1 + j) * pivot - get(carried[1], 1 + j) * fewer_pivot
-        lost = max(lost, abs(pulls[i] * own) / sqrt(max(work, TINY)))
-    put(out[0], TOLD * LOADS, mid.y)
-    put(out[1], TOLD * LOADS, CLOSE * abs(1.0 - mid.y) + ROUNDING)
-    for j in range(count - 1):
-        own, even = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff
-        typical = sqrt(get(known[SQUARES], j) / (abs(stiff) * half))
-        doubt = SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot) + ALIKE * lost * sqrt(get(known[SQUARES], j))
-        of_even = shallow * (abs(even) + typical)
-        put(out[0], TOLD * LOADS + 1 + used[j], select(of_even < doubt, even, own))
-        put(out[1], TOLD * LOADS + 1 + used[j], min(doubt, of_even) + missed * (abs(own) + typical))
-    even = 1.0 / sqrt(max(-stiff * get(rows, VV), TINY))  # of a long tube that falls toward its middle
-    faint = FAINT * (load.p * mid.y * mid.y + abs(load.f))
-    short = shallow * abs(drive) + faint + 2.0 * mid.q * abs(1.0 - mid.y) * stiff
-    near = abs(drive) * SAFETY * abs(pivot - fewer_pivot) + faint * abs(pivot)
-    grown = select(uniform, drive * even, drive * pivot)
-    put(out[0], TOLD * OUTPUTS - 1, grown)
-    put(out[1], TOLD * OUTPUTS - 1, missed * abs(grown) + select(uniform, abs(even) * short, near))
-    return drive * pivot
-
-
-@kernel
 def seat(group, count, order, problems, pressures, middles, limp, columns, start):
     """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too. Returns
     whether some family of one goes slack somewhere, and not everywhere.
@@ -290,7 +191,7 @@ def differentiate_physical(problems, pressures, middles, limp, order, constants,
                 finish(mid, rest, loose, load, half, used, rows[1], carried, sums, known[:2], known[2], rough, out)
                 * rest
             )
-            active = active & valid
+            active = active & valid & (get(carried[0], PIVOT) > 0.0)  # of others bounds say nothing
             wrong = active & (abs(grown) > CLOSE * abs(1.0 - y))
             y = select(wrong, y + grown, y)
             if not some(wrong):
