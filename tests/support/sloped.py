@@ -21,7 +21,8 @@ PARAMETERS = (
     "alpha", "beta", "length", "radius", "wall", "fiber_extension", "c10", "c01", "pressure", "force", "torque"
 )  # fmt: skip
 STEPS, LITTLE = (4e-3, 8e-4, 1.6e-4), (3e-5, 1e-5)  # of sizes; on one side only there is less to tell corners by
-CAUTION, SCATTER = 10.0, 2e-9  # of those estimates; what differences of two states scatter, of these
+CAUTION, ONE_SIDED = 10.0, 1e-5  # times those estimates, and relative: corners may hide in them
+SCATTER = 2e-9  # what differences of two states scatter, of these
 
 
 def batch(count, seed, loaded=0.6):
@@ -105,6 +106,7 @@ def difference(design, kind, name, middle):
         ahead, behind = ((4.0 * near - far) / 3.0 for near, far in (first, second))
         found = np.where(at_one, ahead, even[0])
         one_sided = CAUTION * (np.abs(ahead - first[0]) + np.abs(first[0] - first[1]))
+        one_sided = one_sided + ONE_SIDED * np.abs(ahead)
         error = np.where(at_one, one_sided, np.abs(even[0] - even[1]) + np.abs(ahead - behind))
         error = error + SCATTER * measured(middle) / h
         better = np.isfinite(found) & (error < doubt)

@@ -29,8 +29,8 @@ TINY = 1e-300
 @kernel
 def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left, rough, out):
     """Add the ``rest`` of the half, which is uniform, as the ``rows`` of the middle tell, and write what is told:
-    ``out`` (2, OUTPUTS TOLD, WIDTH), values and what they may miss. Returns how the middle grows with the length. Where ``loose``, a
-    family goes slack along the tube; ``left`` (numbers, ...) is scratch, the rest as of :mod:`element`.
+    ``out`` (2, OUTPUTS TOLD, WIDTH), values and what they may miss. Returns how the middle grows with the length.
+    Where ``loose``, a family goes slack along the tube; ``left`` (numbers, ...) is scratch, the rest as of :mod:`element`.
     """
     gather(rest, rows, used, sums[0])
     pulls, strain, stiff = (load.f, load.p, load.m, load.e), 1.0 - mid.y, -get(rows, YY)
