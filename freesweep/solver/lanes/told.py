@@ -19,7 +19,7 @@ UNIFORM, SHALLOW = (
     17.0,
     4.0,
 )  # depth from which on the middle is the uniform tube's; times what is left of a layer there
-SAFETY, ALIKE = 0.25, 0.1  # of what FEWER bubbles lose; of what they lose of the middle's answers to the loads
+SAFETY, ALIKE = 0.25, 0.02  # of what FEWER bubbles lose; and of the most that this may be of a push in the middle
 FORCED, ROUGH = 10.0, 1e-3  # times the force that is left; of what is not smooth
 ENDS, ROUNDING, FAINT = 3e-9, 1e-11, 1e-14  # of where ends of slack lie, of numbers, and of the drive of the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
@@ -42,7 +42,7 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left,
     missed = FORCED * force_left(pulls, work, used, sums[1], left) + select(loose, ENDS, 0.0) + ROUNDING
     drive = -mid.rise * mid.s
     tell_loads(half, drive * pivot, missed, used, rows, carried, sums, known, left, rough, out)
-    tell_middle(mid, load, half, drive, pivot, fewer_pivot, pulls, work, missed, used, rows, carried, known, out)
+    tell_middle(mid, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out)
     return drive * pivot
 
 
@@ -111,20 +111,18 @@ def tell_loads(half, grown, missed, used, rows, carried, sums, known, left, roug
 
 
 @kernel
-def tell_middle(mid, load, half, drive, pivot, fewer_pivot, pulls, work, missed, used, rows, carried, known, out):
+def tell_middle(mid, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out):
     """Write the stretch of the middle and its derivatives: the uniform tube's where less is missed so."""
-    count, first, stiff, lost = len(used), TOLD * LOADS, -get(rows, YY), spread(0.0)
-    for i in range(LOADS):  # of what the middle answers with to the loads
-        j = count - LOADS + i
-        own = get(carried[0], 1 + j) * pivot - get(carried[1], 1 + j) * fewer_pivot
-        lost = max(lost, abs(pulls[i] * own) / sqrt(work))
+    count, first, stiff = len(used), TOLD * LOADS, -get(rows, YY)
+    lost = abs(pivot - fewer_pivot)  # of what the middle answers with to a push
     put(out[0], first, mid.y)
     put(out[1], first, CLOSE * abs(1.0 - mid.y) + ROUNDING)
     uniform, shallow = mid.depth > UNIFORM, SHALLOW * mid.depth * mid.q
     for j in range(count - 1):
         own, even, square = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff, get(known[SQUARES], j)
         typical = sqrt(square / (abs(stiff) * half))
-        doubt = SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot) + ALIKE * lost * sqrt(square)
+        doubt = SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot)
+        doubt = doubt + ALIKE * sqrt(lost * get(known[LOST], j))
         of_even = shallow * (abs(even) + typical)
         put(out[0], first + 1 + used[j], select(of_even < doubt, even, own))
         put(out[1], first + 1 + used[j], min(doubt, of_even) + missed * (abs(own) + typical))
