@@ -20,7 +20,7 @@ UNIFORM, SHALLOW = (
     4.0,
 )  # depth from which on the middle is the uniform tube's; times what is left of a layer there
 SAFETY, ALIKE = 0.25, 0.02  # of what FEWER bubbles lose; and of the most that this may be of a push in the middle
-FORCED, ROUGH = 10.0, 1e-3  # times the force that is left; of what is not smooth
+FORCED, ROUGH = 10.0, 1e-2  # times the force that is left; of what is not smooth
 ENDS, ROUNDING, FAINT = 3e-9, 1e-11, 1e-14  # of where ends of slack lie, of numbers, and of the drive of the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
 TINY = 1e-300
