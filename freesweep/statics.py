@@ -110,7 +110,8 @@ def _differentiated(result, tube, names, loads, accuracy):
     asked = Asked(tube, names, accuracy, course, error)
     dims = result["status"].dims
     grid = dict(zip(dims, np.meshgrid(*(loads[name] for name in dims), indexing="ij")))
-    at = {name: grid.get(name, np.full(result["status"].shape, loads[name])) for name in LOADS}
+    one = result["status"].shape
+    at = {name: grid[name] if name in grid else np.full(one, loads[name]) for name in LOADS}
     return attach(result, asked, at, lambda stations, guess: _solve(tube, loads, stations, guess))
 
 

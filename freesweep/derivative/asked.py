@@ -14,7 +14,7 @@ from .rest import at_rest
 from .table import Held, rows_of
 from .vectors import differentiated
 
-SHARE = 0.01  # of the accuracy asked for: what a derivative's bound has to meet, scaled
+SHARE, OF_PHYSICAL = 0.01, 1.0  # of the accuracy asked for: what bounds of derivatives have to meet, scaled; in vectors
 TURNS, SETTLED = 4, 1e-10  # of finding the load that holds in vectors, relative
 UNSTRAINED = 1e-9  # of sizes: what a cylinder may differ by from itself
 
@@ -47,22 +47,26 @@ class Asked:
 
     @property
     def is_alike(self):
-        """Whether vectors can do it: a tube of the source's that is the same all along, solved by its half."""
-        return self.half and not self.is_physical
+        """Whether vectors can do it: a tube that is the same all along, solved by its half."""
+        return self.half
 
     def places(self, finer):
         """Where shapes to begin from have to be known, x/l: of each cell so many times a quarter."""
         return grid.finer(self.x, np.searchsorted(self.x, self.segments), 4**finer)
 
-    def states(self, loads, target):
-        """Values and bounds (outputs, 1 + parameters, n) of n states in vectors: ``loads`` and what is held, (n,) each."""
+    def states(self, loads, target, known):
+        """Values and bounds (outputs, 1 + parameters, n) of n states in vectors: ``loads`` and what is held, (n,) each;
+        ``known``: middle radius [m], and where a family of fibers goes slack along a part.
+        """
+        share = SHARE if not self.is_physical else OF_PHYSICAL
 
         def under(loads, seeds):
             design = Physics(self.tube, None, loads, seeds).design
             design["pressure"].value[...] = loads["pressure"]  # infinite, of a locked shape
             natural = measures(self.tube, loads)
             sizes = np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in seeds])
-            return differentiated(design, self.tube.energy, sizes, SHAPE, SHARE * self.accuracy)
+            kind = self.tube.is_thick, self.tube.threads
+            return differentiated(design, self.tube.energy, sizes, SHAPE, share * self.accuracy, *kind, known)
 
         if self.unknown is None:
             return under(loads, self.seeds)
@@ -82,7 +86,7 @@ class Asked:
         still = np.all([np.abs(row - natural[name]) <= UNSTRAINED * units[name] for name, row in rows], axis=0)
         found = np.full((2, len(self.outputs), 1 + len(self.parameters), n), np.nan)
         some = np.flatnonzero(still & np.any([loads[name] != 0.0 for name in loads], axis=0))
-        if not self.is_alike or len(some) == 0:
+        if self.is_physical or not self.is_alike or len(some) == 0:
             return found
         loads = {name: value[some] for name, value in loads.items()}
 

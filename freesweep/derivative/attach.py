@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import status
 from ..description.profiles import SENSITIVITY
+from ..scaling import SLACK
 from .equilibrium import NotFound
 from .request import attributes
 from .rest import is_at_rest
@@ -45,10 +46,11 @@ def attach(result, asked, loads, solve, target=None):
     same = _are_same((values, bounds), known, near, units)
     values[..., ~same] = bounds[..., ~same] = np.nan
     left = np.flatnonzero(~same)
-    if asked.is_alike and len(left) and is_worth_vectors(len(left)):
+    if asked.is_alike and len(left) and is_worth_vectors(len(left), asked.is_physical):
         found = asked.states(
-            {name: value[left] for name, value in loads.items()}, None if target is None else target[left]
-        )
+            {name: value[left] for name, value in loads.items()}, None if target is None else target[left],
+            [np.ravel(one)[todo][left] for one in (result["mid_radius"].values, _is_limp(result))],
+        )  # fmt: skip
         done = _are_same(found, known[:, left], near[:, left], units[:, left])
         values[..., left[done]], bounds[..., left[done]] = (array[..., done] for array in found)
         same[left[done]] = True
@@ -78,12 +80,19 @@ def attach(result, asked, loads, solve, target=None):
     return result.assign(dict(_variables(asked, values, bounds, todo, dims, shape)))
 
 
-def is_worth_vectors(count):
+def is_worth_vectors(count, physical):
     """Whether so many states are worth the compiler's time, or it was spent already."""
     from ..interpret import is_at_hand
+    from ..solver.lanes.responses import differentiate_physical
     from ..solver.lanes.slopes import differentiate_lanes
 
-    return count >= MANY or is_at_hand(differentiate_lanes)
+    return count >= MANY or is_at_hand(differentiate_physical if physical else differentiate_lanes)
+
+
+def _is_limp(result):
+    """Where some family of fibers goes slack along a part."""
+    shares = (result[name].values for name in SLACK if name in result)
+    return np.any([(share > 0.0) & (share < 1.0) for share in shares], axis=0)
 
 
 def _at(loads, i):

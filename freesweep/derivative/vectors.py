@@ -1,19 +1,21 @@
-"""Derivatives of many states of the source's tubes that are the same all along, in compiled vectors of states."""
+"""Derivatives of many states of tubes that are the same all along, in compiled vectors of states."""
 
 import numpy as np
 
 from ..scaling import OUTPUTS, output_scales, problem_columns
-from ..solver.problem import FORCE, PROBLEM_SIZE, TORQUE
+from ..solver.problem import FORCE, TORQUE
 from .dual import Dual
 from .physics import OWN, outputs_of
 from .table import rows_of
 
 
-def differentiated(design, energy, sizes, names, accuracy):
+def differentiated(design, energy, sizes, names, accuracy, thick=False, threads=0.0, known=None):
     """Rows and bounds (outputs ``names``, 1 + seeds, n) of n free states, NaN where vectors have no answer.
 
     ``design``: name -> dual number, or array, of design and loads in SI units and degrees; the locked shape's pressure is
-    infinite. ``sizes`` (seeds, n or 1): what each seed is measured by.
+    infinite. ``sizes`` (seeds, n or 1): what each seed is measured by. The wall is ``thick``, or the ``threads`` are not
+    two bonded families, of physical tubes; what is ``known`` of their states, if anything, are middle radius [m] and where
+    a family goes slack along a part, (n,) each.
     """
     from ..solver.slopes import differentiate
 
@@ -22,7 +24,7 @@ def differentiated(design, energy, sizes, names, accuracy):
     n = max(np.size(number.value) for number in design.values())
     locked = np.broadcast_to(np.isinf(design["pressure"].value), n)
     design["pressure"] = Dual(np.where(locked, 0.0, design["pressure"].value), design["pressure"].parts)
-    columns = (*problem_columns(design, energy), design["pressure"] / design["c10"])
+    columns = (*problem_columns(design, energy, thick, threads), design["pressure"] / design["c10"])
     problems, changes = np.zeros((n, len(columns))), np.zeros((n, seeds, len(columns)))
     for k, column in enumerate(columns):
         if not isinstance(column, Dual):
@@ -31,11 +33,12 @@ def differentiated(design, energy, sizes, names, accuracy):
         problems[:, k] = column.value
         if column.parts is not None:
             changes[..., k] = (column.parts[OWN:] * sizes[1:]).T
-    for k in (FORCE, TORQUE, PROBLEM_SIZE):
+    for k in (FORCE, TORQUE, -1):
         problems[locked, k], changes[locked, :, k] = 0.0, 0.0
-    pressures = np.where(locked, np.inf, problems[:, PROBLEM_SIZE])
-    problems = np.ascontiguousarray(problems[:, :PROBLEM_SIZE])
-    values, bounds = differentiate(problems, pressures, changes, accuracy)  # (n, 1 + seeds, 5)
+    pressures = np.where(locked, np.inf, problems[:, -1])
+    problems = np.ascontiguousarray(problems[:, :-1])
+    state = () if known is None else (known[0] / design["fiber_radius"].value, known[1])
+    values, bounds = differentiate(problems, pressures, changes, accuracy, *state)  # (n, 1 + seeds, 5)
     none = np.zeros((OWN, n))
     values, bounds = (np.moveaxis(array, (2, 1), (0, 1)) / sizes for array in (values, bounds))  # (5, 1 + seeds, n)
     numbers = [Dual(own[0], np.concatenate([none, own[1:]])) for own in values]

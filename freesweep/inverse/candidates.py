@@ -26,18 +26,22 @@ class Found(NamedTuple):
 
 
 def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> Found:
-    """The candidates at points u (n, p), in the order given; ``tolerances`` of manufacture, if any, spread what they do."""
+    """The candidates at points u (n, p), in the order given, but without objectives those first that do it: a held tube's
+    own way may lead elsewhere than its loads. ``tolerances`` of manufacture, if any, spread what they do.
+    """
     import xarray as xr
 
     space, wishes = misfit.space, misfit.wishes
-    tubes = [space.actuator(one, k) for one, k in zip(u, choice)]
     found = predict(space, wishes, u, choice, ACCURACY, sure=True)
-    residuals = misfit.residuals(found.values)
-    columns = space.columns(u, choice)
     asked, last = misfit.goals, len(wishes) - objectives
-    low, high = (np.array([getattr(wish, end) for wish in wishes]) for end in ("low", "high"))
-    kept = (found.values >= low - found.bounds) & (found.values <= high + found.bounds)
-    met = np.abs(residuals) <= 1.0 + found.bounds / misfit.tolerances
+    residuals, met, kept = _judged(misfit, found)
+    done = np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)
+    if not objectives and np.any(done):
+        order = np.argsort(~done, kind="stable")
+        u, choice, slopes, found, done = u[order], choice[order], slopes[order], found.part(order), done[order]
+        residuals, met, kept = residuals[order], met[order], kept[order]
+    tubes = [space.actuator(one, k) for one, k in zip(u, choice)]
+    columns = space.columns(u, choice)
     data = {
         name: ("candidate", columns[name], {"units": PARAMETERS[name].units})
         for name in FIELDS
@@ -58,7 +62,7 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
         "slope": (("candidate", "goal", "parameter"), _slopes(misfit, slopes)[:, :asked]),
         "status": (("candidate",), _worst(found.status[:, :last])),
         "slack_fiber": (("candidate",), found.slack, variable_attributes("slack_fiber")),
-        "met": (("candidate",), np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)),
+        "met": (("candidate",), done),
         "misfit": (("candidate",), np.sqrt(np.sum(residuals[:, :last] ** 2, axis=1))),
         "python": (("candidate",), [python_line(tube) for tube in tubes]),
     }
@@ -101,6 +105,14 @@ def gather(misfit: Misfit, u, choice, slopes, tolerances=None, objectives=0) -> 
         "summary": sentence(misfit, result, residuals[0], u, slopes),
     }
     return Found(result, tubes)
+
+
+def _judged(misfit, found):
+    """Residuals of all wishes, which of them are met as goals, and which are kept as limits, (n, wishes) each."""
+    low, high = (np.array([getattr(wish, end) for wish in misfit.wishes]) for end in ("low", "high"))
+    residuals = misfit.residuals(found.values)
+    met = np.abs(residuals) <= 1.0 + found.bounds / misfit.tolerances
+    return residuals, met, (found.values >= low - found.bounds) & (found.values <= high + found.bounds)
 
 
 def _worst(status):

@@ -103,14 +103,7 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
         return _with_least(misfit, objectives, u, choice, residuals, count, allowed)
     cost = np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf)
     best = spread(space, u, choice, _order(cost), count, DIFFERENT)
-    made = gather(misfit, u[best], choice[best], slopes[best], allowed)
-    first = np.argsort(
-        ~made.data["met"].values, kind="stable"
-    )  # a held tube's own way may lead elsewhere than its loads
-    if np.any(np.diff(first) < 0):
-        best = best[first]
-        made = gather(misfit, u[best], choice[best], slopes[best], allowed)
-    return made
+    return gather(misfit, u[best], choice[best], slopes[best], allowed)
 
 
 def _order(cost):

@@ -1,4 +1,4 @@
-"""Exact derivatives of what is wished for, along what is free: of the source's tubes that are the same all along."""
+"""Exact derivatives of what is wished for, along what is free: of tubes of two families that are the same all along."""
 
 import os
 from concurrent.futures import ThreadPoolExecutor
@@ -26,8 +26,10 @@ def exact_slopes(space, wishes, u, choice, values):
     """
     count, free = u.shape
     slopes = np.full((count, len(wishes), free), np.nan)
-    if not space.is_source or count == 0 or free == 0:
+    if not (space.is_alike and space.template.has_two_families) or count == 0 or free == 0:
         return slopes
+    # how wide the wall of a physical tube is, only its own sums along the depth tell
+    followed = FOLLOWING if space.is_source else tuple(name for name in FOLLOWING if name != "outer_radius")
     parts = np.zeros((free, OWN + free + 1, 1))  # along each that is free, and a load that holds something
     parts[np.arange(free), OWN + np.arange(free), 0] = space.high - space.low
     columns = space.columns(u, choice, [Dual(value, part) for value, part in zip(space.values(u).T, parts)])
@@ -36,7 +38,7 @@ def exact_slopes(space, wishes, u, choice, values):
     for k, wish in enumerate(wishes):
         if wish.kind == "design":
             slopes[:, k] = rows_of(columns, [wish.output], free + 1)[0, 1:-1].T
-        elif wish.output in (*SHAPE, *FOLLOWING, *HELD) and wish.kind != "limit":
+        elif wish.output in (*SHAPE, *followed, *HELD) and wish.kind != "limit":
             states.setdefault(state_of(wish), []).append(k)
     jobs = [(state, own, some) for state, own in states.items() for some in _shares(values[:, own])]
 
@@ -68,9 +70,10 @@ def _state(space, state, outputs, columns, values, some, free):
         load = np.zeros((OWN + free + 1, 1))
         load[-1] = 1.0
         design[state.kind] = Dual(values[:, 0], load)
-    rows, _ = differentiated(design, space.template.energy, _sizes(design, state, len(some), free), SHAPE, ACCURACY)
+    tube, sizes = space.template, _sizes(design, state, len(some), free)
+    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads)
     if held is not None:
-        rows = _straight(space.template, design, rows, free + 1)
+        rows = _straight(tube, design, rows, free + 1) if space.is_source else rows
         target = (
             Dual(np.array([given[held]])) if held in given else design["length"] if held == "deformed_length" else None
         )

@@ -4,7 +4,8 @@ import numpy as np
 
 from .misfit import Misfit
 
-ROUNDS, LATER = 120, 12  # in all; after a design met everything, where states are dear
+ROUNDS = {False: 120, True: 40}  # in all; where states are dear
+LATER = 12  # after a design met everything, where they are
 DAMPING, LESS, MORE, MOST = 1e-3, 0.2, 5.0, 1e9  # of the diagonal; after a step that helps, and one that does not
 DONE = 1e-3  # tolerances: closer is close enough
 STILL = 1e-9  # of the cost: no more is won
@@ -22,7 +23,7 @@ def polish(misfit: Misfit, u, choice):
     cost, damping = _cost(residuals), np.full(count, DAMPING)
     active = np.isfinite(cost) & (free > 0)
     spent = 0  # rounds since a design met everything
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS[dear_ones]):
         active &= (np.sqrt(cost) > DONE) & (damping < MOST)
         if dear_ones and np.any(cost <= DONE**2):
             active &= spent < LATER

@@ -22,6 +22,10 @@ from .reference import COLUMNS
 CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
 LATER = ("..solver.batch", "..solver.hold_batch", "..solver.lanes.by_middle", "..solver.lanes.held", ".physical_tube")
 SHARE = 512  # points that one thread solves at a time
+FEW, ROUGH = (
+    (1, 3),
+    1e-5,
+)  # tries of vectors that are worth it where a state may be left out; at an accuracy that is rough
 
 
 def load():
@@ -159,7 +163,8 @@ def _free(rows, pressure, most, accuracy, followed, thorough):
     if thorough or config.DISABLE_JIT or len(tube[0]):
         walks = batch.walk_all(rows, first, pressures, tube, accuracy - SENSITIVITY * error, soon=True)
     else:
-        walks = batch.walk_by_vectors(rows, first, pressures, accuracy)
+        most = FEW[0] if accuracy > ROUGH else FEW[1]  # what is no state would be tried again in ever more pieces
+        walks = batch.walk_by_vectors(rows, first, pressures, accuracy, most)
         walks.status[walks.status == PENDING] = NOT_CONVERGED
     own = slice(0, None, steps)
     bounds, limits = widened(walks.values, walks.bounds, error)[own], walks.limits.copy()

@@ -69,11 +69,13 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     return found
 
 
-def walk_by_vectors(problems, first, pressures, accuracy) -> Walks:
-    """:func:`walk_all` of tubes that do not vary: what vectors find, PENDING where they leave it open."""
+def walk_by_vectors(problems, first, pressures, accuracy, most=None) -> Walks:
+    """:func:`walk_all` of tubes that do not vary: what vectors find in so many tries at ``most``, PENDING
+    elsewhere.
+    """
     found = _nothing(problems, len(pressures), NOTHING)
     pressures, _ = next_to_nothing(problems, first, pressures)
-    _walk_lanes(problems, first, pressures, accuracy, found, False)
+    _walk_lanes(problems, first, pressures, accuracy, found, False, most)
     return found
 
 
@@ -87,17 +89,17 @@ def _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
         )  # fmt: skip
 
 
-def _walk_lanes(problems, first, pressures, accuracy, found, soon):
-    """Solve what vectors can of tubes that do not vary. A loaded one's stretch is carried up and down from the state at
-    which its loads have settled.
+def _walk_lanes(problems, first, pressures, accuracy, found, soon, most=None):
+    """Solve what vectors can of tubes that do not vary, in so many tries at ``most``. A loaded one's stretch is carried up
+    and down from the state at which its loads have settled.
     """
     if not np.any(is_loaded(problems)):
-        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), accuracy, found, soon)
+        _solve_lanes(problems, first, pressures, np.ones(len(pressures), bool), accuracy, found, soon, most)
         return
     own = legs(problems, first, pressures)
     asked = own.rows >= 0
     on_the_way = _nothing(problems[own.owners], len(own.pressures), NOTHING)
-    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, accuracy, on_the_way, soon)
+    _solve_lanes(problems[own.owners], own.first, own.pressures, asked, accuracy, on_the_way, soon, most)
     for name in STATES:
         getattr(found, name)[own.rows[asked]] = getattr(on_the_way, name)[asked]
 
@@ -112,7 +114,7 @@ def _nothing(problems, states, stations):
     )  # fmt: skip
 
 
-def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon):
+def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon, most):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
     # what shares a vector should need much the same work: as many pressures, and likeness tells the rest
     steps = np.diff(first)
@@ -122,7 +124,7 @@ def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon):
         given = problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness
         run(carry, len(pressures), soon, *given)
         carried = some[owners] & asked & np.isfinite(stretches)
-        for pieces in PIECES:
+        for pieces in PIECES[:most]:
             rows = np.flatnonzero(carried & (found.status == PENDING))
             alike = np.argsort(_in_order(likeness[rows]), kind="stable")
             given = problems, owners, pressures, stretches, rows[alike], *kind, pieces, accuracy, *found[:5]

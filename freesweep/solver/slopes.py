@@ -1,22 +1,26 @@
-"""Derivatives of many free states of the source's tubes that are the same all along, in vectors."""
+"""Derivatives of many free states of tubes that are the same all along, in vectors."""
 
 import numpy as np
 from numba import config
 
 from .load_path import is_loaded, legs
-from .problem import LENGTH, MOONEY_RIVLIN, PROBLEM_SIZE, SECOND, THIRD, YEOH
+from .problem import LENGTH, MOONEY_RIVLIN, PHYSICAL, PROBLEM_SIZE, SECOND, THIRD, YEOH, wall_columns
+from .slopes_physical import differentiate as differentiate_physical
 
 BASE = 24  # cells of the base mesh, as of a sweep's
 OUTPUTS = 5
 
 
-def differentiate(problems, pressures, changes, accuracy):
-    """Values and bounds (n, 1 + directions, 5) of the outputs of ``problems`` (n, 11), each under one of the ``pressures``,
-    and of their derivatives along directions: ``changes`` (n, directions, 12) are what the problem's columns and the
-    pressure change by.
+def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None):
+    """Values and bounds (n, 1 + directions, 5) of the outputs of ``problems`` (n, columns), each under one of the
+    ``pressures``, and of their derivatives along directions: ``changes`` (n, directions, columns + 1) are what the problem's
+    columns and the pressure change by.
 
-    NaN where vectors have no answer. ``accuracy`` is that of derivatives, relative or by the size of the output.
+    NaN where vectors have no answer. ``accuracy`` is that of derivatives, relative or by the size of the output; what is
+    known of physical tubes' states are ``middles`` and ``limp`` (:func:`.slopes_physical.differentiate`).
     """
+    if wall_columns(problems) == PHYSICAL:
+        return differentiate_physical(problems, pressures, changes, accuracy, middles, limp)
     count, directions = changes.shape[:2]
     values, bounds = (np.full((count, directions + 1, OUTPUTS), np.nan) for _ in range(2))
     if count == 0 or config.DISABLE_JIT:

@@ -115,7 +115,7 @@ def test_vectors_tell_what_one_state_at_a_time_tells(way, monkeypatch):
     names = ["beta", "length", "wall", "c01", "fiber_extension", *(["pressure"] if pressures else [])]
     found = []
     for vectors in (True, False):
-        monkeypatch.setattr(attach, "is_worth_vectors", lambda count, own=vectors: own)
+        monkeypatch.setattr(attach, "is_worth_vectors", lambda *_, own=vectors: own)
         if vectors:  # not one of them is left to the other way
             monkeypatch.setattr(asked.Asked, "state", None)
         found.append(getattr(fs, way)(tube, *pressures, x=[0.0], derivatives=names))
@@ -126,6 +126,35 @@ def test_vectors_tell_what_one_state_at_a_time_tells(way, monkeypatch):
     for name in derivatives:
         assert np.all(np.abs(quick[name] - slow[name]) <= quick[f"{name}_error"] + slow[f"{name}_error"]), name
         assert np.all(np.isfinite(quick[name]))
+
+
+@pytest.mark.parametrize("way", ["inflate", "lock"])
+def test_vectors_tell_of_physical_tubes_what_one_state_at_a_time_tells(way, monkeypatch):
+    tube = fs.Actuator(**TUBE | {"model": "physical", "fiber_extension": 1.003})
+    pressures = () if way == "lock" else ([5e4, 1e5],)
+    found = []
+    for vectors in (True, False):
+        monkeypatch.setattr(attach, "is_worth_vectors", lambda *_, own=vectors: own)
+        if vectors:
+            monkeypatch.setattr(asked.Asked, "state", None)
+        found.append(getattr(fs, way)(tube, *pressures, x=[0.0], derivatives="all"))
+        monkeypatch.undo()
+    quick, slow = found
+    derivatives = [name for name in quick if name.startswith("d_") and not name.endswith("_error")]
+    assert len(derivatives) == 5 * (8 if way == "lock" else 11)
+    for name in derivatives:
+        assert np.all(np.abs(quick[name] - slow[name]) <= quick[f"{name}_error"] + slow[f"{name}_error"]), name
+        assert np.all(np.isfinite(quick[name]))
+
+
+def test_derivatives_of_several_loads_at_once():
+    tube, forces = fs.Actuator(**TUBE), [-0.3, 1.0]
+    whole = fs.inflate(tube, [2e4, 1e5], force=forces, x=[0.0], derivatives=["force", "wall"])
+    for k, force in enumerate(forces):
+        alone = fs.inflate(tube, [2e4, 1e5], force=force, x=[0.0], derivatives=["force", "wall"])
+        for name in ("d_deformed_length_d_force", "d_rotation_d_wall"):
+            doubt = whole[f"{name}_error"].values[k] + alone[f"{name}_error"].values
+            assert np.all(np.abs(whole[name].values[k] - alone[name].values) <= doubt), name
 
 
 def test_derivatives_of_many_states_cost_little_more_than_the_states():

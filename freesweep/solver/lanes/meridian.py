@@ -171,6 +171,12 @@ def _work_of(u, cell, load, half, wall):
 def look(t, mid, cell, load, near, scratch):
     """The :class:`Place` at the share t of the depth."""
     depth, per_share = deep(t, mid.depth)
+    return look_down(depth, per_share, mid, cell, load, near, scratch)
+
+
+@kernel
+def look_down(depth, per_share, mid, cell, load, near, scratch):
+    """The :class:`Place` at a ``depth``, which grows with some share by ``per_share``."""
     z = fallen(depth, scratch)
     inside = z - mid.q > MEETS * mid.q
     over = mid.whole * select(inside, (z - mid.q) / z, 0.0)

@@ -11,7 +11,7 @@ import operator
 from llvmlite import ir
 from numba.core import types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
 from ..either import select
 from .vector import _DOUBLES, FLAGS, WIDTH, _intrinsic_call, _Lane, _Mask, lane, mask
@@ -21,6 +21,10 @@ _PAIR = ir.LiteralStructType([_DOUBLES, _DOUBLES])
 
 class _Tangent(types.Type):
     """One float of each design, and its change."""
+
+    def unify(self, typingctx, other):
+        """A variable that is once a lane, which does not change, and once a tangent is a tangent."""
+        return self if isinstance(other, _Lane) else None
 
 
 tangent = _Tangent(f"tangent{WIDTH}")
@@ -34,6 +38,11 @@ class _TangentModel(models.PrimitiveModel):
 
 def _pair(builder, value, change):
     return builder.insert_value(builder.insert_value(ir.Constant(_PAIR, ir.Undefined), value, 0), change, 1)
+
+
+@lower_cast(_Lane, _Tangent)
+def _from_lane(context, builder, fromty, toty, value):
+    return _pair(builder, value, ir.Constant(_DOUBLES, [0.0] * WIDTH))
 
 
 def _parts(builder, kind, number):

@@ -83,7 +83,7 @@ def layers(area, wall):
     """As how many layers a wall counts; walls in vectors know that of themselves."""
     if len(wall) > 3:
         return wall[3]
-    return points(wall[1], area) if wall[1] > 0.0 else MEMBRANE
+    return points(wall[1], area) if (wall[1] > 0.0) & (area > 0.0) else MEMBRANE  # locked, the wall does not count
 
 
 @kernel

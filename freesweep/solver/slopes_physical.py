@@ -1,0 +1,75 @@
+"""Derivatives of many free states of physical tubes that are the same all along, in vectors."""
+
+import numpy as np
+from numba import config
+
+from .batch import walk_by_vectors
+from .problem import FORCE, MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, TORQUE, YEOH
+
+OUTPUTS = 5
+FINENESS, SHARP = (1, 2, 4, 8), 1e-5  # pieces of parts; a bound that is taken where no more pieces are tried
+SURE = 1e-8  # accuracy of states that are not known
+
+
+def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None):
+    """Values and bounds (n, 1 + directions, 5) as of :func:`.slopes.differentiate`, of physical ``problems`` (n, 13), whose
+    ``changes`` are (n, directions, 14).
+
+    ``middles`` (n,): stretches of the middle, of states that are known; ``limp`` (n,): where some family of these goes slack
+    along a part. Of others that state is taken that vectors find.
+    """
+    count, directions = changes.shape[:2]
+    values, bounds = (np.full((count, directions + 1, OUTPUTS), np.nan) for _ in range(2))
+    if count == 0 or config.DISABLE_JIT:
+        return values, bounds
+    if middles is None:
+        found = walk_by_vectors(problems, np.arange(count + 1), pressures, SURE).values
+        middles, shares = np.ascontiguousarray(found[:, OUTPUTS - 1]), found[:, OUTPUTS : OUTPUTS + 2]
+        limp = np.any((shares > 0.0) & (shares < 1.0), axis=1)
+    limp = np.ones(count, bool) if limp is None else limp
+    loaded = (pressures > 0.0) | (problems[:, FORCE] != 0.0) | (problems[:, TORQUE] != 0.0)
+    left = np.flatnonzero(np.isfinite(middles) & loaded)
+    for pieces in FINENESS:
+        enough = accuracy if pieces < FINENESS[-1] else max(accuracy, SHARP)
+        found = along(problems[left], pressures[left], middles[left], limp[left], changes[left], pieces)
+        met = found[2] <= enough
+        values[left[met]], bounds[left[met]] = found[0][met], found[1][met]
+        left = left[~met]
+        if len(left) == 0:
+            break
+    return values, bounds
+
+
+def along(problems, pressures, middles, limp, changes, pieces):
+    """Values and bounds as of :func:`differentiate`, and the largest of these, scaled (n,); each part of a tube is summed in
+    so many ``pieces``.
+    """
+    from .lanes.chain import chain
+
+    told, doubts = answers(problems, pressures, middles, limp, pieces)
+    shape = len(problems), changes.shape[1] + 1, OUTPUTS
+    values, bounds, missed = np.empty(shape), np.empty(shape), np.empty(len(problems))
+    chain(problems, pressures, changes, told, doubts, values, bounds, missed)
+    return values, bounds, missed
+
+
+def answers(problems, pressures, middles, limp, pieces):
+    """Values and bounds (n, 5, 1 + numbers + 1) of :func:`.lanes.responses.differentiate_physical`."""
+    from .lanes import second
+    from .lanes.pack import count_layers
+    from .lanes.responses import differentiate_physical
+    from .lanes.told import TOLD
+
+    values, bounds = (np.empty((len(problems), OUTPUTS, TOLD)) for _ in range(2))
+    order = np.lexsort((middles, limp))  # what shares a vector should need much the same work
+    yeoh, layers = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1), np.empty(len(problems), np.int64)
+    count_layers(problems, PHYSICAL, layers)
+    for threads in np.unique(problems[:, THREADS]):
+        for kind in np.unique(2 * layers + yeoh):
+            own = order[((2 * layers + yeoh == kind) & (problems[:, THREADS] == threads))[order]]
+            constants, absent = (YEOH, ()) if kind % 2 else (MOONEY_RIVLIN, (second.SECOND, second.THIRD))
+            used = np.array([k for k in range(second.NUMBERS) if k not in absent])
+            differentiate_physical(
+                problems, pressures, middles, limp, own, constants, int(kind // 2), used, pieces, values, bounds
+            )
+    return values, bounds
