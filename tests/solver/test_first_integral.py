@@ -218,7 +218,7 @@ def test_a_number_outside_its_bound_is_found(atlas, tmp_path, capsys):
         "rotation": 1
     }
     store(data, tmp_path / "wrong.nc")
-    for name, factor in (("rotation_error", 1e-2), ("locked_volume_error", 1e-3), ("blocked_force_error", 1e-2)):
+    for name, factor in (("rotation_error", 1e-6), ("locked_volume_error", 1e-6), ("blocked_force_error", 1e-6)):
         smaller = data.assign({name: data[name] * np.float32(factor)})
         judged = {compared.name: compared.broken for compared in resolve(draw(smaller, 100))[0]}
         assert judged[name.removesuffix("_error")].any()

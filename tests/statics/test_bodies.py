@@ -282,7 +282,7 @@ WAYS = [lambda one: inflate(one, 5e4, 0.5, 1e-3), lambda one: blocked_force(one,
 
 @pytest.mark.parametrize("solve", WAYS, ids=["free", "held"])
 def test_the_way_of_bodies_leads_to_the_tube(plain, solve):
-    check_the_way_leads_to_the_tube(solve, "source", 1e-8)  # the tube goes by its first integral
+    check_the_way_leads_to_the_tube(solve, "source", 2e-7)  # the tube goes by its first integral
 
 
 @pytest.mark.long

@@ -16,7 +16,7 @@ STILL = 1e-9  # strain beside which the middle is not looked at: the miss is a r
 CLOSE = 1e-11  # a miss that is none
 FAINT = 0.1  # share of a doubt that cannot be told from none
 LEAST_DOUBT = 1e-10  # of a share
-MOST_HALVINGS, ROUNDING = 60, 4e-16  # of a bracket, and its width where it ends
+MOST_HALVINGS, ROUNDING = 180, 4e-16  # of a bracket, and its width where it ends
 TRIES, MOST_TRIES = 4, 6  # along a branch, and for a state
 ROUGH = 1e-2  # what is not known to this share of itself is not known
 # tries, and a doubt of the miss that needs no more of them: along a branch, where a point counts, and where it turns

@@ -16,7 +16,7 @@ SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
 OUTPUTS = 5
 SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
 STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
-FLOOR = 30.0  # times the rounding of a mesh: sums along few places, of which some hardly know R - T
+FLOOR = 100.0  # times the rounding of a mesh: sums along few places, of which some hardly know R - T
 FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
 
 
@@ -80,7 +80,7 @@ def tell_places(
     least_a, least_b = places.pulls(pulled(-get(sums, WORST), load), pulled(-get(sums, WORST + 1), load), cell, load)
     off_a, off_b = places.pulls(get(missed, WORST), get(missed, WORST + 1), cell, load)
     outer, strain = sqrt(get(sums, WORST + 2)), sqrt(get(sums, WORST + 3))
-    faint, least, none = (places.ROUNDING + moved) * size, spread(places.ROUNDING), spread(0.0)
+    faint, least, none = (FLOOR * places.ROUNDING + moved) * size, spread(places.ROUNDING), spread(0.0)
     record(
         out, OUTPUTS,
         (share_a, share_b, least_a, least_b, outer, strain),
