@@ -218,10 +218,11 @@ def test_a_number_outside_its_bound_is_found(atlas, tmp_path, capsys):
         "rotation": 1
     }
     store(data, tmp_path / "wrong.nc")
-    for name, factor in (("rotation_error", 1e-6), ("locked_volume_error", 1e-6), ("blocked_force_error", 1e-6)):
-        smaller = data.assign({name: data[name] * np.float32(factor)})
-        judged = {compared.name: compared.broken for compared in resolve(draw(smaller, 100))[0]}
-        assert judged[name.removesuffix("_error")].any()
+    for name in ("rotation", "locked_volume", "blocked_force"):  # within its bound, but beyond a hundredth of it
+        bound = data[f"{name}_error"]
+        moved = data.assign({name: data[name] + 0.5 * bound, f"{name}_error": bound * np.float32(1e-2)})
+        judged = {compared.name: compared.broken for compared in resolve(draw(moved, 100))[0]}
+        assert judged[name].any()
     assert run("verify", str(tmp_path / "wrong.nc"), "--resolve", "100000") == 2
     assert "1 stored numbers lie farther" in capsys.readouterr().err
 

@@ -16,7 +16,7 @@ SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
 OUTPUTS = 5
 SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
 STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
-FLOOR = 100.0  # times the rounding of a mesh: sums along few places, of which some hardly know R - T
+FLOOR = 200.0  # times the rounding of a mesh: sums along few places, of which some hardly know R - T
 FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
 
 
