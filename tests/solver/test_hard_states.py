@@ -8,6 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 from freesweep.census.designs import Drawn, with_pressures
 from freesweep.first_integral.folded import solve_near
 from freesweep.first_integral.uniform import Tubes
+from freesweep.solver import batch
 from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian, uniform_tube
 from freesweep.status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
@@ -300,3 +301,32 @@ def test_a_climb_passes_no_small_snap_of_the_uniform_tube(pressures):
     walk = walked([-81.0625, 5.7909, 185.475, 0.5, 1.01948, 0.0, 0.0, 0.0, 0.0], pressures)
     assert walk.status.tolist() == [OK if p < 0.0759 else BEYOND_LIMIT for p in pressures]
     np.testing.assert_allclose(walk.limits[0, 0], 0.0759914722, rtol=1e-8)
+
+
+SMALL_SNAPS = {  # rows of problems, pressures, how many states lie before the snap, and the limit if it is one of pressures
+    "of the pressure": (
+        [1.73181918, -1.40975612, 0.59313935, 1.01495279, 1.82527363, 0.0, 0.0, 0.0, 37.40921399, 0.0, 0.0],
+        [0.79, 0.798, 0.7985, 1.0, 1.35], 2, 0.79804347,
+    ),
+    "of the loads": (
+        [-2.38957081, -2.83980481, 0.14035131, 1.0, 0.87824629, 0.0, 1.67445543, -0.96614994, 17.30259334, 0.0, 0.0],
+        [0.003, 0.04], 0, None,
+    ),
+    "of the loads, where the branch bends": (
+        [4.13170847, -3.96090964, 2.76906313, 1.0, 0.35726336, 0.0, 2.94180303, -1.0884204, 2.88595223, 0.0, 0.0],
+        [0.18, 1.5], 0, None,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("where", SMALL_SNAPS)
+def test_no_step_of_a_branch_passes_a_small_snap(where):
+    """Shorter than a step in the stretch, and next to nothing in the load: meshes know them, too."""
+    problem, pressures, before, limit = SMALL_SNAPS[where]
+    walks = batch.walk_all(
+        np.array([problem]), np.array([0, len(pressures)]), np.array(pressures), batch.uniform(24), 1e-6
+    )
+    assert walks.status.tolist() == [OK] * before + [BEYOND_LIMIT] * (len(pressures) - before)
+    if limit:
+        assert abs(walks.limits[0, 0] - limit) < 1e-6
+        assert walks.limits[0, 1] < 1e-7

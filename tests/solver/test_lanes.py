@@ -264,3 +264,20 @@ def test_narrow_vectors_give_the_same_numbers_to_rounding(tmp_path):
     assert np.array_equal(found["status"][done], wide.status[done])
     solved = done & np.isin(wide.status, (OK, INACCURATE))
     assert np.all(np.abs(found["values"] - wide.values)[solved] <= wide.bounds[solved])
+
+
+def test_profiles_end_where_outputs_do():
+    """At the plane of symmetry: length, rotation and stretch of the half; at the end nothing has begun."""
+    problems, first, pressures = designs(30, 41)
+    for k in range(0, 30, 3):
+        own = slice(first[k], first[k + 1])
+        stations = np.array([0.0, 0.25, 0.5]) * problems[k, 8]
+        found = batch.walk_all(
+            problems[k : k + 1], first[k : k + 2] - first[k], pressures[own], batch.uniform(24), 1e-6, stations
+        )
+        for row in np.flatnonzero(found.status == OK):
+            y, z, turn = found.profiles[row, :3]
+            off = found.profiles[row, 7:10]
+            assert (y[0], z[0], turn[0]) == pytest.approx((1.0, 0.0, 0.0), abs=1e-14)
+            for column, value, bound in ((4, y, off[0]), (0, z, off[1]), (2, turn, off[2])):
+                assert abs(value[-1] - found.values[row, column]) <= bound[-1] + found.bounds[row, column]
