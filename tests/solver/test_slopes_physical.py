@@ -18,7 +18,7 @@ GROWTH = {"deformed_length": 1, "rotation": 0, "mid_radius": 1, "volume": 3, "st
 
 def known(rows, pressures):
     """Middles, where families go slack along a part, and the rows that have a state."""
-    found = walk_by_vectors(rows, np.arange(len(rows) + 1), pressures, 24, 1e-8)
+    found = walk_by_vectors(rows, np.arange(len(rows) + 1), pressures, 1e-8)
     shares = found.values[:, 5:7]
     return found.values[:, 4].copy(), np.any((shares > 0.0) & (shares < 1.0), axis=1), found.status == OK
 
@@ -131,7 +131,7 @@ def test_derivatives_of_batches_cost_less_than_half_of_the_states():
     took = np.full((2, 3), np.inf)
     for i in range(3):
         begun = time.thread_time()
-        walk_by_vectors(rows, np.arange(len(rows) + 1), pressures, 24, 1e-6)
+        walk_by_vectors(rows, np.arange(len(rows) + 1), pressures, 1e-6)
         took[0, i] = time.thread_time() - begun
         begun = time.thread_time()
         values, _ = differentiate(rows, pressures, changes, 1e-6, middles, limp)

@@ -64,7 +64,7 @@ def problems_of(design, kind):
 def solved(design, kind, accuracy=1e-10):
     """Outputs (5, n) in the order of SHAPE, NaN where vectors have none."""
     rows, pressures, design = problems_of(design, kind)
-    found = walk_by_vectors(rows, np.arange(len(rows) + 1), pressures, 24, accuracy)
+    found = walk_by_vectors(rows, np.arange(len(rows) + 1), pressures, accuracy)
     scales = output_scales(design)
     values = np.array([found.values[:, OUTPUTS.index(name)] * scales[name] for name in SHAPE])
     values[SHAPE.index("volume")] -= wall_volume_inside(design)
