@@ -93,24 +93,27 @@ def slope_of(t, answer, other):
     return abs((answer.miss - other[1].miss) / (t - other[0])) if answer.miss != other[1].miss else np.inf
 
 
+def nearest(place, reach, tries, first=1.0):
+    """:func:`crossing` along ``place(t)`` nearest to t = 0, not farther than ``reach``; of two as near that on the ``first``
+    side. None where there is none.
+    """
+    here = 0.0, (yield from ask(*place(0.0), tries))
+    distance = FAINT**3 * reach
+    while distance < 4.0 * reach and not isnan(here[1].miss):
+        for t in (first * distance, -first * distance):
+            answer = yield from ask(*place(t), tries)
+            if answer.miss * here[1].miss < 0.0:
+                return (yield from crossing(place, here, (t, answer), tries=tries))
+        distance *= WIDER
+    return None
+
+
 def across(middle, share, sense, reach, tries=FINEST):
     """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than
     ``reach``.
     """
-
-    def place(t):
-        return middle, share + t
-
-    answer = yield from ask(middle, share, tries)
-    distance, first = FAINT**3 * reach, (0.0, answer)
-    while distance < 4.0 * reach and not isnan(answer.miss):
-        for t in (-sense * distance, sense * distance):
-            other = yield from ask(*place(t), tries)
-            if other.miss * answer.miss < 0.0:
-                met = yield from crossing(place, first, (t, other), tries=tries)
-                if met is None:
-                    return None
-                t, found, _ = met
-                return share + t, (found.doubt + abs(found.miss)) / slope_of(*met) + LEAST_DOUBT
-        distance *= WIDER
-    return None
+    met = yield from nearest(lambda t: (middle, share + t), reach, tries, -sense)
+    if met is None:
+        return None
+    t, found, _ = met
+    return share + t, (found.doubt + abs(found.miss)) / slope_of(*met) + LEAST_DOUBT

@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import atan2, cos, exp, hypot, isnan, pi, sin
 from typing import NamedTuple
 
-from .question import SHARPLY, WIDER, across, ask, crossing
+from .question import SHARPLY, WIDER, ask, crossing, nearest
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
 SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
@@ -45,8 +45,8 @@ class Point(NamedTuple):
 
 
 def begin():
-    """The first :class:`Point` of a branch from rest, where the load is small enough to have one state only; None where no
-    strain is seen on the way.
+    """The first :class:`Point` of a branch from rest, where the load is small enough to have one state only; None where
+    no strain is seen on the way.
     """
     first = None
     for strain in BEGINNINGS:
@@ -91,7 +91,7 @@ def follow(point, sense, far, answer):
             return LOST, points
         points = [*points[1 - KEPT :], ahead]
         if (yield from goes_on(points, sense)):
-            inner = yield from looked_between(points, sense)
+            inner = yield from looked_between(points)
             if (turned := turns_between([*points[:-2][-1:], *inner], sense)) is not None:
                 return TURNED, turned
             if is_uneven(inner) and SHORTER * ahead.step > SMALLEST_STEP:
@@ -167,36 +167,40 @@ def around_top(points, sense):
 
 
 def goes_on(points, sense):
-    """Whether the last step of a branch led on, in this ``sense``; where it hardly did, its ends are first made exact."""
+    """Whether the last step of a branch led on, in this ``sense``; where it hardly did, its ends are first made exact.
+    """
     here, there = points[-2:]
     if abs(there.share - here.share) < FLAT * SHARP * (here.step + there.step):
         points[-2], points[-1] = (yield from sharpened(here)), (yield from sharpened(there))
     return sense * points[-1].share > sense * points[-2].share
 
 
-def looked_between(points, sense):
-    """The last step of a branch that hardly leads on, or bends, as points of the branch at even stretches, in which a small
-    snap would show; else its two ends.
+def looked_between(points):
+    """The last step of a branch that hardly leads on, or bends, as points of the branch beside even ones of its chord,
+    in which a small snap would show; else its two ends.
     """
     here, there = points[-2:]
     if abs(there.share - here.share) > LEVEL * there.step and not abs(there.chord - here.chord) > BENT:
         return points[-2:]
     points[-2], points[-1] = here, there = (yield from sharpened(here)), (yield from sharpened(there))
-    inner = [here]
+    wide, high = there.middle - here.middle, there.share - here.share
+    inner, length = [here], hypot(wide, high)
     for k in range(1, LOOKS):
-        part = k / LOOKS
-        middle = here.middle + part * (there.middle - here.middle)
-        share = here.share + part * (there.share - here.share)
-        met = yield from across(middle, share, sense, there.step, SHARPLY)
+
+        def beside(t, part=k / LOOKS):
+            return here.middle + part * wide - t * high / length, here.share + part * high + t * wide / length
+
+        met = yield from nearest(beside, there.step, SHARPLY)
         if met is None:
             return points[-2:]
-        inner.append(there._replace(middle=middle, share=met[0]))
+        middle, share = beside(met[0])
+        inner.append(there._replace(middle=middle, share=share))
     return [*inner, there]
 
 
 def turns_between(inner, sense):
-    """Three points, of which the middle one is the first that no one behind it passes; None where each one passes the one
-    before it.
+    """Three points, of which the middle one is the first that no one behind it passes; None where each one passes the
+    one before it.
     """
     for k in range(1, len(inner) - 1):
         if sense * inner[k + 1].share < sense * inner[k].share - NOTHING_LESS:
