@@ -21,6 +21,8 @@ TRIES, MOST_TRIES = 4, 6  # along a branch, and for a state
 ROUGH = 1e-2  # what is not known to this share of itself is not known
 # tries, and a doubt of the miss that needs no more of them: along a branch, where a point counts, and where it turns
 ALONG, SHARPLY, FINEST = (range(TRIES), ROUGH), (range(TRIES), 1e-7), (range(TRIES - 1, TRIES), 0.0)
+SHARPEST = range(TRIES, TRIES + 1), 0.0  # where there is no miss that is none
+WARY = 4.0  # times what two tries tell apart: of limits at jumps one in a hundred was 4 times as far off
 WIDER = 3.0  # times as far away is looked next for a change of sign
 
 
@@ -112,8 +114,19 @@ def across(middle, share, sense, reach, tries=FINEST):
     """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than
     ``reach``.
     """
-    met = yield from nearest(lambda t: (middle, share + t), reach, tries, -sense)
+
+    def place(t):
+        return middle, share + t
+
+    met = yield from nearest(place, reach, tries, -sense)
     if met is None:
         return None
     t, found, _ = met
-    return share + t, (found.doubt + abs(found.miss)) / slope_of(*met) + LEAST_DOUBT
+    doubt = (found.doubt + abs(found.miss)) / slope_of(*met) + LEAST_DOUBT
+    if abs(found.miss) > ROUGH * abs(
+        middle - 1.0
+    ):  # a jump, where a meridian ends between the places that are looked at
+        finer = yield from nearest(place, reach, SHARPEST, -sense)
+        if finer is not None:
+            t, doubt = finer[0], doubt + WARY * abs(finer[0] - t)
+    return share + t, doubt

@@ -167,8 +167,7 @@ def around_top(points, sense):
 
 
 def goes_on(points, sense):
-    """Whether the last step of a branch led on, in this ``sense``; where it hardly did, its ends are first made exact.
-    """
+    """Whether the last step of a branch led on, in this ``sense``; where it hardly did, its ends are first made exact."""
     here, there = points[-2:]
     if abs(there.share - here.share) < FLAT * SHARP * (here.step + there.step):
         points[-2], points[-1] = (yield from sharpened(here)), (yield from sharpened(there))
