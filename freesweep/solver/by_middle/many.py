@@ -15,7 +15,7 @@ from ..stability import PUSHED
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
 from .question import Answer
 from .states import middle_at, state_at, turning_point
-from .steps import ARRIVED, LARGEST_STEP, TURNED, Point, begin, follow
+from .steps import ARRIVED, FLAT, LARGEST_STEP, SHARP, TURNED, Point, begin, follow
 from .ways import fading, ways_of
 
 PIECES = 1, 2, 4, 16, 64, 256  # in which each part of a tube is summed, one try after the other
@@ -166,8 +166,9 @@ def along(way, point, sense, asked, rows, accuracy):
     shares = {i: way.share_of(rows.pressures[i]) for i in asked}
 
     def answer(here, there):
+        least = sense * here.share - FLAT * SHARP * (here.step + there.step)  # by which a point may be off
         for i, share in shares.items():
-            if rows.status[i] == PENDING and sense * share <= sense * there.share:
+            if rows.status[i] == PENDING and least <= sense * share <= sense * there.share:
                 yield from write(share, here, there, i, rows, accuracy)
 
     what, points = yield from follow(point, sense, max(sense * share for share in shares.values()), answer)

@@ -22,7 +22,7 @@ ROUGH = 1e-2  # what is not known to this share of itself is not known
 # tries, and a doubt of the miss that needs no more of them: along a branch, where a point counts, and where it turns
 ALONG, SHARPLY, FINEST = (range(TRIES), ROUGH), (range(TRIES), 1e-7), (range(TRIES - 1, TRIES), 0.0)
 SHARPEST = range(TRIES, TRIES + 1), 0.0  # where there is no miss that is none
-WARY = 4.0  # times what two tries tell apart: of limits at jumps one in a hundred was 4 times as far off
+WARY, NEEDLE = 4.0, 1e-5  # times what two tries tell apart; what a limit at a jump may be off, of a pressure
 WIDER = 3.0  # times as far away is looked next for a change of sign
 
 
@@ -110,23 +110,22 @@ def nearest(place, reach, tries, first=1.0):
     return None
 
 
-def across(middle, share, sense, reach, tries=FINEST):
-    """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than
-    ``reach``.
+def across(middle, share, sense, reach, last=False):
+    """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than ``reach``;
+    at ``last`` also by how much finer sums move it where the miss jumps, as a meridian ends between the places looked at.
     """
 
     def place(t):
         return middle, share + t
 
-    met = yield from nearest(place, reach, tries, -sense)
+    met = yield from nearest(place, reach, FINEST, -sense)
     if met is None:
         return None
     t, found, _ = met
     doubt = (found.doubt + abs(found.miss)) / slope_of(*met) + LEAST_DOUBT
-    if abs(found.miss) > ROUGH * abs(
-        middle - 1.0
-    ):  # a jump, where a meridian ends between the places that are looked at
+    if last and abs(found.miss) > ROUGH * abs(middle - 1.0):
         finer = yield from nearest(place, reach, SHARPEST, -sense)
         if finer is not None:
             t, doubt = finer[0], doubt + WARY * abs(finer[0] - t)
+        doubt += NEEDLE * share * (1.0 - share)
     return share + t, doubt

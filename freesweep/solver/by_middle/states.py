@@ -119,6 +119,9 @@ def turning_point(points, sense):
         if max(fb - fa, fb - fc) < FLAT or abs(c - a) < THIN:
             break
     bound = max(doubts[a], doubts[b], doubts[c]) + STANDS_OUT * max(fb - fa, fb - fc, 0.0)
+    met = yield from across(b, sense * fb, sense, reach, last=True)
+    if met is not None:
+        fb, bound = sense * met[0], bound + met[1]
     return sense * fb, bound, points[1]._replace(middle=b, share=sense * fb)
 
 
