@@ -1,1 +1,1 @@
-"""Branches of physical tubes that are the same all along, in two numbers."""
+"""Branches of tubes that are the same all along, in two numbers."""

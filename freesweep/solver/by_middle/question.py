@@ -21,8 +21,6 @@ TRIES, MOST_TRIES = 4, 6  # along a branch, and for a state
 ROUGH = 1e-2  # what is not known to this share of itself is not known
 # tries, and a doubt of the miss that needs no more of them: along a branch, where a point counts, and where it turns
 ALONG, SHARPLY, FINEST = (range(TRIES), ROUGH), (range(TRIES), 1e-7), (range(TRIES - 1, TRIES), 0.0)
-SHARPEST = range(TRIES, TRIES + 1), 0.0  # where there is no miss that is none
-WARY, NEEDLE = 4.0, 1e-5  # times what two tries tell apart; what a limit at a jump may be off, of a pressure
 WIDER = 3.0  # times as far away is looked next for a change of sign
 
 
@@ -110,22 +108,13 @@ def nearest(place, reach, tries, first=1.0):
     return None
 
 
-def across(middle, share, sense, reach, last=False):
-    """``(share, doubt)`` of the state whose middle has that stretch, nearest to a ``share``, not farther than ``reach``;
-    at ``last`` also by how much finer sums move it where the miss jumps, as a meridian ends between the places looked at.
+def across(middle, share, sense, reach):
+    """``(share, doubt, whether the miss jumps there)`` of the state whose middle has that stretch, nearest to a ``share``,
+    not farther than ``reach``.
     """
-
-    def place(t):
-        return middle, share + t
-
-    met = yield from nearest(place, reach, FINEST, -sense)
+    met = yield from nearest(lambda t: (middle, share + t), reach, FINEST, -sense)
     if met is None:
         return None
     t, found, _ = met
     doubt = (found.doubt + abs(found.miss)) / slope_of(*met) + LEAST_DOUBT
-    if last and abs(found.miss) > ROUGH * abs(middle - 1.0):
-        finer = yield from nearest(place, reach, SHARPEST, -sense)
-        if finer is not None:
-            t, doubt = finer[0], doubt + WARY * abs(finer[0] - t)
-        doubt += NEEDLE * share * (1.0 - share)
-    return share + t, doubt
+    return share + t, doubt, abs(found.miss) > ROUGH * abs(middle - 1.0)

@@ -8,6 +8,7 @@ CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turni
 CLOSE_BY = 4.0 * STILL
 SLIGHT, LEAST_ASIDE = 1e-3, 1e-13  # a miss, and a stretch, by which a state is moved to see what changes
 GOLDEN, PEAK_STEPS, FLAT, THIN = 0.381966, 40, 1e-9, 1e-7  # to a turning point; how exactly share and stretch are met
+NEEDLE = 1e-5  # of a pressure: how far off a limit may be where meridians end between the places that are looked at
 NUDGE, NUDGES = 0.01, 4  # of the way between the outer ones of three points
 NEAR = 1e-2  # of the way between two points: where a state is looked for first
 
@@ -94,10 +95,11 @@ def turning_point(points, sense):
     a, b, c = (point.middle for point in points)
     fa, fb, fc = (sense * point.share for point in points)
     reach = max(abs(fb - fa), abs(fb - fc)) + FLAT
-    known, doubts = [], {}
+    known, doubts, jumps = [], {}, False
     for t, f in ((a, fa), (b, fb), (c, fc)):
         met = yield from across(t, sense * f, sense, reach)
-        share, doubts[t] = met if met is not None else (sense * f, reach)
+        share, doubts[t], jumped = met if met is not None else (sense * f, reach, False)
+        jumps = jumps or jumped
         known.append(sense * share)
     fa, fb, fc = known
     for trial in range(PEAK_STEPS):
@@ -108,7 +110,8 @@ def turning_point(points, sense):
         t, met = yield from clear(t, sense * fb, sense, reach, NUDGE * (c - a))
         if met is None:
             break
-        share, doubts[t] = met
+        share, doubts[t], jumped = met
+        jumps = jumps or jumped
         if sense * share > fb:
             (a, fa), (c, fc) = ((a, fa), (b, fb)) if (t - b) * (c - b) < 0.0 else ((b, fb), (c, fc))
             b, fb = t, sense * share
@@ -119,9 +122,7 @@ def turning_point(points, sense):
         if max(fb - fa, fb - fc) < FLAT or abs(c - a) < THIN:
             break
     bound = max(doubts[a], doubts[b], doubts[c]) + STANDS_OUT * max(fb - fa, fb - fc, 0.0)
-    met = yield from across(b, sense * fb, sense, reach, last=True)
-    if met is not None:
-        fb, bound = sense * met[0], bound + met[1]
+    bound += NEEDLE * abs(fb) * (1.0 - abs(fb)) if jumps else 0.0
     return sense * fb, bound, points[1]._replace(middle=b, share=sense * fb)
 
 
