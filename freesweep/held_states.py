@@ -14,7 +14,6 @@ from .thick_wall import thin_wall_attributes
 from .worst_places import with_own
 
 HALF_CELLS = 48  # of half a tube that is the same all along
-MANY = 200  # states among which it is worth to look first for those that nothing holds
 
 
 class Held(NamedTuple):
@@ -71,93 +70,112 @@ def _differentiable(tube, held, result, names, accuracy, tied):
 
 def _solve(tube, held, accuracy):
     """Solve all states, and put the results into a Dataset."""
-    from .interpret import at_once
-    from .solver.along.places import NUMBERS
-    from .solver.along.profile import FIELDS
-    from .solver.held.held_state import HELD_LENGTH, HELD_ROTATION
-    from .solver.held.held_states import hold_many
-    from .solver.hold_batch import refuse
-    from .solver.problem import PHYSICAL, wall_columns
-    from .solver.status import OK, PENDING
+    from .solver.held.sought import HELD_LENGTH, HELD_ROTATION
+    from .solver.status import OK
 
     r, c10, of_length = tube.fiber_surface, tube.material.c10, held.name == "deformed_length"
-    row, solved, whole, error = _problem(tube, held.buckled, accuracy)
+    whole, (course, error) = tube.varies or held.buckled, _course(tube, held.buckled, accuracy)
     every = with_own(tube, held.stations)
     unique, index = near_stations(tube, every, whole)
     pressures, others, targets = (array.ravel() for array in held.states)
-    count = len(pressures)
-    along = len(NUMBERS) if wall_columns(row) == PHYSICAL else 0
-    values, bounds = np.full((2, count, 6 + along), np.nan)
-    codes, least = np.full(count, PENDING), np.full((count, 2), np.nan)
-    stable, slack, paths = np.zeros((3, count), np.int64)
-    fields = np.full((count, FIELDS, len(unique)), np.nan)
-    states = (
-        pressures / c10, others / (np.pi * r ** (3 if of_length else 2) * c10),
-        targets / r if of_length else np.radians(targets), HELD_LENGTH if of_length else HELD_ROTATION,
-    )  # fmt: skip
-    if count >= MANY and not whole:
-        refuse(row, *states, codes)
-    arguments = (
-        row[None], wall_columns(row), np.array([0, count]), *states, held.buckled, *solved,
-        accuracy - SENSITIVITY * error, values, bounds, codes, stable, slack, paths, least, unique, fields,
-    )  # fmt: skip
-    if not at_once(np.count_nonzero(codes == PENDING), hold_many, hold_many, *arguments):
-        hold_many(*arguments)
-    bounds, profiles = widened(values, bounds, error), fields[..., index]
+    others = others / (np.pi * r ** (3 if of_length else 2) * c10)
+    rows = _problems(tube, held.loads[1], others)
+    states = rows, targets / r if of_length else np.radians(targets), HELD_LENGTH if of_length else HELD_ROTATION
+    find = _hold_buckled if held.buckled else _hold
+    found = find(*states, pressures / c10, course, accuracy - SENSITIVITY * error, unique)
+    found["bounds"] = widened(found["values"], found["bounds"], error)
+    found["load_bounds"] = widened(found["loads"], found["load_bounds"], error)
+    found["fields"] = found["fields"][..., index]
     if tube.varies:  # whose angles at rest the kernels do not know
-        profiles[(codes == OK) & (pressures == 0.0) & (others == 0.0) & (values[:, 5] == 0.0)] = undeformed(
-            tube, every, whole
-        )
-    return _told(tube, held, accuracy, whole, (codes, stable, slack, values, bounds, profiles, paths, least))
+        at_rest = (found["status"] == OK) & (pressures == 0.0) & (others == 0.0) & (found["loads"] == 0.0)
+        found["fields"][at_rest] = undeformed(tube, every, whole)
+    shape = held.states[0].shape
+    return _told(
+        tube, held, accuracy, whole, {name: array.reshape(*shape, *array.shape[1:]) for name, array in found.items()}
+    )
 
 
-def _problem(tube, buckled, accuracy):
-    """``(row, course, whether the whole tube is solved, error of the course)``, as the kernels take them."""
+def _course(tube, buckled, accuracy):
+    """``(course, its error)``, as the kernels take them."""
     from .solver.batch import uniform
     from .solver.halves import in_two_halves
 
-    design = {name: np.full(1, value) for name, value in tube.design().items()}
-    unloaded = design | {"force": np.zeros(1), "torque": np.zeros(1)}
-    row = problem_rows(unloaded, tube.energy, tube.is_thick, tube.threads)[0]
-    whole = (
-        tube.varies or tube.is_thick or tube.threads > 0.0 or buckled
-    )  # on meshes only the source's tubes go by halves
     if tube.varies:
-        solved, error = read_course(tube, accuracy)
-        return row, solved, whole, error
-    return row, in_two_halves(row, HALF_CELLS) if whole else uniform(HALF_CELLS), whole, 0.0
+        return read_course(tube, accuracy)
+    return in_two_halves(_problems(tube, "force", np.zeros(1))[0], HALF_CELLS) if buckled else uniform(HALF_CELLS), 0.0
+
+
+def _problems(tube, load, others):
+    """Rows of problems, one for each ``load`` that is given, dimensionless."""
+    from .solver.problem import FORCE, TORQUE
+
+    count = len(others)
+    design = {name: np.full(count, value) for name, value in tube.design().items()}
+    rows = problem_rows(
+        design | {"force": np.zeros(count), "torque": np.zeros(count)}, tube.energy, tube.is_thick, tube.threads
+    )
+    rows[:, FORCE if load == "force" else TORQUE] = others
+    return np.ascontiguousarray(rows)
+
+
+def _hold(rows, targets, kind, pressures, course, accuracy, stations):
+    """What the kernels find, by name, all along the tube or along half of it."""
+    from .solver.hold_batch import hold_all
+
+    first = np.arange(len(pressures) + 1)
+    found = hold_all(rows, targets, kind, first, pressures, course, accuracy, stations, soon=True)
+    return {
+        "status": found.status, "stable": found.stable, "slack_fiber": found.states.slack, "values": found.states.values,
+        "bounds": found.states.bounds, "fields": found.profiles, "loads": found.loads, "load_bounds": found.load_bounds,
+        "held_path": found.paths,
+    }  # fmt: skip
+
+
+def _hold_buckled(rows, targets, kind, pressures, course, accuracy, stations):
+    """The same of the states beside the straight cylinder."""
+    from .interpret import run
+    from .solver.along.profile import FIELDS
+    from .solver.held.held_states import hold_many
+    from .solver.hold_batch import HOLDER
+    from .solver.problem import FORCE, wall_columns
+    from .solver.status import PENDING
+
+    count = len(pressures)
+    values, bounds = np.full((2, count, HOLDER + 1), np.nan)
+    status, least = np.full(count, PENDING), np.full((count, 2), np.nan)
+    stable, slack, paths = np.zeros((3, count), np.int64)
+    fields = np.full((count, FIELDS, len(stations)), np.nan)
+    run(
+        hold_many, count, True, rows[:1], wall_columns(rows), np.array([0, count]), pressures, rows[:, FORCE].copy(),
+        targets, kind, True, *course, accuracy, values, bounds, status, stable, slack, paths, least, stations, fields,
+    )  # fmt: skip
+    return {
+        "status": status, "stable": stable, "slack_fiber": slack, "values": values[:, :HOLDER],
+        "bounds": bounds[:, :HOLDER], "fields": fields, "loads": values[:, HOLDER], "load_bounds": bounds[:, HOLDER],
+        "least_buckled_pressure": least,
+    }  # fmt: skip
 
 
 def _told(tube, held, accuracy, whole, found):
     """The Dataset of what the kernels found of all states."""
     from .solver.held.sought import FROM_FREE
 
-    dims, shape, unknown = tuple(held.axes), held.states[0].shape, held.loads[0]
-    codes, stable, slack, values, bounds, profiles, paths, least = (
-        array.reshape(*shape, *array.shape[1:]) for array in found
-    )
+    dims, unknown = tuple(held.axes), held.loads[0]
     scale = np.pi * tube.fiber_surface ** (2 if unknown == "force" else 3) * tube.material.c10
-    extra = {unknown: (dims, values[..., 5] * scale), f"{unknown}_error": (dims, bounds[..., 5] * scale)}
+    extra = {unknown: (dims, found["loads"] * scale), f"{unknown}_error": (dims, found["load_bounds"] * scale)}
     if held.buckled:
-        pressure = least * tube.material.c10
+        pressure = found["least_buckled_pressure"] * tube.material.c10
         extra |= {"least_buckled_pressure": (dims, pressure[..., 0])}
         extra |= {"least_buckled_pressure_error": (dims, pressure[..., 1])}
     else:
-        extra["held_path"] = dims, paths.astype(np.int8)
-    told = {
-        "status": codes,
-        "stable": stable,
-        "slack_fiber": slack,
-        "values": np.delete(values, 5, axis=-1),
-        "bounds": np.delete(bounds, 5, axis=-1),
-    }
-    told |= {"fields": (profiles, whole), "extra": extra}
+        extra["held_path"] = dims, found["held_path"].astype(np.int8)
+    told = found | {"fields": (found["fields"], whole), "extra": extra}
     result = dataset(tube, held.axes, held.stations, told, without=(held.name,))
     result.attrs = {"title": repr(tube), "energy": tube.energy, "accuracy": accuracy, "buckled": int(held.buckled)}
     if tube.is_loose:
         result.attrs["fibers"] = "loose"
     result.attrs |= thin_wall_attributes(tube)
-    if not held.buckled and np.any(paths == FROM_FREE):
+    if not held.buckled and np.any(found["held_path"] == FROM_FREE):
         result.attrs["comment"] = (
             "held_path: the way from rest with the undeformed length or rotation held ends elsewhere, or the wall would have"
             " to be pushed on it; some states were found from the free one"

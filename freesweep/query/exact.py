@@ -176,7 +176,7 @@ def _held(kind, rows, own, accuracy, followed, thorough):
     """Held states of problems (k, ...), each at its own pressure."""
     from ..solver import hold_batch
     from ..solver.held.held_state import HELD_LENGTH, HELD_ROTATION
-    from ..solver.problem import LENGTH, PROBLEM_SIZE
+    from ..solver.problem import LENGTH
 
     count = len(rows)
     length = kind == reference.LENGTH_HELD
@@ -186,13 +186,11 @@ def _held(kind, rows, own, accuracy, followed, thorough):
         own["pressure"] / own["c10"],
     )  # fmt: skip
     tube, error = followed
-    if thorough or config.DISABLE_JIT or len(tube[0]):
-        found = hold_batch.hold_all(*asked, tube, accuracy - SENSITIVITY * error, soon=True)
-    else:
-        found = hold_batch._pending(rows, count)
-        if rows.shape[1] == PROBLEM_SIZE:  # vectors hold the source's tubes only
-            hold_batch._hold_lanes(*asked, accuracy, found)
-        found.status[found.status == PENDING] = NOT_CONVERGED
-    values = np.column_stack([found.values, found.along])
-    bounds = widened(values, np.column_stack([found.bounds, found.along_bounds]), error)
+    found = hold_batch.hold_all(
+        *asked, tube, accuracy - SENSITIVITY * error, soon=True, meshes=thorough or len(tube[0]) > 0
+    )
+    found.status[found.status == PENDING] = NOT_CONVERGED
+    along = slice(hold_batch.OUTPUTS, None)
+    values = np.column_stack([found.loads, found.states.values[:, along]])
+    bounds = widened(values, np.column_stack([found.load_bounds, found.states.bounds[:, along]]), error)
     return values, bounds, found.status, np.zeros(count, np.int64), found.stable

@@ -57,7 +57,7 @@ def walk_all(problems, first, pressures, tube, accuracy, stations=NOTHING, lanes
     pressures, limp = next_to_nothing(problems, first, pressures)
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
         _walk_lanes(problems, first, pressures, accuracy, found, soon)
-        kinds = [(kind, some) for _, _, kind, some in _kinds(problems)]
+        kinds = [(kind, some) for _, _, kind, some in kinds_of(problems)]
         follow_branches(problems, first, pressures, kinds, accuracy, found, soon)
         found.status[found.status == PENDING] = NOT_CONVERGED
         if len(stations):
@@ -120,7 +120,7 @@ def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon, most)
     steps = np.diff(first)
     owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
     stretches, likeness = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
-    for carry, solve, kind, some in _kinds(problems):
+    for carry, solve, kind, some in kinds_of(problems):
         given = problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness
         run(carry, len(pressures), soon, *given)
         carried = some[owners] & asked & np.isfinite(stretches)
@@ -134,24 +134,30 @@ def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon, most)
 
 def _draw(problems, first, pressures, stations, accuracy, found, soon):
     """Draw the states that were found; what no rule tells to the accuracy has a status that says so."""
-    from .lanes.profile import draw_lanes, draw_physical
-
     rows = np.flatnonzero(np.isin(found.status, (OK, INACCURATE)) & (found.bounds[:, 0] > 0.0))  # at rest, exactly
     met = np.isnan(found.middles[:, 0])  # on a branch, by the stretch in the middle
     found.middles[met, 0] = found.values[met, MIDDLE]
     owners = np.repeat(np.arange(len(problems)), np.diff(first))
+    drawn = draw(problems, owners, pressures, found.middles, rows, stations, accuracy, found.profiles, soon)
+    found.status[rows[~drawn[rows]]] = INACCURATE
+
+
+def draw(problems, owners, pressures, middles, rows, stations, accuracy, profiles, soon):
+    """Draw these rows of states from their ``middles``, into ``profiles``; returns which meet the accuracy, (n,)."""
+    from .lanes.profile import draw_lanes, draw_physical
+
     drawn = np.zeros(len(pressures), bool)
-    for _, _, kind, some in _kinds(problems):
+    for _, _, kind, some in kinds_of(problems):
         draw = draw_lanes if len(kind) == 1 else draw_physical
         for pieces in PIECES:
             left = rows[some[owners[rows]] & ~drawn[rows]]
             if len(left):
-                given = problems, owners, pressures, found.middles, left, stations, *kind, pieces, accuracy
-                run(draw, len(left), soon, *given, found.profiles, drawn)
-    found.status[rows[~drawn[rows]]] = INACCURATE
+                given = problems, owners, pressures, middles, left, stations, *kind, pieces, accuracy
+                run(draw, len(left), soon, *given, profiles, drawn)
+    return drawn
 
 
-def _kinds(problems):
+def kinds_of(problems):
     """``(carry, solve, kind, which problems)``: the kernels of vectors, and what is the same for all that share one."""
     from .lanes import free
     from .lanes.pack import count_layers

@@ -77,17 +77,17 @@ def _solve_free(_, problems, __, first, pressures, followed, accuracy, lanes=Tru
 
 
 def _solve_held(kind, problems, targets, first, pressures, followed, accuracy, lanes=True):
+    from ..solver.batch import OUTPUTS
     from ..solver.held.held_state import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold_batch import hold_all
 
     tube, error = followed
     held = HELD_LENGTH if kind == "blocked_force" else HELD_ROTATION
-    found = hold_all(problems, targets, held, first, pressures, tube, accuracy - SENSITIVITY * error, lanes)
+    found = hold_all(problems, targets, held, first, pressures, tube, accuracy - SENSITIVITY * error, lanes=lanes)
     states = np.empty(len(pressures), state(kind, is_physical(problems)))
-    states["value"], states["bound"] = found.values, upward(widened(found.values, found.bounds, error))
+    states["value"], states["bound"] = found.loads, upward(widened(found.loads, found.load_bounds, error))
     states["status"], states["stable"] = found.status, found.stable
     if is_physical(problems):
-        some = slice(len(SLACK))
-        slack, bound = found.along[:, some], found.along_bounds[:, some]
+        slack, bound = (array[:, OUTPUTS : OUTPUTS + len(SLACK)] for array in found.states[:2])
         states["slack"], states["slack_bound"] = slack, upward(widened(slack, bound, error))
     return states, np.empty(0, LIMIT)
