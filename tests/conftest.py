@@ -36,16 +36,16 @@ physical = fs.Actuator(alpha=30, beta=-30, model="physical", **sections)
 body = fs.Actuator(alpha=40, beta=-20, taper=0.2, **sections)
 """
 TAUT = """
-fs.blocked_force(alike, 1e4)
+fs.blocked_force(varying, 1e4)
 fs.inflate(varying, 1e4)
 fs.inflate(alike, np.linspace(1e4, 2e4, 70), derivatives="alpha")
-kernels.compile_idle(["Mooney-Rivlin", "seek_lanes", "measure_physical"])
+kernels.compile_idle(["Mooney-Rivlin", "measure_physical"])
 """
 PHYSICAL = """
 fs.inflate(physical, 1e4)
 fs.inflate(body, 1e4)
-names = "carry_lanes", "solve_lanes", "carry_physical", "solve_physical", "query", "physical_states"
-kernels.compile_idle(["Mooney-Rivlin", *names])
+names = [f"{does}_{tubes}" for does in ("carry", "solve", "start", "move") for tubes in ("lanes", "physical")]
+kernels.compile_idle(["Mooney-Rivlin", "query", "physical_states", *names])
 """
 
 

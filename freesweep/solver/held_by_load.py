@@ -29,7 +29,7 @@ UNSURE = 0.02  # share of the way in C to where the wall would be pushed: so nea
 SHORTER, LEAST_STEP = 0.3, 1e-3  # where free states are not carried so far
 ASIDE, CAUTION = 1e-3, 2.0  # a state beside another, and times what it differs by
 CLEAR = 20.0  # times its bounds: a difference of C that tells a slope
-LEAST_ACCURACY = 1e-11  # asked of free states
+ROUGH, LEAST_ACCURACY = 1e-3, 1e-11  # asked of free states, at first and at most
 COLUMN = {FORCE: 0, TORQUE: 2}  # of a free state's values
 
 
@@ -60,7 +60,7 @@ class Search:
         self.problems, self.pressures, self.targets = problems.copy(), pressures, targets
         self.unknown, self.accuracy, self.soon = unknown, accuracy, soon
         self.kinds = [(solve, kind, some) for _, solve, kind, some in kinds_of(problems)]
-        self.fine = np.full(len(problems), accuracy)
+        self.fine = np.full(len(problems), max(ROUGH, accuracy))
         self.columns = OUTPUTS + (6 if wall_columns(problems) == PHYSICAL else 0)
 
     def begin(self, found):
@@ -196,7 +196,8 @@ class Way:
         c, bound = states.values[rows, COLUMN[search.unknown]], states.bounds[rows, COLUMN[search.unknown]]
         missed = search.targets[rows] - c
         self.side(rows, c)
-        done = np.abs(missed) <= np.maximum(CLOSE * bound, CLOSEST * np.abs(c))
+        closed = self.high[rows] - self.low[rows] <= ROUNDING * self.size(rows)
+        done = closed | (np.abs(missed) <= np.maximum(CLOSE * bound, CLOSEST * np.abs(c)))
         refused = self.refuse(rows, c, found)
         self.aim(rows, c)
         finer = self.settle(rows[done], found)

@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 
+from . import designs
 from .plan import FREE
 
 VARYING = 1e-3  # [s] of a state, on one core, where tubes vary; where they do not, of each kind:
@@ -24,19 +25,31 @@ TOGETHER = 32  # problems that are solved at once, as vectors need them
 
 
 def entry_points(kind, sweep) -> tuple:
-    """Names of the solver's entry points for a kind of states: those of vectors, where there are any, and the scalar one."""
+    """Names of the solver's entry points for a kind of states: those of vectors, where there are any, else of meshes."""
+    if sweep.varies:
+        return ("follow_many",) if kind == FREE else ("hold_many",)
     if kind == FREE:
-        if sweep.varies:
-            return ("follow_many",)
         words = ("carry", "solve", "measure") if is_loaded(sweep) else ("carry", "solve")  # loaded, branches turn
-        return tuple(f"{word}_{'physical' if sweep.is_physical else 'lanes'}" for word in words)
-    return ("hold_many",) if sweep.varies or sweep.is_physical else ("seek_lanes", "solve_lanes", "hold_many")
+    else:
+        words = ("start", "move", "solve") if is_held_aside(sweep) else ("start", "solve")
+    return tuple(f"{word}_{'physical' if sweep.is_physical else 'lanes'}" for word in words)
 
 
 def is_loaded(sweep) -> bool:
     """Whether there are forces, torques or extended fibers in a sweep."""
-    given = sweep.fixed | sweep.axes | (sweep.designs or {}).get("columns", {})
+    given = _given(sweep)
     return any(np.any(np.asarray(given[name]) != rest) for name, rest in AT_REST.items() if name in given)
+
+
+def is_held_aside(sweep) -> bool:
+    """Whether what is held in a sweep is no straight cylinder, or need not be."""
+    given, at_rest = _given(sweep), designs.AT_REST
+    moved = any(np.any(np.asarray(given[name]) != rest) for name, rest in at_rest.items() if name in given)
+    return sweep.is_physical or is_loaded(sweep) or "held_length" in given or moved
+
+
+def _given(sweep):
+    return sweep.fixed | sweep.axes | (sweep.designs or {}).get("columns", {})
 
 
 def time_of(sweep, tables, equilibria, sizes, threads, measured) -> str:

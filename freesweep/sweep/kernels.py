@@ -16,7 +16,7 @@ import numpy as np
 from ..atlas.schema import YEOH
 from ..description.tube_model import THREADS
 from ..scaling import problem_rows
-from .duration import entry_points
+from .duration import entry_points, is_held_aside
 from .estimate import is_measured
 from .jobs import in_order
 from .plan import Job
@@ -27,6 +27,7 @@ TYPICAL = {
     **{"c10": 1.0, "c01": 0.0, "force": 0.0, "torque": 0.0, "fiber_extension": 1.0},
 }  # a tube that every kernel solves in no time, in its own radii and C10
 PRESSURE = 0.1
+ASIDE = 0.01  # shortening and rotation [radian] of one that is held, but not at rest
 PATIENCE = 3.0  # [s]: what takes this process longer is compiled, not loaded
 CHILD = (
     "import os, sys; sys.path[:] = sys.argv[1].split(os.pathsep);"
@@ -38,7 +39,10 @@ THE_REST = (
     "carry_physical",
     "measure_lanes",
     "measure_physical",
-    "seek_lanes",
+    "start_lanes",
+    "start_physical",
+    "move_lanes",
+    "move_physical",
     "query",
     "physical_states",
 )  # takes another process about as long
@@ -139,12 +143,13 @@ def compile_idle(words):
     from ..query.idle import compile_kernels, compile_physical
     from ..solver.lanes.by_middle import measure_lanes, measure_physical
     from ..solver.lanes.free import carry_lanes, carry_physical, solve_lanes, solve_physical
-    from ..solver.lanes.held import seek_lanes
+    from ..solver.lanes.held import move_lanes, move_physical, start_lanes, start_physical
     from ..solver.problem import MOONEY_RIVLIN, PROBLEM_SIZE
     from ..solver.problem import YEOH as YEOH_COLUMNS
 
     numbers, whole, states = np.empty(0), np.empty(0, np.int64), np.empty((0, 5))
-    problems, first, four = np.empty((0, PROBLEM_SIZE)), np.zeros(1, np.int64), (numbers,) * 4
+    problems, first = np.empty((0, PROBLEM_SIZE)), np.zeros(1, np.int64)
+    held = problems, numbers, numbers, whole, True
     for name, constants in (("Mooney-Rivlin", MOONEY_RIVLIN), ("Yeoh", YEOH_COLUMNS)):
         if name not in words:
             continue
@@ -166,8 +171,14 @@ def compile_idle(words):
             )
         if "measure_lanes" in words:
             measure_lanes(problems, whole, states, numbers, constants, 1, states, states, states)
-        if "seek_lanes" in words:
-            seek_lanes(problems, numbers, whole, numbers, whole, True, constants, numbers, numbers, whole, whole, *four)
+        if "start_lanes" in words:
+            start_lanes(*held, constants, numbers, numbers, whole, whole, states)
+        if "start_physical" in words:
+            start_physical(*held, constants, 1, numbers, numbers, whole, whole, states)
+        if "move_lanes" in words:
+            move_lanes(problems, numbers, whole, True, constants, numbers, numbers, numbers)
+        if "move_physical" in words:
+            move_physical(problems, numbers, whole, True, constants, 1, numbers, numbers, numbers)
     if "query" in words:
         compile_kernels()
 
@@ -183,13 +194,14 @@ def _rubbers(sweep):
 
 
 def _typical(kind, constants, sweep):
-    """A job of one state of a sweep's model, held at rest if its kind is held; of a tube that varies if the sweep's do, if
-    only in name.
+    """A job of one state of a sweep's model, held if its kind is held, at rest if all of them are; of a tube that varies if
+    the sweep's do, if only in name.
     """
     design = {name: np.array([value]) for name, value in (TYPICAL | constants).items()}
     fibers = "loose" if sweep.model.is_loose else "bonded"
     row = problem_rows(design, "full", sweep.model.is_thick, THREADS[len(sweep.families), fibers])
-    target = np.array([TYPICAL["length"] if kind == "blocked_force" else 0.0])
+    aside = ASIDE if is_held_aside(sweep) else 0.0
+    target = np.array([TYPICAL["length"] * (1.0 - aside) if kind == "blocked_force" else -aside])
     courses = []
     if sweep.varies:
         halves = np.zeros((2, 1, 3, 4))

@@ -25,13 +25,14 @@ VECTORS = {"carry_lanes", "solve_lanes"}
     ("text", "needed"),
     [
         (FREE, VECTORS),
-        (f"{FREE}\n[solver]\nblocked = true", VECTORS | {"seek_lanes"}),
+        (f"{FREE}\n[solver]\nblocked = true", VECTORS | {"start_lanes"}),
+        (spec(AXES | {"held_length_ratio": [0.95, 1.0]}), VECTORS | {"start_lanes", "move_lanes"}),
         (spec(AXES, fixed={"c20": 2e4, "c01": 0.0}), VECTORS),
         (spec(AXES | {"c20": [0.0, 2e4]}, fixed={"c01": 0.0}), VECTORS),
         (FREE.replace("wall = 0.00159", "wall = [[0, 1e-3], [1, 2e-3]]"), {"follow_many"}),
         (FREE.replace("[actuator]", '[actuator]\nmodel = "physical"'), {"carry_physical", "solve_physical"}),
     ],
-    ids=["free", "held", "Yeoh", "both families", "varying", "physical"],
+    ids=["free", "held at rest", "held", "Yeoh", "both families", "varying", "physical"],
 )
 def test_kernels_are_loaded_before_the_threads_begin(text, needed, tmp_path, monkeypatch):
     """Whatever a shard calls has been called with numbers of the same types: has been compiled."""
@@ -54,7 +55,7 @@ def test_kernels_are_loaded_before_the_threads_begin(text, needed, tmp_path, mon
         return noted
 
     entries = [(free, f"{does}_{tubes}") for does in ("carry", "solve") for tubes in ("lanes", "physical")]
-    entries += [(held, "seek_lanes")]
+    entries += [(held, f"{does}_lanes") for does in ("start", "move")]
     for module, name in [*entries, (batch, "follow_many"), (hold_batch, "hold_many")]:
         monkeypatch.setattr(module, name, noting(getattr(module, name)))
     early, late, idle = set(), set(), set()

@@ -134,6 +134,7 @@ def start(
             never = todo & (target > (1.0 + LONGER) * most)
         else:  # p + f alone decides
             pushed = todo & isnt(load.p + load.f > 0.0)
+            never = mask_of(valid) & (cell[0] == 0.0)  # no torque turns what has alpha = -beta
         todo = todo & isnt(never | pushed)
         now = holding(load, length_held, mu)
         pulled = lagrangian.density(spread(1.0), 0.0, cell, bonded(now))[0] > 0.0
