@@ -23,7 +23,7 @@ from .status import COMPRESSED, OK, PENDING
 
 TURNS = 30  # solutions of one state, at most; some six do nearly always
 LARGEST, FIRST = 4.0, 2.0  # step of mu, and the first one, to the loads
-CLOSE = 0.1  # to the target: share of what C's bound, or the accuracy, leaves open
+CLOSE, NEAR = 0.1, 1e-3  # to the target: shares of C's bound, and of what the accuracy leaves open
 NEAREST = 1e-6  # share of p from which on the wall may not be pushed
 UNSURE = 0.02  # share of the way in C to where the wall would be pushed: so near nothing is decided
 SHORTER, LEAST_STEP = 0.3, 1e-3  # where free states are not carried so far: the next step, and the least to the loads
@@ -185,7 +185,7 @@ class Way:
         c, bound = states.values[rows, column], states.bounds[rows, column]
         missed = search.targets[rows] - c
         self.aim(rows, c)
-        near = np.abs(self.mu[rows] - self.at[rows]) <= CLOSE * search.accuracy * self.size(rows)
+        near = np.abs(self.mu[rows] - self.at[rows]) <= NEAR * search.accuracy * self.size(rows)
         done = near | (np.abs(missed) <= CLOSE * bound)
         refused = self.refuse(rows, c, found) & np.logical_not(done)
         finer = self.settle(rows[done], found)

@@ -26,7 +26,6 @@ from . import first_guess
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
-UNCLEAR = 0.01  # relative distance from loss of stability: so near the meshes count
 SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
 LONGER = 1e-9  # relative: more than rounding
@@ -99,12 +98,12 @@ def rise_of(c_y, cell, load, half):
 
 @kernel
 def cylinder_stability(cell, load, half):
-    """Where the straight cylinder is stable while C is held, and where that is clear: its first mode is a whole sine; and
-    where its first symmetric mode has let go, too, and the branch from rest turned back.
+    """Where the straight cylinder is stable while C is held: its first mode is a whole sine; and where its first symmetric
+    mode has let go, too, and the branch from rest turned back.
     """
     _, _, _, L_yy, _, L_vv = lagrangian.density(spread(1.0), 0.0, cell, load)
     bend, stiff = L_yy * half * half, -L_vv * pi * pi
-    return bend < stiff, abs(bend - stiff) > UNCLEAR * stiff, bend > SYMMETRIC * SYMMETRIC * stiff
+    return bend < stiff, bend > SYMMETRIC * SYMMETRIC * stiff
 
 
 @kernel
@@ -142,8 +141,8 @@ def start(
         now = holding(load, length_held, mu)
         pulled = lagrangian.density(spread(1.0), 0.0, cell, bonded(now))[0] > 0.0
         stands = todo & pulled & both_pull(cell, now)
-        firm, clear, gone = cylinder_stability(cell, now, half)
-        straight = stands & (target == first) & clear
+        firm, gone = cylinder_stability(cell, now, half)
+        straight = stands & (target == first)
         lost = gone & (first == (half if length_held else 0.0)) & isnt(target == first)
         stands = stands & isnt(lost)
         u, came = free_start(cell, load, half, todo & isnt(stands))
