@@ -55,7 +55,7 @@ def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numb
         middle_moved * rest,
     )  # fmt: skip
     scale, floors = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
-    floor = FLOOR * floors[0], FLOOR * floors[1], FLOOR * floors[2], FLOOR * floors[3], floors[4]
+    floor = FLOOR * floors[0], FLOOR * floors[1], FLOOR * floors[2], FLOOR * floors[3], FLOOR * floors[4]
     largest = max(
         max(max(errors[0] / scale[0], errors[1] / scale[1]), max(errors[2] / scale[2], errors[3] / scale[3])), errors[4]
     )

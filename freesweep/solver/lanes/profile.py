@@ -22,7 +22,7 @@ from .outputs import DX, LENGTH, TWIST
 from .pack import COLUMNS, aligned, loads
 from .pack import LENGTH as HALF
 from .quadrature import along, find_ends, graded, scan
-from .rule import LAST, PLACES, UP_TO, summed
+from .rule import LAST, PLACES, UP_TO, missed_within, summed
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
 # what is kept of each place of the way; axial position and twist as what they differ by from those of a tube like its middle
@@ -57,7 +57,10 @@ def go(parts, pieces, edges, mid, cell, load, rows, way, scratch):
             near, fine = along(first, last, mid, cell, load, near, True, rows, scratch)
             valid = valid & fine
             grown, lengthened, turned = summed(rows[DX]), summed(rows[LENGTH]), summed(rows[TWIST])
-            doubts = doubts[0] + grown[1], doubts[1] + lengthened[1], doubts[2] + turned[1]
+            doubts = (
+                doubts[0] + missed_within(rows[DX]), doubts[1] + missed_within(rows[LENGTH]),
+                doubts[2] + missed_within(rows[TWIST]),
+            )  # fmt: skip
             for k in range(LAST + 1):
                 x, z, turn = spread(0.0), spread(0.0), spread(0.0)
                 for l in range(LAST + 1):

@@ -1,8 +1,11 @@
 """The rule of Clenshaw and Curtis for a vector of designs, and how much it may miss.
 
-The last coefficients of a function's expansion in Chebyshev polynomials tell: of 8,670 random states whose ends may stand
-upright two missed more than a twentieth of the largest of four, by 1.3 times, most a thousandth of that.
+A function's coefficients in Chebyshev polynomials tell. The sum of all misses little of those that follow the last, and
+takes those twice as far for a constant: both are taken to fall on as they do from the middle of the known ones to the last.
+Of 11,732 random states whose ends may stand upright, summed once and twice, 5 of 58,660 sums missed more, by up to 4.4 times.
 """
+
+from math import sqrt
 
 import numpy as np
 
@@ -18,21 +21,37 @@ _COEFFICIENTS = np.linalg.inv(_BASIS)
 _INTEGRALS = np.polynomial.chebyshev.chebint(_COEFFICIENTS, lbnd=-1)
 # up to the place of a row, for the number at the place of a column
 UP_TO = np.ascontiguousarray(0.5 * np.polynomial.chebyshev.chebval(-np.cos(_ANGLES), _INTEGRALS).T)
-TAILS = 4
-TAIL = np.ascontiguousarray(_COEFFICIENTS[-TAILS:])
-MISSED = 0.05  # of the largest of the last coefficients
+LATE, EARLY = (np.ascontiguousarray(_COEFFICIENTS[k : k + 4]) for k in (LAST - 3, LAST // 2 - 3))
+MISSED = 0.05  # of the largest of the last coefficients: what a sum up to any place may miss
+NEXT, FOLDED = 0.05, 5.0  # shares of coefficients that follow, and of those twice as far, in what a sum misses
+LEAST = 1e-300
+
+
+@kernel
+def largest(row, coefficients):
+    """The largest of four of a row's coefficients."""
+    most = spread(0.0)
+    for i in range(4):
+        total = spread(0.0)
+        for k in range(LAST + 1):
+            total = total + coefficients[i, k] * get(row, k)
+        most = max(most, abs(total))
+    return most
+
+
+@kernel
+def missed_within(row):
+    """What a sum of the row up to any place of it may miss."""
+    return MISSED * largest(row, LATE)
 
 
 @kernel
 def missed_by(row):
-    """What a sum of the row may miss, up to any place of it."""
-    missed = spread(0.0)
-    for i in range(TAILS):
-        tail = spread(0.0)
-        for k in range(LAST + 1):
-            tail = tail + TAIL[i, k] * get(row, k)
-        missed = max(missed, abs(tail))
-    return MISSED * missed
+    """What the sum of the whole row may miss: coefficients that follow fall on as they do from the middle to the last."""
+    last, middle = largest(row, LATE), largest(row, EARLY)
+    fallen = min(last / (middle + LEAST), 1.0)
+    root = sqrt(fallen)
+    return last * root * (NEXT + FOLDED * fallen)
 
 
 @kernel
