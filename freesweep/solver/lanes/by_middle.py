@@ -12,7 +12,7 @@ from ..physics import lagrangian
 from ..problem import FORCE, GAMMA, PHYSICAL, SOURCE, TORQUE
 from . import slack_ends
 from .meridian import DEEPEST, middle_at
-from .outputs import DX, FLOOR, finish, unmet
+from .outputs import DX, FLOOR, WITHIN, finish, unmet
 from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
 from .quadrature import between_ends, find_ends, scan
 from .rule import LAST
@@ -50,7 +50,7 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     deep = (mid.depth >= DEEPEST) & (miss >= 0.0)  # what is left of the tube is as its middle
     lack = select(driven, select(short > 0.0, -1.0 - short, select(deep, 0.0, get(scratch, 0) - 1.0)), min(lack, -1.0))
     put(told, MISS, select(driven & isnt(valid), np.nan, lack))
-    doubt = select(deep, 0.0, unmet(mid, zero, numbers) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)))
+    doubt = select(deep, 0.0, unmet(mid, zero, get(numbers[1], WITHIN)) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)))
     doubt = select(fine, doubt, np.inf)
     put(told, DOUBT, select(driven & valid, doubt, 0.0))
     rest = select(deep, miss, 0.0)

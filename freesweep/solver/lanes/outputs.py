@@ -14,7 +14,12 @@ from .vector import get, put, select, spread
 
 SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
 OUTPUTS = 5
-SLACK, WORST = 5, 7  # behind the SUMS: lengths without a pull of both families, and the largest of four rows
+SLACK, WORST, WITHIN = (
+    5,
+    7,
+    11,
+)  # behind the SUMS: lengths without a pull of both families, the largest of four rows, and
+# what the length summed up to any place may miss
 STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
 FLOOR = 200.0  # times the rounding of a mesh: sums along few places, of which some hardly know R - T
 FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length
@@ -27,12 +32,12 @@ def pulled(multiplier, load):
 
 
 @kernel
-def unmet(mid, miss, numbers):
-    """How much of half the tube's length may be missing: the shallower the middle, the fewer places have no digit of
-    R - T.
+def unmet(mid, miss, missed):
+    """How much of half the tube's length may be missing, of which sums may have ``missed`` some: the shallower the middle,
+    the fewer places have no digit of R - T.
     """
     strain = mid.q * (mid.u - 1.0)
-    return get(numbers[1], DX) + abs(miss) + FAINT / mid.rate * min(FAINT / (2.0 * strain * strain), 1.0)
+    return missed + abs(miss) + FAINT / mid.rate * min(FAINT / (2.0 * strain * strain), 1.0)
 
 
 @kernel

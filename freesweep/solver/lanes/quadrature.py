@@ -17,8 +17,8 @@ from ..physics.wall import has_any_family, has_two_families
 from . import slack_ends
 from .extremes import highest, widest
 from .meridian import CERTAIN, DEEPEST, handed_on, look, middle
-from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WORST, finish, pulled, unmet
-from .rule import LAST, PLACES, summed
+from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WITHIN, WORST, finish, pulled, unmet
+from .rule import LAST, PLACES, missed_within, summed
 from .vector import HUGE, WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5, 15)
@@ -154,8 +154,8 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
     Returns the lanes that may be, and ``(alpha, beta)`` limp somewhere in the last part.
     """
     valid, near, limp_a, limp_b = mask_of(-1), nothing_yet(spread(0.0)), mask_of(0), mask_of(0)
-    for k in range(WORST + 4):
-        put(numbers[0], k, spread(0.0 if k < WORST else -HUGE))
+    for k in range(WITHIN + 1):
+        put(numbers[0], k, spread(-HUGE if WORST <= k < WITHIN else 0.0))
         put(numbers[1], k, spread(0.0))
     for j in range(parts):
         left, width = get(edges, j), get(edges, j + 1) - get(edges, j)
@@ -164,6 +164,7 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
             near, fine = along(first, last, mid, cell, load, near, True, rows, scratch)
             dx, doubt = summed(rows[DX])
             add(numbers, DX, dx, doubt)
+            add(numbers, WITHIN, spread(0.0), missed_within(rows[DX]))
             for k in range(LENGTH, ENERGY + 1):
                 add(numbers, k, *summed(rows[k]))
             valid = valid & fine
@@ -303,7 +304,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
     moved = (
-        2.0 * mid.q * min(mid.rate * unmet(mid, miss, numbers), 1.0)
+        2.0 * mid.q * min(mid.rate * unmet(mid, miss, get(numbers[1], DX)), 1.0)
     )  # at most that far is a long tube's from the end
     largest = finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     alpha, beta = limps

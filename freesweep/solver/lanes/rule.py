@@ -2,7 +2,7 @@
 
 A function's coefficients in Chebyshev polynomials tell. The sum of all misses little of those that follow the last, and
 takes those twice as far for a constant: both are taken to fall on as they do from the middle of the known ones to the last.
-Of 11,732 random states whose ends may stand upright, summed once and twice, 5 of 58,660 sums missed more, by up to 4.4 times.
+Of 58,660 sums of random states whose ends may stand upright, in one piece and in two, 5 missed more, by up to 4.4 times.
 """
 
 from math import sqrt
