@@ -41,9 +41,9 @@ def unmet(mid, miss, missed):
 
 
 @kernel
-def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
-    """Write outputs, numbers and bounds, where the middle may have ``moved`` by that share of the layer; returns the
-    largest scaled bound of the outputs, rounding left out.
+def finish(mid, miss, moved, placed, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
+    """Write outputs, numbers and bounds, where the middle may have ``moved`` by that share of the layer, and any place,
+    the middle itself, too, by the share ``placed``; returns the largest scaled bound of the outputs, rounding left out.
     """
     sums, missed = numbers[0], numbers[1]
     rest = fallen(mid.rate * miss, scratch)  # how much of what is left of the layer is left in the middle itself
@@ -52,7 +52,7 @@ def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numb
         half * mid.psi + get(sums, TWIST), half * mid.energy + get(sums, ENERGY),
         mid.u + (mid.y - mid.u) * rest,
     )  # fmt: skip
-    by = min(moved, 2.0 * mid.q)
+    by = min(placed, 2.0 * mid.q)
     middle_moved = abs(1.0 - mid.u) * by
     errors = (
         get(missed, LENGTH) + moved * abs(get(sums, LENGTH)), get(missed, VOLUME) + moved * abs(get(sums, VOLUME)),
@@ -66,7 +66,7 @@ def finish(mid, miss, moved, cell, load, half, middle_limp, doubts, unsure, numb
     )
     record(out, 0, outputs, errors, floor)
     tell_places(
-        mid, miss, moved, by, middle_moved, cell, load, half, middle_limp, doubts, unsure, sums, missed, out, load.wall
+        mid, miss, placed, by, middle_moved, cell, load, half, middle_limp, doubts, unsure, sums, missed, out, load.wall
     )
     return largest
 
