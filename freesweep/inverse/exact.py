@@ -11,12 +11,15 @@ from ..derivative.physics import OWN, Physics
 from ..derivative.request import SHAPE
 from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
+from .beside import Held, load_slopes
 from .freedom import LOADS
 from .outputs import FOLLOWING, derived
 from .predict import state_of
+from .vectors import Kind, points_of
 from .wishes import HELD
 
 ACCURACY = 1e-6  # of the slopes, in the unit box
+STEP = 1e-4  # of the unit box, of central differences
 SAME = 1e-5  # relative: by how much a value may differ from the one that was predicted
 
 
@@ -90,6 +93,29 @@ def _state(space, state, outputs, columns, values, some, free):
         np.abs(values.T), [_least(name, design) for name in outputs]
     )
     return np.moveaxis(np.where(same[:, None], found[:, 1:], np.nan), -1, 0)
+
+
+def held_slopes(space, wishes, u, choice, found, slopes):
+    """Write to ``slopes`` (n, wishes, p), where it has none, those of loads that hold tubes the states of which were
+    ``found`` in two numbers, but for those that stay straight.
+    """
+    own = Kind.of(space.template)
+    if own.is_source or not space.is_alike:
+        return
+    size = STEP * np.eye(u.shape[1])
+    for k, wish in enumerate(wishes):
+        rows = np.flatnonzero(np.isfinite(found.middles[:, k]) & np.any(np.isnan(slopes[:, k]), axis=1))
+        if wish.output not in HELD or len(rows) == 0:
+            continue
+        state, count = state_of(wish), len(rows)
+        tubes = [
+            Held(wish.output, points_of(state, space.columns(u[rows] + step, choice[rows]), count), own)
+            for step in (0.0 * size[:1], *size, *-size)
+        ]
+        middle = found.middles[rows, k] / tubes[0].radius
+        slopes[rows, k] = load_slopes(
+            tubes[0], list(zip(tubes[1 : 1 + len(size)], tubes[1 + len(size) :])), found.values[rows, k], middle, STEP
+        )
 
 
 class Designs(Physics):

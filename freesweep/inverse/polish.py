@@ -32,7 +32,8 @@ def polish(misfit: Misfit, u, choice):
         if len(rows) == 0:
             break
         ahead = np.array([_ahead(u[i], residuals[i], slopes[i], damping[i]) for i in rows])
-        trial, missed = misfit.at(ahead, choice[rows], thorough=False, near=found.values[rows])
+        near = misfit.ahead(found.part(rows), slopes[rows], ahead - u[rows])
+        trial, missed = misfit.at(ahead, choice[rows], thorough=False, near=near)
         new = _cost(missed)
         dear = np.flatnonzero(~np.isfinite(new))
         if misfit.space.is_source and len(dear) and np.all(cost > DONE**2):
