@@ -15,7 +15,7 @@ from .beside import Held, load_slopes
 from .freedom import LOADS
 from .outputs import FOLLOWING, derived
 from .predict import state_of
-from .vectors import Kind, points_of
+from .vectors import STRAIGHT, Kind, points_of
 from .wishes import HELD
 
 ACCURACY = 1e-6  # of the slopes, in the unit box
@@ -23,9 +23,10 @@ STEP = 1e-4  # of the unit box, of central differences
 SAME = 1e-5  # relative: by how much a value may differ from the one that was predicted
 
 
-def exact_slopes(space, wishes, u, choice, values):
+def exact_slopes(space, wishes, u, choice, values, middles=None):
     """Derivatives (n, wishes, p) of the ``values`` (n, wishes) along points u (n, p), NaN where there are none here: no
-    state, a limit pressure, a tube that varies, or one of which vectors find no derivative, or another state.
+    state, a limit pressure, a tube that varies, or one of which vectors find no derivative, or another state; ``middles``:
+    radii of the middle [m] of physical tubes, if they are known.
     """
     count, free = u.shape
     slopes = np.full((count, len(wishes), free), np.nan)
@@ -47,7 +48,9 @@ def exact_slopes(space, wishes, u, choice, values):
 
     def solve(job):
         state, own, some = job
-        return _state(space, state, [wishes[k].output for k in own], columns, values[np.ix_(some, own)], some, free)
+        known = None if middles is None or space.is_source else middles[some, own[0]]
+        outputs = [wishes[k].output for k in own]
+        return _state(space, state, outputs, columns, values[np.ix_(some, own)], known, some, free)
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         for (_, own, some), found in zip(jobs, pool.map(solve, jobs)):
@@ -61,7 +64,7 @@ def _shares(values):
     return [some for some in np.array_split(rows, os.cpu_count() or 1) if len(some)]
 
 
-def _state(space, state, outputs, columns, values, some, free):
+def _state(space, state, outputs, columns, values, middles, some, free):
     """Derivatives (n, outputs, free) in one state of designs ``some`` of the ``columns``."""
     given = dict(state.conditions)
     design = {name: number.take(some) for name, number in columns.items()}
@@ -74,7 +77,8 @@ def _state(space, state, outputs, columns, values, some, free):
         load[-1] = 1.0
         design[state.kind] = Dual(values[:, 0], load)
     tube, sizes = space.template, _sizes(design, state, len(some), free)
-    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads)
+    known = None if middles is None else (middles, np.ones(len(some), bool))
+    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads, known)
     if held is not None:
         rows = _straight(tube, design, rows, free + 1) if space.is_source else rows
         target = (
@@ -104,7 +108,8 @@ def held_slopes(space, wishes, u, choice, found, slopes):
         return
     size = STEP * np.eye(u.shape[1])
     for k, wish in enumerate(wishes):
-        rows = np.flatnonzero(np.isfinite(found.middles[:, k]) & np.any(np.isnan(slopes[:, k]), axis=1))
+        bent = np.abs(found.middles[:, k] / space.columns(u, choice)["fiber_radius"] - 1.0) > STRAIGHT
+        rows = np.flatnonzero(bent & np.any(np.isnan(slopes[:, k]), axis=1))
         if wish.output not in HELD or len(rows) == 0:
             continue
         state, count = state_of(wish), len(rows)

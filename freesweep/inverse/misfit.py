@@ -56,7 +56,7 @@ class Misfit(NamedTuple):
         """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: exact ones where vectors give them,
         else central differences, one-sided where the other side has no state; of held states, beside these.
         """
-        slopes = exact_slopes(self.space, self.wishes, u, choice, found.values)
+        slopes = exact_slopes(self.space, self.wishes, u, choice, found.values, found.middles)
         held_slopes(self.space, self.wishes, u, choice, found, slopes)
         there = np.isfinite(found.values)
         missing = there & np.any(np.isnan(slopes), axis=2)

@@ -17,7 +17,7 @@ from .wishes import HELD
 
 class Predicted(NamedTuple):
     """Values (n, wishes) in SI units and degrees, NaN where there is no state; bounds of their errors; status; the middle's
-    radius [m] of held states, NaN where it says nothing; and which fiber families are slack in some state, or would have
+    radius [m] where vectors tell it; and which fiber families are slack in some state, or would have
     to push (n,).
     """
 

@@ -11,7 +11,7 @@ from ..interpret import foretell
 from ..query.exact import solve
 from ..query.reference import COLUMNS, LENGTH_HELD, LOADED, LOCKED, ROTATION_HELD
 from ..scaling import PULLS, SLACK
-from ..status import INVALID, OK
+from ..status import INVALID, NOT_CONVERGED, OK
 from .beside import Held, beside
 from .by_loads import hold_by_loads, straight_loads
 from .outputs import output
@@ -24,6 +24,7 @@ WORST = ("outer_radius", "largest_stretch")
 TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tubes
 OF_SOURCE = (*WORST, "limit_pressure", *STIFF)
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
+STRAIGHT = 1e-6  # strain in the middle: beside it a tube is straight, and leads to none that is not
 SUMMED = 1e-6  # accuracy that such sums have nearly always
 
 
@@ -81,7 +82,7 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, nea
             limit = np.where(numbers["status"] == INVALID, INVALID, OK)
             answers[state]["slack"] = np.where(kind == "limit", 0, numbers["slack_fiber"]).astype(np.int8)
             answers[state]["status"] = limit if kind == "limit" else numbers["status"]
-            answers[state]["middle"] = numbers["mid_radius"] if kind in HELD else np.full(count, np.nan)
+            answers[state]["middle"] = numbers["mid_radius"] if kind != "limit" else np.full(count, np.nan)
     return answers
 
 
@@ -121,18 +122,26 @@ def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
 
 
 def _held(kind, points, own, near, accuracy, two, free, like, alone):
-    """Held states: those beside states that are known from these, others among free ones."""
+    """Held states: those beside states that are known from these, others among free ones; ``alone``, if it is given, solves
+    what both do not find.
+    """
     (loads, radii), radius = near, points[:, COLUMNS.index("fiber_radius")]
-    known = np.flatnonzero(np.isfinite(radii) & np.isnan(straight_loads(kind, points)))
+    known = np.flatnonzero((np.abs(radii / radius - 1.0) > STRAIGHT) & np.isnan(straight_loads(kind, points)))
     pair = beside(Held(kind, points[known], own), loads[known], radii[known] / radius[known], accuracy)
     met = np.isfinite(pair.load)
-    rest = np.setdiff1d(np.arange(len(points)), known[met])
+    rest = np.setdiff1d(np.arange(len(points)), known[met] if alone else known)
     others = hold_by_loads(kind, points[rest], free, like, alone, accuracy, two, loads[rest])
     found = {name: np.empty(len(points), array.dtype) for name, array in others.items()}
-    middle = pair.middle * radius[known]
-    own = {kind: pair.load, f"{kind}_error": pair.bound, "mid_radius": middle, "slack_fiber": pair.slack, "status": OK}
+    status, middle = np.where(met, OK, NOT_CONVERGED), pair.middle * radius[known]
+    own = {
+        kind: pair.load,
+        f"{kind}_error": pair.bound,
+        "mid_radius": middle,
+        "slack_fiber": pair.slack,
+        "status": status,
+    }
     for name, array in found.items():
-        array[rest], array[known[met]] = others[name], np.broadcast_to(own[name], len(known))[met]
+        array[known], array[rest] = own[name], others[name]
     return found
 
 
