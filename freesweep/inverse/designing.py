@@ -19,7 +19,7 @@ from .look import look, spread, with_dear
 from .misfit import make
 from .polish import polish
 from .wishes import Goal, Limit
-from .words import prices
+from .words import NONE, prices
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,9 +94,7 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
     u, choice = look(misfit, STARTS * count, seed, atlas)
     if len(u) == 0:
         titles = ", ".join(wish.title for wish in misfit.wishes)
-        raise ActuatorError(
-            [f"goals, limits: no design that is allowed has all the states in which they count: {titles}"]
-        )
+        raise ActuatorError([f"goals, limits: {NONE} has all the states in which they count: {titles}"])
     misfit = with_dear(misfit, u, choice)
     u, found, residuals, slopes = polish(misfit, u, choice)
     if objectives:

@@ -54,7 +54,8 @@ class Misfit(NamedTuple):
 
     def slopes(self, u, choice, found):
         """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: exact ones where vectors give them,
-        else central differences, one-sided where the other side has no state; of held states, beside these.
+        else central differences, one-sided where the other side has no state; of held states, beside these. NaN where
+        nothing is known.
         """
         slopes = exact_slopes(self.space, self.wishes, u, choice, found.values, found.middles)
         held_slopes(self.space, self.wishes, u, choice, found, slopes)
@@ -69,7 +70,7 @@ class Misfit(NamedTuple):
             slopes[table] = np.where(
                 np.isnan(slopes[table]), self._differences(own, u[rows], choice[rows], near), slopes[table]
             )
-        return np.nan_to_num(slopes) / self.tolerances[:, None]
+        return slopes / self.tolerances[:, None]
 
     def _differences(self, wishes, u, choice, found):
         """Central differences (n, wishes, p) about points of which that was ``found``."""
@@ -89,14 +90,15 @@ class Misfit(NamedTuple):
         values = np.where(there, values, middle)
         along = np.arange(free)
         width = ends[:, :free][:, along, along] - ends[:, free:][:, along, along]
-        halved = np.where(there[:, :free] & there[:, free:], 1.0, 0.5)  # one side has a state
+        sides = there[:, :free].astype(int) + there[:, free:]  # that have a state
         with np.errstate(invalid="ignore"):
-            slope = (values[:, :free] - values[:, free:]) / (halved * width[..., None])
-        return np.moveaxis(slope, 1, 2)
+            slope = (values[:, :free] - values[:, free:]) / (0.5 * np.maximum(sides, 1) * width[..., None])
+        return np.moveaxis(np.where(sides > 0, slope, np.nan), 1, 2)
 
     def ahead(self, found, slopes, step):
         """What was ``found``, a ``step`` (n, p) further along the ``slopes`` (n, wishes, p)."""
-        return found._replace(values=found.values + np.einsum("nwp,np->nw", slopes, step) * self.tolerances)
+        change = np.einsum("nwp,np->nw", np.nan_to_num(slopes), step)
+        return found._replace(values=found.values + change * self.tolerances)
 
 
 def make(space, goals, limits) -> Misfit:

@@ -59,7 +59,7 @@ def _cost(residuals):
 
 def _ahead(u, residuals, slopes, damping):
     """A step of the damped normal equations, along what is not held by a bound."""
-    slopes = slopes * (residuals != 0.0)[:, None]  # a range that is kept asks for nothing
+    slopes = np.nan_to_num(slopes) * (residuals != 0.0)[:, None]  # a range that is kept asks for nothing
     gradient = slopes.T @ residuals
     free = ~(((u <= 0.0) & (gradient > 0.0)) | ((u >= 1.0) & (gradient < 0.0)))
     step = np.zeros_like(u)
