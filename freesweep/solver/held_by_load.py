@@ -15,7 +15,7 @@ import numpy as np
 
 from ..interpret import run
 from .batch import OUTPUTS, PIECES, kinds_of
-from .lanes.held import BEGINNING, HELD, LONGEST, MULTIPLIER, RISE, STRETCH, UNTAUT
+from .lanes.held import BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH
 from .physics.lagrangian import ROUNDING
 from .physics.wall import LOOSE
 from .problem import FORCE, PHYSICAL, THREADS, TORQUE, wall_columns
@@ -23,13 +23,14 @@ from .status import COMPRESSED, OK, PENDING
 
 TURNS = 30  # solutions of one state, at most; some six do nearly always
 LARGEST, FIRST = 4.0, 2.0  # step of mu, and the first one, to the loads
-CLOSE, CLOSEST = 0.1, 1e-14  # to the target: share of C's bound, and of C
+CLOSE, NEAR = 0.1, 1e-3  # to the target: shares of C's bound, and of what the accuracy leaves open
 NEAREST = 1e-6  # share of p from which on the wall may not be pushed
 UNSURE = 0.02  # share of the way in C to where the wall would be pushed: so near nothing is decided
-SHORTER, LEAST_STEP = 0.3, 1e-3  # where free states are not carried so far
+SHORTER, LEAST_STEP = 0.3, 1e-3  # where free states are not carried so far: the next step, and the least to the loads
+UNKNOWN = 0.25  # of the loads: a step where no secant is known
 ASIDE, CAUTION = 1e-3, 2.0  # a state beside another, and times what it differs by
-CLEAR = 20.0  # times its bounds: a difference of C that tells a slope
-ROUGH, LEAST_ACCURACY = 1e-3, 1e-11  # asked of free states, at first and at most
+ROUGH, LEAST_ACCURACY = 1e-3, 1e-10  # asked of free states, at first and at most
+FEW = 2  # tries at what is asked at first
 COLUMN = {FORCE: 0, TORQUE: 2}  # of a free state's values
 
 
@@ -60,7 +61,8 @@ class Search:
         self.problems, self.pressures, self.targets = problems.copy(), pressures, targets
         self.unknown, self.accuracy, self.soon = unknown, accuracy, soon
         self.kinds = [(solve, kind, some) for _, solve, kind, some in kinds_of(problems)]
-        self.fine = np.full(len(problems), max(ROUGH, accuracy))
+        self.rough = np.full(len(problems), max(ROUGH, accuracy))
+        self.fine = self.rough.copy()
         self.columns = OUTPUTS + (6 if wall_columns(problems) == PHYSICAL else 0)
 
     def begin(self, found):
@@ -77,7 +79,7 @@ class Search:
             if len(rows):
                 run(start, len(rows), self.soon, *given, *found[:4], beginnings)
         known = np.flatnonzero(found.status == OK)
-        self.solve(known, found.loads[known], np.ones(len(known)), found.states)
+        self.solve(known, found.loads[known], np.ones(len(known)), found.states, self.rough)
         found.status[known] = found.states.status[known]
         return beginnings
 
@@ -94,17 +96,17 @@ class Search:
                 run(move, len(own), self.soon, *given, *carried)
         return carried[2, rows]
 
-    def solve(self, rows, multipliers, stretches, states):
-        """The free states of some rows under these multipliers, as exactly as each needs."""
+    def solve(self, rows, multipliers, stretches, states, fine):
+        """The free states of some rows under these multipliers, as exactly as the row asks for in ``fine``."""
         self.problems[rows, self.unknown] = multipliers
         states.status[rows] = PENDING
         start = np.full(len(self.problems), np.nan)
         start[rows] = stretches
         owners = np.arange(len(self.problems))
         for solve, kind, some in self.kinds:
-            for asked in np.unique(self.fine[rows]):
-                own = rows[some[rows] & (self.fine[rows] == asked)]
-                for pieces in PIECES:
+            for asked in np.unique(fine[rows]):
+                own = rows[some[rows] & (fine[rows] == asked)]
+                for pieces in PIECES[: FEW if asked >= ROUGH else None]:
                     left = own[states.status[own] == PENDING]
                     if len(left):
                         given = self.problems, owners, self.pressures, start, left, *kind, pieces, asked
@@ -117,7 +119,7 @@ def hold_by_load(problems, pressures, targets, unknown, accuracy, found, soon=Fa
     with np.errstate(all="ignore"):
         beginnings = search.begin(found)
         rows = np.flatnonzero((found.status == PENDING) & np.isfinite(beginnings[:, STRETCH]))
-        found.paths[rows] = beginnings[rows, UNTAUT] != 0.0
+        found.paths[rows] = beginnings[rows, LOST] != 0.0
         way = Way(search, rows, beginnings)
         for _ in range(TURNS):
             if not len(way.rows):
@@ -126,38 +128,25 @@ def hold_by_load(problems, pressures, targets, unknown, accuracy, found, soon=Fa
 
 
 class Way:
-    """Where the search stands, of the rows that are left: the state last come to, the next multiplier, and of both sides
-    of the target the nearest multiplier.
+    """Where the search stands, of the rows that are left: the state last come to, and the nearest on both sides of the
+    target (multiplier, uniform stretch); between those the uniform tube needs no carrying.
     """
 
     def __init__(self, search, rows, beginnings):
-        n = len(search.problems)
-        own = beginnings[rows]
-        self.search, self.rows = search, rows
-        self.states = room_for(n, search.columns)
-        self.stretch, self.mu, self.at = (
-            beginnings[:, STRETCH].copy(),
-            np.full(n, np.nan),
-            beginnings[:, MULTIPLIER].copy(),
-        )
-        self.origin, self.first, self.longest = self.at.copy(), beginnings[:, HELD].copy(), beginnings[:, LONGEST]
-        self.low, self.high = np.full(n, -np.inf), np.full(n, np.inf)
-        self.before = np.full((2, n), np.nan)  # mu and h of another state
+        n, own = len(search.problems), beginnings[rows]
+        self.search, self.rows, self.states = search, rows, room_for(n, search.columns)
+        self.at, self.stretch, self.first = (beginnings[:, k].copy() for k in (MULTIPLIER, STRETCH, HELD))
+        self.origin, self.longest = self.at.copy(), beginnings[:, LONGEST]
+        self.before, self.sides = np.full((2, n), np.nan), np.full((2, 2, n), np.nan)
         given = search.problems[:, TORQUE if search.unknown == FORCE else FORCE]
         self.loads = np.maximum(search.pressures, np.abs(given))
-        if search.unknown == FORCE:
-            self.low = -search.pressures.copy()
+        self.mu = self.at.copy()
         known = rows[np.isfinite(own[:, HELD])]
-        c, target = self.first[known], search.targets[known]
-        self.before[:, known] = self.at[known], self.height(known, c)
-        aim = self.height(known, target) - self.before[1, known]
-        rise = beginnings[known, RISE] * (aim / (target - c))
+        aim = self.height(known, search.targets[known]) - self.height(known, self.first[known])
+        rise = beginnings[known, RISE] * (aim / (search.targets[known] - self.first[known]))
+        self.keep(known, self.first[known])
         size = FIRST * self.size(known)
-        self.mu[known] = self.at[known] + np.clip(aim / rise, -size, size)
-        self.side(known, c)
-        free = rows[np.isnan(own[:, HELD])]
-        self.mu[free] = self.at[free]
-        self.mu[rows] = self.allowed(rows, self.mu[rows])
+        self.mu[known] = self.allowed(known, self.at[known] + np.clip(aim / rise, -size, size))
 
     def size(self, rows):
         """By what a multiplier is measured."""
@@ -167,99 +156,97 @@ class Way:
         """What the secant is of."""
         return 1.0 / np.sqrt(self.longest[rows] - c) if self.search.unknown == FORCE else c
 
-    def side(self, rows, c):
-        """The state come to lies on one side of the target."""
-        short = c < self.search.targets[rows]
-        self.low[rows[short]] = np.maximum(self.low[rows[short]], self.at[rows[short]])
-        self.high[rows[~short]] = np.minimum(self.high[rows[~short]], self.at[rows[~short]])
-
     def allowed(self, rows, mu):
         """A multiplier nearest to ``mu`` that does not push the wall."""
         if self.search.unknown == TORQUE:
             return mu
         return np.maximum(mu, -(1.0 - NEAREST) * self.search.pressures[rows])
 
+    def keep(self, rows, c):
+        """The state come to is the nearest on its side of the target; it has no other before it."""
+        side = (c > self.search.targets[rows]).astype(int)
+        self.sides[side, 0, rows], self.sides[side, 1, rows] = self.at[rows], self.stretch[rows]
+        self.before[:, rows] = self.at[rows], self.height(rows, c)
+
     def step(self, found):
         """Solve the rows that are left once more."""
-        search, rows, states = self.search, self.rows, self.states
-        carried = search.move(rows, self.at[rows], self.mu[rows], self.stretch[rows])
-        came = np.isfinite(carried)
-        short = rows[~came]
+        search, rows, states, column = self.search, self.rows, self.states, COLUMN[self.search.unknown]
+        stretch, between = self.carried(rows)
+        came, states.status[rows] = np.isfinite(stretch), PENDING
+        search.solve(rows[came], self.mu[rows[came]], stretch[came], states, search.fine)
+        own, (low, high) = states.middles[rows, 0], np.sort(self.sides[:, 1, rows], axis=0)
+        met = (states.status[rows] == OK) & (np.logical_not(between) | ((low <= own) & (own <= high)))
+        short = rows[np.logical_not(met)]
+        self.sides[:, :, short] = np.nan
         self.mu[short] = self.at[short] + SHORTER * (self.mu[short] - self.at[short])
-        stuck = np.abs(self.mu[short] - self.at[short]) < LEAST_STEP * self.size(short)
-        rows = rows[came]
-        search.solve(rows, self.mu[rows], carried[came], states)
-        met = states.status[rows] == OK
+        far = np.abs(self.mu[short] - self.at[short]) > LEAST_STEP * self.size(short)
         rows = rows[met]
-        self.stretch[rows] = carried[came][met]
-        self.at[rows] = self.mu[rows]
-        c, bound = states.values[rows, COLUMN[search.unknown]], states.bounds[rows, COLUMN[search.unknown]]
+        self.at[rows], self.stretch[rows] = self.mu[rows], own[met]
+        c, bound = states.values[rows, column], states.bounds[rows, column]
         missed = search.targets[rows] - c
-        self.side(rows, c)
-        closed = self.high[rows] - self.low[rows] <= ROUNDING * self.size(rows)
-        done = closed | (np.abs(missed) <= np.maximum(CLOSE * bound, CLOSEST * np.abs(c)))
-        refused = self.refuse(rows, c, found)
         self.aim(rows, c)
+        near = np.abs(self.mu[rows] - self.at[rows]) <= NEAR * search.accuracy * self.size(rows)
+        done = near | (np.abs(missed) <= CLOSE * bound)
+        refused = self.refuse(rows, c, found) & np.logical_not(done)
         finer = self.settle(rows[done], found)
-        self.rows = np.sort(np.concatenate([short[~stuck], rows[~done & ~refused], finer]))
+        self.rows = np.sort(np.concatenate([short[far], rows[np.logical_not(done | refused)], finer]))
+
+    def carried(self, rows):
+        """Uniform stretches under the next multipliers, NaN where none is come to; and which lie between two known ones."""
+        (low, u_low), (high, u_high) = self.sides[:, :, rows]
+        part = (self.mu[rows] - low) / (high - low)
+        stretch, between = u_low + part * (u_high - u_low), np.isfinite(part)
+        beyond = rows[np.logical_not(between)]
+        stretch[np.logical_not(between)] = self.search.move(
+            beyond, self.at[beyond], self.mu[beyond], self.stretch[beyond]
+        )
+        return stretch, between
 
     def aim(self, rows, c):
-        """The next multiplier of rows that came to ``c``."""
-        here = self.height(rows, c)
+        """The next multiplier of rows that came to ``c``: by the secant, or half way to the other side."""
         mu, h = self.before[:, rows]
-        self.before[:, rows] = self.at[rows], here
-        rise = (here - h) / (self.at[rows] - mu)
-        size = LARGEST * self.size(rows)
-        ahead = np.clip((self.height(rows, self.search.targets[rows]) - here) / rise, -size, size)
-        up = np.where(c < self.search.targets[rows], 1.0, -1.0)
-        ahead = self.at[rows] + np.where(rise > 0.0, ahead, up * 0.25 * self.size(rows))
-        between = (self.low[rows] < ahead) & (ahead < self.high[rows])
-        middle = 0.5 * (self.low[rows] + self.high[rows])
-        self.mu[rows] = self.allowed(rows, np.where(between | ~np.isfinite(middle), ahead, middle))
+        self.keep(rows, c)
+        here, target = self.before[1, rows], self.search.targets[rows]
+        rise, size = (here - h) / (self.at[rows] - mu), self.size(rows)
+        step = np.clip((self.height(rows, target) - here) / rise, -LARGEST * size, LARGEST * size)
+        ahead = self.at[rows] + np.where(rise > 0.0, step, np.where(c < target, 1.0, -1.0) * UNKNOWN * size)
+        low, high = self.sides[:, 0, rows]
+        outside = (ahead <= low) | (high <= ahead)
+        self.mu[rows] = self.allowed(rows, np.where(outside & np.isfinite(low + high), 0.5 * (low + high), ahead))
 
     def refuse(self, rows, c, found):
         """Rows whose wall would have to be pushed: all but without a pull the tube is still too long."""
         if self.search.unknown == TORQUE:
             return np.zeros(len(rows), bool)
-        too_long = c - self.search.targets[rows]
-        fresh = np.isnan(self.first[rows])
+        too_long, fresh = c - self.search.targets[rows], np.isnan(self.first[rows])
         self.first[rows[fresh]] = c[fresh]
         limp = self.at[rows] <= -(1.0 - 2.0 * NEAREST) * self.search.pressures[rows]
-        refused = limp & (too_long > UNSURE * np.abs(self.first[rows] - c))
-        found.status[rows[refused]] = COMPRESSED
+        found.status[rows[limp & (too_long > UNSURE * np.abs(self.first[rows] - c))]] = COMPRESSED
         return limp & (too_long > 0.0)
 
     def settle(self, rows, found):
         """Tell the states of rows that have come to what is held; returns those that have to be solved more exactly."""
+        search, here, column = self.search, self.states, COLUMN[self.search.unknown]
         if not len(rows):
             return rows
-        search, column = self.search, COLUMN[self.search.unknown]
-        here, beside = self.states, room_for(len(search.problems), search.columns)
-        toward = np.sign(self.origin[rows] - self.at[rows])
-        aside = np.where(toward == 0.0, 1.0, toward) * ASIDE * self.size(rows)
-        mu = self.at[rows]
-        carried = search.move(rows, mu, mu + aside, self.stretch[rows])
-        there = rows[np.isfinite(carried)]
-        search.solve(there, (mu + aside)[np.isfinite(carried)], carried[np.isfinite(carried)], beside)
-        search.problems[rows, search.unknown] = mu
-        change = (beside.values[rows] - here.values[rows]) / aside[:, None]
-        slope, c = change[:, column], here.values[rows, column]
-        unsure = (here.bounds[rows, column] + np.abs(search.targets[rows] - c)) / slope
-        size = self.size(rows)
-        bound = CAUTION * unsure + ROUNDING * size
+        mu, size, beside = self.at[rows], self.size(rows), room_for(len(search.problems), search.columns)
+        aside = np.where(self.origin[rows] >= mu, 1.0, -1.0) * ASIDE * size
+        search.solve(rows, mu + aside, self.stretch[rows], beside, search.rough)
+        change, c = (beside.values[rows] - here.values[rows]) / aside[:, None], here.values[rows, column]
+        slope, rest = change[:, column], (search.targets[rows] - c) / change[:, column]
+        bound = CAUTION * (here.bounds[rows, column] / slope + np.abs(rest)) + ROUNDING * size
         sound = (beside.status[rows] == OK) & (slope > 0.0)
         ready = sound & (bound <= search.accuracy * size)
-        own, part = rows[ready], np.flatnonzero(ready)
-        rest = ((search.targets[rows] - c) / slope)[part]
-        found.loads[own], found.load_bounds[own] = mu[part] + rest, bound[part]
+        own, change, rest, part = rows[ready], change[ready], rest[ready], bound[ready]
+        found.loads[own], found.load_bounds[own] = mu[ready] + rest, part
         found.status[own], found.stable[own] = OK, 1
         for one, other in zip(found.states, here):
             one[own] = other[own]
-        found.states.values[own] += change[part] * rest[:, None]
-        found.states.bounds[own] += np.abs(change[part]) * bound[part][:, None]
-        found.beside[0][own] = (mu + aside)[part]
-        found.beside[1][own] = beside.middles[own]
-        left = sound & ~ready
+        found.states.values[own] += change * rest[:, None]
+        found.states.bounds[own] += np.abs(change) * part[:, None]
+        found.beside.loads[own], found.beside.middles[own] = (mu + aside)[ready], beside.middles[own]
+        found.beside.parts[own] = part / np.abs(aside[ready])
+        left = sound & np.logical_not(ready)
         again = rows[left]
         most = np.maximum(4.0 * bound / (search.accuracy * size), 10.0)[left]
         search.fine[again] *= 10.0 ** -np.ceil(np.log10(most))

@@ -23,10 +23,17 @@ HOLDER = OUTPUTS  # column of the force or torque among a held state's numbers; 
 STATUS = 14  # place among the arguments of hold_many
 
 
+class Beside(NamedTuple):
+    """Of a state beside each of the states found: load, middle, and how many times what both differ by may be missing."""
+
+    loads: np.ndarray
+    middles: np.ndarray
+    parts: np.ndarray
+
+
 class Holds(NamedTuple):
     """Held states (n,): the force or torque that holds each and its bound, status, whether it is stable, by which way it was
-    found; its :class:`.held_by_load.States`, of half the tube; profiles (n, FIELDS, stations); and of a state beside it
-    the load and the middle.
+    found; its :class:`.held_by_load.States`, of half the tube; profiles (n, FIELDS, stations); and states beside.
     """
 
     loads: np.ndarray
@@ -36,7 +43,7 @@ class Holds(NamedTuple):
     paths: np.ndarray
     states: States
     profiles: np.ndarray
-    beside: tuple
+    beside: Beside
 
 
 def hold_all(
@@ -53,7 +60,7 @@ def hold_all(
     found = Holds(
         *np.full((2, count), np.nan), np.full(count, PENDING), *np.zeros((2, count), np.int64),
         room_for(count, OUTPUTS + along), np.full((count, FIELDS, len(stations)), np.nan),
-        (np.full(count, np.nan), np.full((count, 2), np.nan)),
+        Beside(np.full(count, np.nan), np.full((count, 2), np.nan), np.full(count, np.nan)),
     )  # fmt: skip
     if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
         owners = np.repeat(np.arange(len(problems)), np.diff(first))
@@ -70,7 +77,7 @@ def hold_all(
 def _draw(problems, pressures, unknown, stations, accuracy, found, soon):
     """Draw the states that vectors found; a second time beside each of them, as its load may be off."""
     rows, owners = np.flatnonzero(found.status == OK), np.arange(len(problems))
-    straight = rows[np.isnan(found.beside[0][rows])]
+    straight = rows[np.isnan(found.beside.loads[rows])]
     middles = found.states.middles.copy()
     middles[straight] = 1.0, DEEPEST
     problems[rows, unknown] = found.loads[rows]
@@ -78,11 +85,10 @@ def _draw(problems, pressures, unknown, stations, accuracy, found, soon):
     found.status[rows[~drawn[rows]]] = INACCURATE
     rows = np.setdiff1d(rows, straight)
     other, half = np.full_like(found.profiles, np.nan), FIELDS // 2
-    problems[rows, unknown] = found.beside[0][rows]
-    draw(problems, owners, pressures, found.beside[1], rows, stations, accuracy, other, soon)
-    part = np.abs(found.load_bounds[rows] / (found.beside[0][rows] - found.loads[rows]))
+    problems[rows, unknown] = found.beside.loads[rows]
+    draw(problems, owners, pressures, found.beside.middles, rows, stations, accuracy, other, soon)
     changed = np.abs(other[rows, :half] - found.profiles[rows, :half])
-    found.profiles[rows, half:] += part[:, None, None] * changed
+    found.profiles[rows, half:] += found.beside.parts[rows, None, None] * changed
 
 
 def _calls(problems, targets, kind, first, pressures, tube, accuracy, stations, found):

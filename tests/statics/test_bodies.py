@@ -27,7 +27,6 @@ from freesweep.cli import parser
 from freesweep.cli.single import tube_of
 from freesweep.description.profiles import as_profile
 from freesweep.plot.shape import shape_of
-from freesweep.solver import hold_batch
 from freesweep.solver.cells import cell_at
 from freesweep.solver.load import Load
 from freesweep.solver.numerics import mesh as kernels_of_mesh
@@ -57,12 +56,9 @@ def no_clock(monkeypatch):
 @pytest.fixture
 def plain(monkeypatch):
     """States without the compiler, but for what it has made already: free states of bodies, before the whole suite."""
-    for states in (hold_batch, interpret):
-        monkeypatch.setattr(
-            states,
-            "at_once",
-            lambda _, __, entry, *arguments, **___: by_what_there_is(entry, arguments),
-        )
+    monkeypatch.setattr(
+        interpret, "at_once", lambda _, __, entry, *arguments, **___: by_what_there_is(entry, arguments)
+    )
 
 
 def bulb(share):

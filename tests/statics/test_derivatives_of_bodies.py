@@ -11,7 +11,6 @@ from freesweep.derivative import attach
 from freesweep.derivative.asked import Asked
 from freesweep.derivative.dual import Dual
 from freesweep.derivative.physics import BY_V, BY_Y, OWN
-from freesweep.solver import hold_batch
 from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian as kernels
 from freesweep.statics import read_course
@@ -40,8 +39,7 @@ def plain(monkeypatch):
     def at_once(_, __, entry, *arguments):
         return by_what_there_is(entry, arguments)
 
-    for states in (hold_batch, interpret):
-        monkeypatch.setattr(states, "at_once", at_once)
+    monkeypatch.setattr(interpret, "at_once", at_once)
 
 
 def bulb(share):

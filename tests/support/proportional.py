@@ -15,7 +15,7 @@ def in_proportion(problems, first, pressures):
     """States of ``problems`` (n, 11), whose loads are at their full size at the first of each one's ``pressures``."""
     problems, pressures = np.ascontiguousarray(problems), np.ascontiguousarray(pressures, dtype=float)
     first, found = np.asarray(first), batch._nothing(problems, len(pressures), batch.NOTHING)
-    kinds = [(kind, some) for _, _, kind, some in batch._kinds(problems)]
+    kinds = [(kind, some) for _, _, kind, some in batch.kinds_of(problems)]
     with mock.patch.object(many, "settling_pressure", return_value=pressures[first[:-1]]):
         many.follow_branches(problems, first, pressures, kinds, 1e-6, found)
     found.status[found.status == PENDING] = NOT_CONVERGED

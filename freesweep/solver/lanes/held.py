@@ -6,8 +6,8 @@ the uniform tube is carried from there to another mu without a turning point, so
 state on this way is stable under its loads, all the more with C held, and C rises with mu. So the way holds no other state
 with this C, and it is the one :mod:`..held.held_state` goes. Whatever else may be is left to that.
 
-Where the wall of that cylinder would have to be pushed, or its fibers would, the search begins at the tube with nothing
-held.
+Where the wall of that cylinder would have to be pushed, or its fibers would, or where it does not stand, the search begins
+at the tube with nothing held.
 """
 
 from math import pi, sqrt
@@ -26,13 +26,13 @@ from . import first_guess
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
-UNCLEAR = 0.01  # relative distance from loss of stability: so near the meshes count
+SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
 LONGER = 1e-9  # relative: more than rounding
 # of a beginning: stretch and multiplier, length or rotation C of half the tube (NaN: not known yet), dC/dmu of a cylinder,
-# the longest half tube that the fibers allow, and whether the wall of the cylinder would have to be pushed
-STRETCH, MULTIPLIER, HELD, RISE, LONGEST, UNTAUT = range(6)
-BEGINNING = UNTAUT + 1
+# the longest half tube that the fibers allow, and whether the way from rest with C held is gone
+STRETCH, MULTIPLIER, HELD, RISE, LONGEST, LOST = range(6)
+BEGINNING = LOST + 1
 
 
 @kernel
@@ -98,10 +98,12 @@ def rise_of(c_y, cell, load, half):
 
 @kernel
 def cylinder_stability(cell, load, half):
-    """Where the straight cylinder is stable while C is held, and where that is clear: its first mode is a whole sine."""
+    """Where the straight cylinder is stable while C is held: its first mode is a whole sine; and where its first symmetric
+    mode has let go, too, and the branch from rest turned back.
+    """
     _, _, _, L_yy, _, L_vv = lagrangian.density(spread(1.0), 0.0, cell, load)
     bend, stiff = L_yy * half * half, -L_vv * pi * pi
-    return bend < stiff, abs(bend - stiff) > UNCLEAR * stiff
+    return bend < stiff, bend > SYMMETRIC * SYMMETRIC * stiff
 
 
 @kernel
@@ -139,8 +141,10 @@ def start(
         now = holding(load, length_held, mu)
         pulled = lagrangian.density(spread(1.0), 0.0, cell, bonded(now))[0] > 0.0
         stands = todo & pulled & both_pull(cell, now)
-        firm, clear = cylinder_stability(cell, now, half)
-        straight = stands & (target == first) & clear
+        firm, gone = cylinder_stability(cell, now, half)
+        straight = stands & (target == first)
+        lost = gone & (first == (half if length_held else 0.0)) & isnt(target == first)
+        stands = stands & isnt(lost)
         u, came = free_start(cell, load, half, todo & isnt(stands))
         put(found, MULTIPLIER, select(stands, mu, 0.0))
         put(found, HELD, first)
@@ -160,7 +164,7 @@ def start(
             if (begun >> lane) & 1:
                 for k in range(BEGINNING):
                     beginnings[row, k] = found[k, lane]
-                beginnings[row, UNTAUT] = 0.0 if (bits(pulled) >> lane) & 1 else 1.0
+                beginnings[row, LOST] = 0.0 if (bits(pulled & isnt(lost)) >> lane) & 1 else 1.0
                 if not (upright >> lane) & 1:
                     beginnings[row, HELD] = beginnings[row, RISE] = np.nan
 

@@ -261,7 +261,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     """
     u, active = stationary(u, cell, load, active)
     mid = middle(u, spread(DEEPEST), cell, load, scratch)
-    depth = min(mid.rate * half, DEEPEST)
+    depth, straight = min(mid.rate * half, DEEPEST), u == 1.0
     slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
     found, limps = mask_of(0), (mask_of(0), mask_of(0))
     unsure, miss, doubts, middle_limp = spread(0.0), spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
@@ -278,7 +278,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             doubts = select(ended, now_doubts[0], doubts[0]), select(ended, now_doubts[1], doubts[1])
             active = active & (valid | isnt(ended))
             miss = half - total
-            long = (depth >= DEEPEST) & (miss >= 0.0)  # the middle is the uniform tube
+            long = (straight | (depth >= DEEPEST)) & (miss >= 0.0)  # the middle is the uniform tube
             rough += 1
             wrong = active & isnt(settled) & isnt(long) & (abs(miss) * mid.rate * mid.q > ROUGH)
             if rough == FITS:
@@ -296,7 +296,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             if len(load.wall) == 1:
                 limps = last_limps
             miss = half - get(numbers[0], DX)
-            long = (depth >= DEEPEST) & (miss >= 0.0)
+            long = (straight | (depth >= DEEPEST)) & (miss >= 0.0)
             wrong = active & isnt(long) & (abs(miss) * mid.rate * mid.q > min(CLOSE, MUCH * accuracy))
             found = active & isnt(wrong)
             if not some(wrong):
