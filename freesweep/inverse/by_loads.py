@@ -9,7 +9,7 @@ from ..status import NOT_CONVERGED, OK, VALUED
 from .wishes import HELD
 
 ROUNDS, FEW, ROUGH = 24, 10, 1e-5  # steps; of a rough look, whose accuracy is not that
-LOST = 5  # steps one after the other to where no free tube is, which take longest: what is held is not sought on
+LOST, LOST_NEAR = 5, 2  # steps, one after the other, to where no free tube is, which take longest; from a load beside
 SLOW = 0.5  # of what was missed: a step that wins less is no step of the secant's, halves the way instead
 FIRST = 1e-3  # of the load that the pressure alone makes: the first step
 LEAST = 1e-2  # of c10: a pressure that such steps are measured by
@@ -36,6 +36,7 @@ def hold_by_loads(kind, points, free, like, alone, accuracy, two, near):
     at, off, slope = np.nan_to_num(near), np.full(count, np.nan), np.full(count, np.nan)
     doubt, slack, status = np.full(count, np.nan), np.zeros(count, np.int8), np.full(count, NOT_CONVERGED, np.int8)
     radii, lost = np.full(count, np.nan), np.zeros(count, int)
+    most = np.where(np.isfinite(near), LOST_NEAR, LOST)
 
     straight = straight_loads(kind, points) if two else np.full(count, np.nan)
     done = np.isfinite(straight)
@@ -57,7 +58,7 @@ def hold_by_loads(kind, points, free, like, alone, accuracy, two, near):
     low, high = np.where(off < 0.0, at, -np.inf), np.where(off > 0.0, at, np.inf)
     for _ in range(ROUNDS if accuracy < ROUGH else FEW):
         met = (np.abs(off[rows]) <= NEAR * accuracy) & np.isfinite(slope[rows])
-        rows = rows[np.isfinite(off[rows]) & ~met & (lost[rows] < LOST)]
+        rows = rows[np.isfinite(off[rows]) & ~met & (lost[rows] < most[rows])]
         if len(rows) == 0:
             break
         tried = trial[rows]

@@ -42,7 +42,7 @@ def look(misfit: Misfit, count, seed, atlas=None):
             if not space.is_source:  # each by itself, for seconds
                 few, count = max(DEAR, len(shown)), min(count, DEAR_STARTS)
                 draws, choice = draws[:few], choice[:few]
-            _, residuals = misfit.at(draws, choice, LOOKING)
+            residuals = one_by_one(misfit, draws, choice, count)
     picked = spread(space, draws, choice, best(residuals), count, APART)
     return draws[picked], choice[picked]
 
@@ -68,6 +68,16 @@ def by_and_by(misfit: Misfit, u, choice):
         residuals[np.ix_(rows, asked)] = part(misfit, asked).at(u[rows], choice[rows], LOOKING, False)[1]
         told = best(residuals[rows][:, dear <= now])
         rows = rows[told[: max(len(rows) // FEWER, ENOUGH)]]
+    return residuals
+
+
+def one_by_one(misfit: Misfit, u, choice, count):
+    """Residuals (n, wishes), as vectors tell none of them: of dear ones a few at a time, until ``count`` are known."""
+    residuals = np.full((len(u), len(misfit.wishes)), np.nan)
+    for rows in np.array_split(np.arange(len(u)), 1 if misfit.space.is_source else max(len(u) // count, 1)):
+        residuals[rows] = misfit.at(u[rows], choice[rows], LOOKING)[1]
+        if np.count_nonzero(np.all(np.isfinite(residuals), axis=1)) >= count:
+            break
     return residuals
 
 

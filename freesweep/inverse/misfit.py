@@ -6,7 +6,7 @@ import numpy as np
 
 from .exact import exact_slopes, held_slopes
 from .predict import predict
-from .wishes import RELATIVE
+from .wishes import HELD, RELATIVE
 
 STEP = 1e-4  # of the unit box, of central differences
 LOOKING, POLISHING = 1e-4, 1e-9  # accuracies of the solver
@@ -49,8 +49,14 @@ class Misfit(NamedTuple):
 
     def at(self, u, choice, accuracy=POLISHING, thorough=True, near=None):
         """``(what is predicted, residuals)`` at points u (n, p); ``near``: that of points beside."""
-        found = predict(self.space, self.wishes, u, choice, accuracy, thorough or self.is_dear, near=near)
+        dear = self.is_dear and not self._is_followed(near)
+        found = predict(self.space, self.wishes, u, choice, accuracy, thorough or dear, near=near)
         return found, self.residuals(found.values)
+
+    def _is_followed(self, near):
+        """Whether held states are known from which those beside them are found."""
+        held = [wish.output in HELD for wish in self.wishes]
+        return near is not None and bool(np.any(np.isfinite(near.middles[:, held])))
 
     def slopes(self, u, choice, found):
         """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: exact ones where vectors give them,
