@@ -19,7 +19,7 @@ from .look import look, spread, with_dear
 from .misfit import make
 from .polish import polish
 from .wishes import Goal, Limit
-from .words import prices
+from .words import NONE, prices
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,16 +94,14 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
     u, choice = look(misfit, STARTS * count, seed, atlas)
     if len(u) == 0:
         titles = ", ".join(wish.title for wish in misfit.wishes)
-        raise ActuatorError(
-            [f"goals, limits: no design that is allowed has all the states in which they count: {titles}"]
-        )
+        raise ActuatorError([f"goals, limits: {NONE} has all the states in which they count: {titles}"])
     misfit = with_dear(misfit, u, choice)
-    u, _, residuals, slopes = polish(misfit, u, choice)
+    u, found, residuals, slopes = polish(misfit, u, choice)
     if objectives:
         return _with_least(misfit, objectives, u, choice, residuals, count, allowed)
     cost = np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf)
     best = spread(space, u, choice, _order(cost), count, DIFFERENT)
-    return gather(misfit, u[best], choice[best], slopes[best], allowed)
+    return gather(misfit, u[best], choice[best], found.part(best), slopes[best], allowed)
 
 
 def _order(cost):
@@ -141,8 +139,8 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
     good = np.all(np.abs(np.nan_to_num(residuals, nan=np.inf)) <= MISSED, axis=1)
     if not np.any(good):
         best = _order(np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf))[:count]
-        _, _, _, slopes = polish(misfit, u[best], choice[best])
-        return gather(misfit, u[best], choice[best], slopes, tolerances)
+        _, found, _, slopes = polish(misfit, u[best], choice[best])
+        return gather(misfit, u[best], choice[best], found, slopes, tolerances)
     u, choice = u[good][:count], choice[good][:count]
     whole = misfit._replace(
         wishes=[*misfit.wishes, *objectives], tolerances=np.append(misfit.tolerances, [1.0] * number)
@@ -161,7 +159,7 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
         behind = beaten(np.where(missed[:, None], np.inf, found.values[:, -2:]), scale)
         order = order[~behind[order]]
     best = spread(misfit.space, u, choice, order, count, DIFFERENT)
-    made = gather(whole, u[best], choice[best], slopes[best], tolerances, number)
+    made = gather(whole, u[best], choice[best], found.part(best), slopes[best], tolerances, number)
     result = made.data
     if number == 1:
         costs = [multipliers(whole, u[i], slopes[i], found.values[i], number) for i in best]

@@ -11,18 +11,22 @@ from ..derivative.physics import OWN, Physics
 from ..derivative.request import SHAPE
 from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
+from .beside import Held, load_slopes
 from .freedom import LOADS
 from .outputs import FOLLOWING, derived
 from .predict import state_of
+from .vectors import STRAIGHT, Kind, points_of
 from .wishes import HELD
 
 ACCURACY = 1e-6  # of the slopes, in the unit box
+STEP = 1e-4  # of the unit box, of central differences
 SAME = 1e-5  # relative: by how much a value may differ from the one that was predicted
 
 
-def exact_slopes(space, wishes, u, choice, values):
+def exact_slopes(space, wishes, u, choice, values, middles=None):
     """Derivatives (n, wishes, p) of the ``values`` (n, wishes) along points u (n, p), NaN where there are none here: no
-    state, a limit pressure, a tube that varies, or one of which vectors find no derivative, or another state.
+    state, a limit pressure, a tube that varies, or one of which vectors find no derivative, or another state; ``middles``:
+    radii of the middle [m] of physical tubes, if they are known.
     """
     count, free = u.shape
     slopes = np.full((count, len(wishes), free), np.nan)
@@ -44,7 +48,9 @@ def exact_slopes(space, wishes, u, choice, values):
 
     def solve(job):
         state, own, some = job
-        return _state(space, state, [wishes[k].output for k in own], columns, values[np.ix_(some, own)], some, free)
+        known = None if middles is None or space.is_source else middles[some, own[0]]
+        outputs = [wishes[k].output for k in own]
+        return _state(space, state, outputs, columns, values[np.ix_(some, own)], known, some, free)
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         for (_, own, some), found in zip(jobs, pool.map(solve, jobs)):
@@ -58,7 +64,7 @@ def _shares(values):
     return [some for some in np.array_split(rows, os.cpu_count() or 1) if len(some)]
 
 
-def _state(space, state, outputs, columns, values, some, free):
+def _state(space, state, outputs, columns, values, middles, some, free):
     """Derivatives (n, outputs, free) in one state of designs ``some`` of the ``columns``."""
     given = dict(state.conditions)
     design = {name: number.take(some) for name, number in columns.items()}
@@ -71,7 +77,8 @@ def _state(space, state, outputs, columns, values, some, free):
         load[-1] = 1.0
         design[state.kind] = Dual(values[:, 0], load)
     tube, sizes = space.template, _sizes(design, state, len(some), free)
-    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads)
+    known = None if middles is None else (middles, np.ones(len(some), bool))
+    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads, known)
     if held is not None:
         rows = _straight(tube, design, rows, free + 1) if space.is_source else rows
         target = (
@@ -90,6 +97,30 @@ def _state(space, state, outputs, columns, values, some, free):
         np.abs(values.T), [_least(name, design) for name in outputs]
     )
     return np.moveaxis(np.where(same[:, None], found[:, 1:], np.nan), -1, 0)
+
+
+def held_slopes(space, wishes, u, choice, found, slopes):
+    """Write to ``slopes`` (n, wishes, p), where it has none, those of loads that hold tubes the states of which were
+    ``found`` in two numbers, but for those that stay straight.
+    """
+    own = Kind.of(space.template)
+    if own.is_source or not space.is_alike:
+        return
+    size = STEP * np.eye(u.shape[1])
+    for k, wish in enumerate(wishes):
+        bent = np.abs(found.middles[:, k] / space.columns(u, choice)["fiber_radius"] - 1.0) > STRAIGHT
+        rows = np.flatnonzero(bent & np.any(np.isnan(slopes[:, k]), axis=1))
+        if wish.output not in HELD or len(rows) == 0:
+            continue
+        state, count = state_of(wish), len(rows)
+        tubes = [
+            Held(wish.output, points_of(state, space.columns(u[rows] + step, choice[rows]), count), own)
+            for step in (0.0 * size[:1], *size, *-size)
+        ]
+        middle = found.middles[rows, k] / tubes[0].radius
+        slopes[rows, k] = load_slopes(
+            tubes[0], list(zip(tubes[1 : 1 + len(size)], tubes[1 + len(size) :])), found.values[rows, k], middle, STEP
+        )
 
 
 class Designs(Physics):

@@ -24,7 +24,7 @@ class Least:
         u = np.clip(u, 0.0, 1.0)
         if (key := u.tobytes()) not in self._known:
             found, _ = self.misfit.at(u[None], self.choice)
-            slopes = self.misfit.slopes(u[None], self.choice, found)[0]
+            slopes = np.nan_to_num(self.misfit.slopes(u[None], self.choice, found)[0])
             values = found.values[0] / self.misfit.tolerances
             self._known = {key: (np.where(np.isfinite(values), values, FAR), slopes)}  # the last one only
         return self._known[key]
@@ -126,7 +126,7 @@ def multipliers(misfit: Misfit, u, slopes, values, objectives):
     """
     from scipy.optimize import nnls
 
-    wishes, last = misfit.wishes, len(misfit.wishes) - objectives
+    wishes, last, slopes = misfit.wishes, len(misfit.wishes) - objectives, np.nan_to_num(slopes)
     gradient = slopes[last] * misfit.tolerances[last]
     columns, names = [], []
     for j in range(last):

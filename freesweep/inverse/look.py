@@ -9,6 +9,8 @@ from .wishes import HELD
 ALIKE, ONE_BY_ONE = 4096, 128  # designs of a first look: in vectors, or each by itself; the choices share them
 DEAR, DEAR_STARTS = 16, 3  # the same, and starts, where vectors tell no state of any
 LEAST = 32  # of each choice
+DEARNESS = {"force": 1, "torque": 2}  # of what is looked at later
+FEWER, ENOUGH = 4, 256  # of so many times fewer designs, but not of less
 APART = 0.12  # of the unit box's diagonal: starts nearer than that lie in one basin
 BOUNDED = 1e4  # tolerances beyond which a wish is simply missed: rough looks compare designs that are close
 
@@ -35,20 +37,48 @@ def look(misfit: Misfit, count, seed, atlas=None):
         values = ask(atlas, misfit.wishes, space.columns(draws, choice), known)
         residuals = np.where(known, misfit.residuals(values), 0.0)
     else:
-        _, residuals = misfit.at(draws, choice, LOOKING, False)
+        residuals = by_and_by(misfit, draws, choice)
         if not np.any(np.all(np.isfinite(residuals), axis=1)):
             if not space.is_source:  # each by itself, for seconds
                 few, count = max(DEAR, len(shown)), min(count, DEAR_STARTS)
                 draws, choice = draws[:few], choice[:few]
-            _, residuals = misfit.at(draws, choice, LOOKING)
+            residuals = one_by_one(misfit, draws, choice, count)
+    picked = spread(space, draws, choice, best(residuals), count, APART)
+    return draws[picked], choice[picked]
+
+
+def best(residuals):
+    """Rows of ``residuals`` (n, wishes) that have all of them, the least missed first, each by what half of all miss."""
     goals = np.abs(residuals)
     middles = np.array([np.median(some[np.isfinite(some)]) if np.any(np.isfinite(some)) else 0.0 for some in goals.T])
     scale = np.where(middles > 0.0, middles, 1.0)
     cost = np.sum(np.minimum(goals / scale, BOUNDED) ** 2, axis=1)
     known = np.flatnonzero(np.isfinite(cost))
-    order = known[np.argsort(cost[known], kind="stable")]
-    picked = spread(space, draws, choice, order, count, APART)
-    return draws[picked], choice[picked]
+    return known[np.argsort(cost[known], kind="stable")]
+
+
+def by_and_by(misfit: Misfit, u, choice):
+    """Residuals (n, wishes) of a rough look. What is dear, as what holds physical tubes, is looked at where they do best in
+    what is not; NaN elsewhere.
+    """
+    dear = np.array([0 if misfit.space.is_source else DEARNESS.get(wish.output, 0) for wish in misfit.wishes])
+    residuals, rows = np.full((len(u), len(dear)), np.nan), np.arange(len(u))
+    for now in np.unique(dear):
+        asked = np.flatnonzero(dear == now)
+        residuals[np.ix_(rows, asked)] = part(misfit, asked).at(u[rows], choice[rows], LOOKING, False)[1]
+        told = best(residuals[rows][:, dear <= now])
+        rows = rows[told[: max(len(rows) // FEWER, ENOUGH)]]
+    return residuals
+
+
+def one_by_one(misfit: Misfit, u, choice, count):
+    """Residuals (n, wishes), as vectors tell none of them: of dear ones a few at a time, until ``count`` are known."""
+    residuals = np.full((len(u), len(misfit.wishes)), np.nan)
+    for rows in np.array_split(np.arange(len(u)), 1 if misfit.space.is_source else max(len(u) // count, 1)):
+        residuals[rows] = misfit.at(u[rows], choice[rows], LOOKING)[1]
+        if np.count_nonzero(np.all(np.isfinite(residuals), axis=1)) >= count:
+            break
+    return residuals
 
 
 def with_dear(misfit: Misfit, u, choice) -> Misfit:
@@ -66,6 +96,11 @@ def glanced(misfit: Misfit) -> Misfit:
         names = tuple(name for name, _ in wish.conditions)
         curves.setdefault((k < misfit.goals, wish.output, names), []).append(k)
     kept = sorted({k for own in curves.values() for k in (own[0], own[len(own) // 2], own[-1])})
+    return part(misfit, kept)
+
+
+def part(misfit: Misfit, kept) -> Misfit:
+    """The misfit of some of its wishes."""
     return misfit._replace(
         wishes=[misfit.wishes[k] for k in kept],
         goals=sum(k < misfit.goals for k in kept),

@@ -4,15 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .exact import exact_slopes
+from .exact import exact_slopes, held_slopes
 from .predict import predict
-from .wishes import RELATIVE
+from .wishes import HELD, RELATIVE
 
 STEP = 1e-4  # of the unit box, of central differences
 LOOKING, POLISHING = 1e-4, 1e-9  # accuracies of the solver
 NATURAL = {"rotation": 1.0, "stroke": 0.01}  # [degree], [1]: a wish for 0 is measured by
 SHARE = {"deformed_length": "length", "length_change": "length", "mid_radius": "radius", "outer_radius": "radius"}
 INSIDE = 1e-2  # tolerances: a limit is kept where the search ends a little short of it
+WISHED = "values", "bounds", "status", "middles"  # what is predicted of each wish
 FAR = 1e3  # tolerances by which a state that is not there counts as missed
 
 
@@ -47,31 +48,40 @@ class Misfit(NamedTuple):
         return missed / self.tolerances
 
     def at(self, u, choice, accuracy=POLISHING, thorough=True, near=None):
-        """``(what is predicted, residuals)`` at points u (n, p); ``near``: values (n, wishes) of points beside them."""
-        found = predict(self.space, self.wishes, u, choice, accuracy, thorough or self.is_dear, near=near)
+        """``(what is predicted, residuals)`` at points u (n, p); ``near``: that of points beside."""
+        dear = self.is_dear and not self._is_followed(near)
+        found = predict(self.space, self.wishes, u, choice, accuracy, thorough or dear, near=near)
         return found, self.residuals(found.values)
+
+    def _is_followed(self, near):
+        """Whether held states are known from which those beside them are found."""
+        held = [wish.output in HELD for wish in self.wishes]
+        return near is not None and bool(np.any(np.isfinite(near.middles[:, held])))
 
     def slopes(self, u, choice, found):
         """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: exact ones where vectors give them,
-        else central differences, one-sided where the other side has no state.
+        else central differences, one-sided where the other side has no state; of held states, beside these. NaN where
+        nothing is known.
         """
-        slopes = exact_slopes(self.space, self.wishes, u, choice, found.values)
+        slopes = exact_slopes(self.space, self.wishes, u, choice, found.values, found.middles)
+        held_slopes(self.space, self.wishes, u, choice, found, slopes)
         there = np.isfinite(found.values)
         missing = there & np.any(np.isnan(slopes), axis=2)
         rows, wishes = np.any(missing, axis=1), np.any(missing, axis=0)
         if np.any(rows):
             own = [wish for wish, lost in zip(self.wishes, wishes) if lost]
-            values = found.values[np.ix_(rows, wishes)]
+            near = found.part(rows)
+            near = near._replace(**{name: getattr(near, name)[:, wishes] for name in WISHED})
             table = np.ix_(rows, wishes)
             slopes[table] = np.where(
-                np.isnan(slopes[table]), self._differences(own, u[rows], choice[rows], values), slopes[table]
+                np.isnan(slopes[table]), self._differences(own, u[rows], choice[rows], near), slopes[table]
             )
-        return np.nan_to_num(slopes) / self.tolerances[:, None]
+        return slopes / self.tolerances[:, None]
 
-    def _differences(self, wishes, u, choice, middle):
-        """Central differences (n, wishes, p) about points with the values ``middle`` (n, wishes)."""
+    def _differences(self, wishes, u, choice, found):
+        """Central differences (n, wishes, p) about points of which that was ``found``."""
         count, free = u.shape
-        step = STEP * np.eye(free)
+        step, middle = STEP * np.eye(free), found.values
         ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
         values = predict(
             self.space,
@@ -80,16 +90,21 @@ class Misfit(NamedTuple):
             np.repeat(choice, 2 * free),
             POLISHING,
             thorough=False,
-            near=np.repeat(middle, 2 * free, axis=0),
+            near=found.part(np.repeat(np.arange(count), 2 * free)),
         ).values.reshape(count, 2 * free, -1)
         middle, there = middle[:, None], np.isfinite(values)
         values = np.where(there, values, middle)
         along = np.arange(free)
         width = ends[:, :free][:, along, along] - ends[:, free:][:, along, along]
-        halved = np.where(there[:, :free] & there[:, free:], 1.0, 0.5)  # one side has a state
+        sides = there[:, :free].astype(int) + there[:, free:]  # that have a state
         with np.errstate(invalid="ignore"):
-            slope = (values[:, :free] - values[:, free:]) / (halved * width[..., None])
-        return np.moveaxis(slope, 1, 2)
+            slope = (values[:, :free] - values[:, free:]) / (0.5 * np.maximum(sides, 1) * width[..., None])
+        return np.moveaxis(np.where(sides > 0, slope, np.nan), 1, 2)
+
+    def ahead(self, found, slopes, step):
+        """What was ``found``, a ``step`` (n, p) further along the ``slopes`` (n, wishes, p)."""
+        change = np.einsum("nwp,np->nw", np.nan_to_num(slopes), step)
+        return found._replace(values=found.values + change * self.tolerances)
 
 
 def make(space, goals, limits) -> Misfit:

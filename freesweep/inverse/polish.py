@@ -32,7 +32,8 @@ def polish(misfit: Misfit, u, choice):
         if len(rows) == 0:
             break
         ahead = np.array([_ahead(u[i], residuals[i], slopes[i], damping[i]) for i in rows])
-        trial, missed = misfit.at(ahead, choice[rows], thorough=False, near=found.values[rows])
+        near = misfit.ahead(found.part(rows), slopes[rows], ahead - u[rows])
+        trial, missed = misfit.at(ahead, choice[rows], thorough=False, near=near)
         new = _cost(missed)
         dear = np.flatnonzero(~np.isfinite(new))
         if misfit.space.is_source and len(dear) and np.all(cost > DONE**2):
@@ -58,7 +59,7 @@ def _cost(residuals):
 
 def _ahead(u, residuals, slopes, damping):
     """A step of the damped normal equations, along what is not held by a bound."""
-    slopes = slopes * (residuals != 0.0)[:, None]  # a range that is kept asks for nothing
+    slopes = np.nan_to_num(slopes) * (residuals != 0.0)[:, None]  # a range that is kept asks for nothing
     gradient = slopes.T @ residuals
     free = ~(((u <= 0.0) & (gradient > 0.0)) | ((u >= 1.0) & (gradient < 0.0)))
     step = np.zeros_like(u)

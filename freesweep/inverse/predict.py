@@ -16,18 +16,25 @@ from .wishes import HELD
 
 
 class Predicted(NamedTuple):
-    """Values (n, wishes) in SI units and degrees, NaN where there is no state; bounds of their errors; status; and which
-    fiber families are slack in some state, or would have to push (n,).
+    """Values (n, wishes) in SI units and degrees, NaN where there is no state; bounds of their errors; status; the middle's
+    radius [m] where vectors tell it; and which fiber families are slack in some state, or would have
+    to push (n,).
     """
 
     values: np.ndarray
     bounds: np.ndarray
     status: np.ndarray
+    middles: np.ndarray
     slack: np.ndarray
+
+    def held(self, wishes, states) -> dict:
+        """Held state -> (load, the middle's radius), (2, n), of those of the ``wishes``."""
+        own = [k for k, wish in enumerate(wishes) if wish.output in HELD]
+        return {states[k]: np.array([self.values[:, k], self.middles[:, k]]) for k in own}
 
     def part(self, where):
         """Some of the designs."""
-        return Predicted(self.values[where], self.bounds[where], self.status[where], self.slack[where])
+        return Predicted(*(array[where] for array in self))
 
 
 class State(NamedTuple):
@@ -54,14 +61,14 @@ def state_of(wish) -> State:
 def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False, near=None) -> Predicted:
     """What the designs at points u (n, p) of the ``space``, with ``choice`` (n,), do; if not ``thorough``, of those that
     vectors can tell, where they tell any; ``sure``, as of :func:`vectors.solve_vectors`;
-    ``near``: values (n, wishes) of designs beside these.
+    ``near``: what was :class:`Predicted` of designs beside these.
     """
     from .singles import solve_singles
     from .vectors import Kind, solve_vectors
 
     shape, accuracy = (len(u), len(wishes)), space.accuracy(accuracy)
     found = Predicted(
-        np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, INVALID), np.zeros(len(u), np.int8)
+        *np.full((2, *shape), np.nan), np.full(shape, INVALID), np.full(shape, np.nan), np.zeros(len(u), np.int8)
     )
     columns, states = space.columns(u, choice), [state_of(wish) for wish in wishes]
     for k, wish in enumerate(wishes):
@@ -74,10 +81,8 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False
         warnings.simplefilter("ignore")  # designs on the way are nobody's
         told = set(Kind.of(space.template).told) if space.is_alike else set()
         quick = {state: names for state, names in asked.items() if set(names) <= told}
-        loads = (
-            {} if near is None else {s: near[:, k] for k, (w, s) in enumerate(zip(wishes, states)) if w.output in HELD}
-        )
-        answers = solve_vectors(space.template, quick, columns, accuracy, thorough, sure, loads)
+        known = {} if near is None else near.held(wishes, states)
+        answers = solve_vectors(space.template, quick, columns, accuracy, thorough, sure, known)
         if len(quick) < len(asked):
             tubes = [space.actuator_or_none(one, k) for one, k in zip(u, choice)]
             rest = {state: names for state, names in asked.items() if state not in quick}
@@ -85,6 +90,6 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False
     for k, (wish, state) in enumerate(zip(wishes, states)):
         if state in answers:
             found.values[:, k], found.bounds[:, k] = answers[state][wish.output]
-            found.status[:, k] = answers[state]["status"]
+            found.status[:, k], found.middles[:, k] = answers[state]["status"], answers[state]["middle"]
             found.slack[:] |= answers[state]["slack"]
     return found

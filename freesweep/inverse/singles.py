@@ -26,13 +26,14 @@ def solve_singles(tubes, asked, columns, accuracy) -> dict:
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         rows = list(pool.map(one, range(len(tubes))))
-    none = {"status": INVALID, "slack": 0}
+    none, unknown = {"status": INVALID, "slack": 0}, np.full(len(tubes), np.nan)
     answers = {}
     for state, names in asked.items():
         own = [none | dict.fromkeys(names, (np.nan, np.nan)) if row is None else row[state] for row in rows]
         answers[state] = {name: tuple(np.array([each[name] for each in own], float).T) for name in names}
         for name in ("status", "slack"):
             answers[state][name] = np.array([each[name] for each in own], np.int8)
+        answers[state]["middle"] = unknown
     return answers
 
 

@@ -11,8 +11,9 @@ from ..interpret import foretell
 from ..query.exact import solve
 from ..query.reference import COLUMNS, LENGTH_HELD, LOADED, LOCKED, ROTATION_HELD
 from ..scaling import PULLS, SLACK
-from ..status import INVALID, OK
-from .by_loads import hold_by_loads
+from ..status import INVALID, NOT_CONVERGED, OK
+from .beside import Held, beside
+from .by_loads import hold_by_loads, straight_loads
 from .outputs import output
 from .stiff import stiffness
 from .wishes import HELD, STIFF
@@ -23,6 +24,7 @@ WORST = ("outer_radius", "largest_stretch")
 TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tubes
 OF_SOURCE = (*WORST, "limit_pressure", *STIFF)
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
+STRAIGHT = 1e-6  # strain in the middle: beside it a tube is straight, and leads to none that is not
 SUMMED = 1e-6  # accuracy that such sums have nearly always
 
 
@@ -53,8 +55,8 @@ class Kind(NamedTuple):
 def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, near=None) -> dict:
     """For each state in ``asked`` (state -> outputs) of designs (name -> (n,)): "status" and, by output, (value, bound);
     ``tube`` is one of the kind that they are. Not ``thorough``: what vectors cannot do has no value. ``sure``: held states
-    of physical tubes are those that the ways from rest lead to, each by itself; ``near``: state -> loads (n,) that hold
-    tubes beside these.
+    of physical tubes are those that the ways from rest lead to, each by itself; ``near``: held state -> loads (n,) and
+    radii of the middle [m] of tubes beside these.
     """
     from ..solver.lanes.free import solve_lanes, solve_physical
 
@@ -69,9 +71,9 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, nea
         points = np.concatenate([np.column_stack([part.get(name, none) for name in COLUMNS]) for part in parts])
         most = max(part["pressure"].max(initial=0.0) for part in parts) if kind == "limit" else None
         along = any(name in ALONG for state in states for name in asked[state])
-        none_near, beside = np.full(count, np.nan), near or {}
-        loads = np.concatenate([beside.get(state, none_near) for state in states])
-        found = _solved(own, kind, points, accuracy, most, thorough, sure, along, loads)
+        others, none_near = near or {}, np.full((2, count), np.nan)
+        known = np.concatenate([others.get(state, none_near) for state in states], axis=1)
+        found = _solved(own, kind, points, accuracy, most, thorough, sure, along, known)
         for k, (state, part) in enumerate(zip(states, parts)):
             numbers = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
             if own.is_source:
@@ -80,6 +82,7 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, nea
             limit = np.where(numbers["status"] == INVALID, INVALID, OK)
             answers[state]["slack"] = np.where(kind == "limit", 0, numbers["slack_fiber"]).astype(np.int8)
             answers[state]["status"] = limit if kind == "limit" else numbers["status"]
+            answers[state]["middle"] = numbers["mid_radius"] if kind != "limit" else np.full(count, np.nan)
     return answers
 
 
@@ -104,7 +107,7 @@ def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
 
         if sure:
             return alone(points)
-        return hold_by_loads(kind, points, free, like, alone if thorough else None, accuracy, two, near)
+        return _held(kind, points, own, near, accuracy, two, free, like, alone if thorough else None)
     if own.is_source:  # the few that vectors leave are not worth it that scalar kernels are compiled for them
         found = solve(KINDS[kind], points, own.energy, accuracy, thorough=False, along=True, **given)
     else:
@@ -116,6 +119,36 @@ def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
             for key in (name, f"{name}_error"):
                 found[key] = found[key] / points[:, COLUMNS.index("c10")]
     return found
+
+
+def _held(kind, points, own, near, accuracy, two, free, like, alone):
+    """Held states: those beside states that are known from these, others among free ones; ``alone``, if it is given, solves
+    what both do not find.
+    """
+    (loads, radii), radius = near, points[:, COLUMNS.index("fiber_radius")]
+    known = np.flatnonzero((np.abs(radii / radius - 1.0) > STRAIGHT) & np.isnan(straight_loads(kind, points)))
+    pair = beside(Held(kind, points[known], own), loads[known], radii[known] / radius[known], accuracy)
+    met = np.isfinite(pair.load)
+    rest = np.setdiff1d(np.arange(len(points)), known[met] if alone else known)
+    others = hold_by_loads(kind, points[rest], free, like, alone, accuracy, two, loads[rest])
+    found = {name: np.empty(len(points), array.dtype) for name, array in others.items()}
+    status, middle = np.where(met, OK, NOT_CONVERGED), pair.middle * radius[known]
+    own = {
+        kind: pair.load,
+        f"{kind}_error": pair.bound,
+        "mid_radius": middle,
+        "slack_fiber": pair.slack,
+        "status": status,
+    }
+    for name, array in found.items():
+        array[known], array[rest] = own[name], others[name]
+    return found
+
+
+def points_of(state, columns, count):
+    """Points (n, 17) of one state of designs."""
+    part, none = _points(state, columns, count), np.zeros(count)
+    return np.column_stack([part.get(name, none) for name in COLUMNS])
 
 
 def _points(state, columns, count):

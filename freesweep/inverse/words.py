@@ -3,8 +3,10 @@
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
+from ..status import NOT_CONVERGED
 from .wishes import UNITS
 
+NONE = "none of the designs that were looked at"  # more than that no search knows
 FIGHT = -0.3  # cosine of two gradients: goals that pull against each other
 NOTHING = 1e-6  # tolerances that a goal changes over all that is free, or a share of what is minimized: it is not moved
 SHARE = 0.1  # of a range or a level: what is offered to be given up
@@ -24,20 +26,21 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
     missed, wishes = np.nan_to_num(np.abs(residuals), nan=np.inf), misfit.wishes
     if not np.any(missed[: misfit.goals] > 1.0):
         broken = [str(name) for name, kept in zip(result["limit"].values, result["limit_kept"].values[0]) if not kept]
-        return f"no design that is allowed meets the goals and keeps the limits: {', '.join(broken)}"
+        return f"{NONE} meets the goals and keeps the limits: {', '.join(broken)}"
     groups = [name for name in ("goal_value", "limit_value") if name in result]
     values = np.concatenate([result[name].values[0] for name in groups])
     worst = int(np.argmax(missed[: len(values)]))
     wish = wishes[worst]
     said = (
-        f"no design that is allowed does it; the nearest one has {wish.title} of {values[worst]:.6g}"
+        f"{NONE} does it; the nearest one has {wish.title} of {values[worst]:.6g}"
         f" {unit_of(wish.output)} instead of {_range(wish)}"
     )
     if np.isnan(values[worst]):
-        return f"no design that is allowed does it; the nearest one has no state in which {wish.title} counts"
+        state = "no state was found" if result["status"].values[0] == NOT_CONVERGED else "there is no state"
+        return f"{NONE} does it; of the nearest one {state} in which {wish.title} counts"
     if np.all(np.abs(slopes[0][worst]) < NOTHING * max(missed[worst], 1.0)):
         return f"{said}: nothing that is free changes it"
-    pulls = slopes[0] * np.sign(np.nan_to_num(residuals))[:, None]
+    pulls = np.nan_to_num(slopes[0]) * np.sign(np.nan_to_num(residuals))[:, None]
     for other in np.argsort(-missed):
         a, b = pulls[worst], pulls[other]
         size = np.linalg.norm(a) * np.linalg.norm(b)
@@ -47,7 +50,7 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
     held = [f"{name} at {end:g} {unit_of(name)}" for name, end, _ in _stopping(misfit, u[0], pulls[worst])]
     if not held:
         return said
-    return f"{said}: the bounds {', '.join(held)} stop it{_bought(misfit, u[0], pulls[worst], slopes[0][worst], worst)}"
+    return f"{said}: the bounds {', '.join(held)} stop it{_bought(misfit, u[0], pulls[worst], worst)}"
 
 
 def _stopping(misfit, u, pulls):
@@ -60,12 +63,12 @@ def _stopping(misfit, u, pulls):
             yield name, space.high[i], i
 
 
-def _bought(misfit, u, pulls, slopes, worst):
+def _bought(misfit, u, pulls, worst):
     """What the bound that stops a goal most would buy if it were moved."""
     space, wish = misfit.space, misfit.wishes[worst]
     name, _, i = max(_stopping(misfit, u, pulls), key=lambda one: abs(pulls[one[2]]))
     amount = round_amount(SHARE * (space.high[i] - space.low[i]))
-    won = abs(slopes[i]) * misfit.tolerances[worst] * amount / (space.high[i] - space.low[i])
+    won = abs(pulls[i]) * misfit.tolerances[worst] * amount / (space.high[i] - space.low[i])
     more = "more" if u[i] >= 1.0 else "less"
     return f"; {amount:g} {unit_of(name)} {more} of {name} would buy {won:.3g} {unit_of(wish.output)}"
 

@@ -67,7 +67,7 @@ def solve(
     if along and rows.shape[1] == PROBLEM_SIZE:
         rows = np.column_stack([rows, np.zeros((len(rows), 2))])  # no thick wall, two bonded families
     held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
-    names = ("force",) if kind == reference.LENGTH_HELD else ("torque",) if held else OUTPUTS
+    names = ("force", "mid_radius") if kind == reference.LENGTH_HELD else ("torque", "mid_radius") if held else OUTPUTS
     names += ALONG if along or model.is_physical or len(families) < 2 else ()
     found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
     slack, stable, limits = np.zeros(count, np.int8), np.zeros(count, np.int8), np.full((count, 2), np.nan)
@@ -190,7 +190,7 @@ def _held(kind, rows, own, accuracy, followed, thorough):
         *asked, tube, accuracy - SENSITIVITY * error, soon=True, meshes=thorough or len(tube[0]) > 0
     )
     found.status[found.status == PENDING] = NOT_CONVERGED
-    along = slice(hold_batch.OUTPUTS, None)
-    values = np.column_stack([found.loads, found.states.values[:, along]])
-    bounds = widened(values, np.column_stack([found.load_bounds, found.states.bounds[:, along]]), error)
+    own = slice(hold_batch.OUTPUTS - 1, None)  # the stretch in the middle, and what is known along the tube
+    values = np.column_stack([found.loads, found.states.values[:, own]])
+    bounds = widened(values, np.column_stack([found.load_bounds, found.states.bounds[:, own]]), error)
     return values, bounds, found.status, np.zeros(count, np.int64), found.stable

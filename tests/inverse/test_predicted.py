@@ -107,7 +107,7 @@ def test_slopes_of_a_tube_that_is_held_as_it_is_are_exact(output, held):
     slopes = exact_slopes(space, wish, u, choice, found.values)
     assert np.all(np.isfinite(slopes))
     assert np.all(slopes[..., 1] == 0.0)  # the wall is not strained
-    differences = problem._differences(wish, u, choice, found.values)
+    differences = problem._differences(wish, u, choice, found)
     assert slopes == pytest.approx(differences, rel=2e-4, abs=1e-9 * np.max(np.abs(slopes)))
 
 
@@ -137,3 +137,51 @@ def test_candidates_that_meet_everything_come_first():
     met = found["met"].values
     assert met[0]
     assert np.all(np.diff(met.astype(int)) <= 0)
+
+
+def test_slopes_that_nobody_knows_are_none():
+    """Where neither side has a state; they were 0, and a wish was told that nothing changes what it wants."""
+    space = freedom.read(TUBES["source"], {"wall": (8e-4, 1.2e-3), "beta": (-45, -35)}, [])
+    wish = fs.Goal("rotation", 10.0, pressure=4e4).wishes([])
+    problem, u, choice = misfit.make(space, wish, []), np.full((1, 2), 0.5), np.zeros(1, int)
+    found, _ = problem.at(u, choice)
+    known = problem._differences(wish, u, choice, found)
+    assert np.all(np.isfinite(known))
+    beyond = fs.Goal("rotation", 10.0, pressure=4e4, force=-1e3).wishes([])  # the wall would have to be pushed
+    assert np.isnan(problem._differences(beyond, u, choice, found)).all()
+
+
+def test_held_tubes_are_looked_at_where_they_do_best_in_what_is_not_held():
+    """Of four times as few designs, and those that miss the other goal least."""
+    from freesweep.inverse import look
+
+    space = freedom.read(TUBES["physical"], {"wall": (5e-4, 1.5e-3), "beta": (-80, -10)}, [])
+    asked = [fs.Goal("force", 0.0, pressure=4e4), fs.Goal("rotation", 20.0, pressure=4e4)]
+    problem = misfit.make(space, [wish for goal in asked for wish in goal.wishes([])], [])
+    count = 4 * look.ENOUGH
+    u, choice = np.random.default_rng(0).uniform(size=(count, 2)), np.zeros(count, int)
+    residuals = look.by_and_by(problem, u, choice)
+    told = np.isfinite(residuals[:, 0])
+    assert 0 < np.count_nonzero(told) <= look.ENOUGH
+    others = np.abs(residuals[:, 1])
+    assert np.max(others[told]) <= np.sort(others[np.isfinite(others)])[look.ENOUGH]
+
+
+def test_candidates_that_do_it_are_made_sure_of_on_their_own_way(monkeypatch):
+    """The first one, and those that seem to meet everything; what others miss, vectors tell."""
+    from freesweep.inverse import candidates
+
+    asked, predicted = [], candidates.predict
+
+    def seen(space, wishes, u, *rest, sure=False, **more):
+        asked.append((len(u), sure))
+        return predicted(space, wishes, u, *rest, sure=sure, **more)
+
+    monkeypatch.setattr(candidates, "predict", seen)
+    secret = fs.Actuator(alpha=30, beta=-40, model="physical", **MORE)
+    force = fs.blocked_force(secret, 4e4, 0.097, x=0.0)["force"].item()
+    goals = [fs.Goal("force", force, pressure=4e4, deformed_length=0.097), fs.Goal("wall", at_least=1.5e-3)]
+    found = fs.design(secret, {"wall": (8e-4, 1.2e-3), "beta": (-45, -35)}, goals, count=4)
+    assert not found["met"].any()
+    assert asked == [(found.sizes["candidate"], False), (1, True)]
+    assert found.attrs["summary"].startswith("none of the designs that were looked at does it")
