@@ -89,7 +89,9 @@ def blocked_torque(
     buckled : beyond the critical pressure (:func:`freesweep.closed_form.critical_pressure`) the straight cylinder is
         unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Many
         tubes have one below the critical pressure, too, which a disturbance may lead to: a safe limit is
-        ``least_buckled_pressure`` [Pa], the least at which the buckled branch has a state. Where there is none: status 4
+        ``least_buckled_pressure`` [Pa], the least at which the buckled branch has a state. Below it there is none: status
+        4. Far above the critical pressure one half may swell several times, the other shrink to a neck that no mesh
+        follows: status 6 (5 of 90 random tubes at twice that pressure)
     x, accuracy, derivatives : as in :func:`freesweep.lock`; of ``pressure``, ``force`` and ``rotation``, too
 
     Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``

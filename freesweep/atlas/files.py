@@ -79,7 +79,7 @@ class WholeFile:
                 done = os.pwrite(self.descriptor, view, place)
                 view, place = view[done:], place + done
             except OSError as error:
-                self.fault = error
+                self._keep(error)
         return self.place - place + len(view)
 
     def read(self, size) -> bytes:
@@ -92,8 +92,12 @@ class WholeFile:
         try:
             return os.pread(self.descriptor, size, place)
         except OSError as error:
-            self.fault = self.fault or error
+            self._keep(error)
             return b""
+
+    def _keep(self, error):
+        """Keep the first fault, not who called: HDF5's own, which would never be let go of."""
+        self.fault = self.fault or error.with_traceback(None)
 
     def readinto(self, buffer) -> int:
         """Read from the present place into a buffer."""
@@ -118,7 +122,7 @@ class WholeFile:
         try:
             os.ftruncate(self.descriptor, size)
         except OSError as error:
-            self.fault = self.fault or error
+            self._keep(error)
         self.size = size
         return size
 

@@ -114,9 +114,8 @@ class AtlasWriter:
             self.file.check_content(content)
             self.store = h5py.File(self.file, "r+")
             self.variables = {name: self.store[name] for name in variables}
-        except BaseException:
-            self.file.discard()
-            self.file.check()
+        except BaseException as error:
+            self.__exit__(type(error))  # what stays open HDF5 closes after Python's end, and with it the process
             raise
 
     def __enter__(self):

@@ -85,7 +85,7 @@ def _resolve(atlas, options):
         )
     print(*([table(comparisons)] if comparisons else []), *notes, sep="\n")
     _refuse(points, comparisons)
-    print("\nbounds and limit pressures are those that the solver states anew")
+    print("\nbounds hold, and none is far wider than the solver states anew; limit pressures are those that it states")
 
 
 def _refuse(points, comparisons):

@@ -67,7 +67,7 @@ STATES = {
     ),
     "held rotation": ("blocked_torque", {"pressure": 5e4, "rotation": 20.0}, ["rotation", "radius"]),
 }
-LONG = {
+DEARER = {
     "varying angle": (
         "inflate",
         {"pressure": 5e4, "alpha": [(0, 0), (1, 60)], "beta": -40},
@@ -88,9 +88,9 @@ def test_derivatives_are_what_the_solver_s_own_differences_tell(kind):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("kind", LONG)
+@pytest.mark.parametrize("kind", DEARER)
 def test_derivatives_of_dearer_states_are_what_differences_tell(kind):
-    judge(*LONG[kind])
+    judge(*DEARER[kind])
 
 
 def judge(way, state, names):

@@ -155,6 +155,32 @@ def test_killed_in_every_call(tmp_path):
     assert [line.split()[0] for line in done.stdout.splitlines()] == [*CALLS]
 
 
+UNREAD = """
+import sys
+from pathlib import Path
+import pytest
+from freesweep.sweep import run
+from test_sweep_faults import moments, struck
+run.SHARD_EQUILIBRIA = 6
+folder, patch = Path(sys.argv[1]), pytest.MonkeyPatch()
+for moment in moments("pread", folder, patch, 40):
+    with pytest.raises(OSError, match="cannot write"):
+        struck(folder / f"{moment}.nc", "pread", moment, "for ever", patch)
+    print(moment)
+"""
+
+
+def test_a_disk_that_cannot_be_read_does_not_end_the_process_by_a_signal(tmp_path):
+    """What HDF5 failed to open, and kept, it closed after Python's end: exit code 139, whatever had been told."""
+    here = os.pathsep.join([CHILD_ENVIRONMENT["PYTHONPATH"], os.path.dirname(__file__)])
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", UNREAD, str(tmp_path)],
+        capture_output=True, text=True, env=CHILD_ENVIRONMENT | {"PYTHONPATH": here},
+    )  # fmt: skip
+    assert len(done.stdout.split()) == 40, done.stderr
+    assert done.returncode == 0
+
+
 def test_short_writes_are_completed(reference, tmp_path, monkeypatch):
     for moment in moments("pwrite", tmp_path, monkeypatch, 6):
         out = tmp_path / f"{moment}.nc"

@@ -127,13 +127,12 @@ def leave_cylinder(room, tube, path, critical_pressure, multiplier):
 def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
     """Along the branch from the state in the track, at ``first`` = (pressure, the tangent's), until it has a stable state at
     the ``pressure``, which a mesh moved to the branch may step over, too. ``least`` takes the lowest at which it turned, and
-    its bound. Where it came by without one, that is not certain: a front between the swollen part and the thin one feels the
-    cells of a coarse mesh, which can keep it where nothing does.
+    its bound. There is none below that only. Above it a mesh that has none is too coarse: a front between the swollen part
+    and the thin one feels its cells, which can keep it where nothing does.
     """
     track, space, here = room.track, room.space, first
     course, edges, cells, _, _, _ = tube
     n, step, lowest, nothing, before = len(track.x) - 1, FIRST_STEP * CHANGE, first[0], path.origin, first[0]
-    came_by = False
     for _ in range(STEPS):
         own = fill(course, edges, track.x, n, n, cells)
         status, _, mu, tangent_mu, made, step = advance(
@@ -154,7 +153,6 @@ def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
             own = fill(course, edges, track.x, n, n, cells)
             advance(lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], made, space.work)
         if min(before, min(here[0], mu)) <= pressure <= max(before, max(here[0], mu)):
-            came_by = True
             x, y, tangent = track.x.copy(), track.y.copy(), track.tangent.copy()
             end = ways.land(room, tube, path, here, (mu, tangent_mu, made), pressure)
             if end.status == OK:
@@ -166,7 +164,7 @@ def follow(room, tube, path, first, pressure, farthest, accuracy, out, least):
             for i in range(n + 1):
                 track.x[i] = x[i]
         before, here = mu, take(track, tube, path, mu, tangent_mu, space.work)
-    return unsure(HELD_IMPOSSIBLE, nothing) if came_by else failed(HELD_IMPOSSIBLE, nothing)
+    return failed(HELD_IMPOSSIBLE, nothing) if pressure < lowest else unsure(NOT_CONVERGED, nothing)
 
 
 @kernel
