@@ -186,9 +186,8 @@ def _held(kind, rows, own, accuracy, followed, thorough):
         own["pressure"] / own["c10"],
     )  # fmt: skip
     tube, error = followed
-    found = hold_batch.hold_all(
-        *asked, tube, accuracy - SENSITIVITY * error, soon=True, meshes=thorough or len(tube[0]) > 0
-    )
+    meshes = thorough or len(tube[0]) > 0
+    found = hold_batch.hold_all(*asked, tube, accuracy - SENSITIVITY * error, soon=meshes, meshes=meshes)
     found.status[found.status == PENDING] = NOT_CONVERGED
     own = slice(hold_batch.OUTPUTS - 1, None)  # the stretch in the middle, and what is known along the tube
     values = np.column_stack([found.loads, found.states.values[:, own]])

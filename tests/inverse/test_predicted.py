@@ -44,7 +44,7 @@ def test_vectors_tell_what_one_tube_at_a_time_tells(kind):
         if kind == "source" and ("tension" in wish.output or wish.output in WORST):
             close += SAMPLED * abs(value)
         assert abs(found.values[0, k] - value) <= close, wish.title
-        assert found.bounds[0, k] <= (1e-3 if "tension" in wish.output else 1e-5) * max(abs(value), 1e-2), wish.title
+        assert found.bounds[0, k] <= (3e-3 if "tension" in wish.output else 1e-5) * max(abs(value), 1e-2), wish.title
 
 
 def test_the_largest_stretch_of_a_source_s_tube_is_told_from_its_middle():

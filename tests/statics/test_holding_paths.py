@@ -41,7 +41,7 @@ def test_region_one_with_fiber_extension_is_held_by_the_force_that_inflates_to_i
     held = fs.blocked_force(tube, 480.0, x=0.0)
     assert held["status"] == OK
     assert held["held_path"] == 1
-    assert held["force"].item() == pytest.approx(force, rel=1e-7)
+    assert held["force"].item() == pytest.approx(force, rel=1e-6)  # a ten-thousandth of the pressure's force
     assert held["slack_fiber"] == free["slack_fiber"] == 3
     assert held["rotation"].item() == pytest.approx(free["rotation"].item(), rel=1e-6)
 

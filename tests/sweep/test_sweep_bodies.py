@@ -55,8 +55,7 @@ def plain():
     """States without the compiler, but for what it has made already: free states of bodies, before the whole suite."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(interpret, "_clock", interpret._Clock())
-        for states in (interpret, hold_batch):
-            patch.setattr(states, "at_once", lambda *_, **__: False)
+        patch.setattr(interpret, "at_once", lambda *_, **__: False)
         for states, name in ((batch, "follow_many"), (hold_batch, "hold_many")):
             entry = getattr(states, name)
             patch.setattr(states, name, lambda *arguments, entry=entry: by_what_there_is(entry, arguments))

@@ -161,10 +161,10 @@ def pull(multiplier, load):
 
 
 @kernel
-def tell(x, left, mid, cell, load, half, middle_off, at, moved, near, scratch, out):
-    """Write the FIELDS of a station that :func:`stand` found to ``out`` (FIELDS, WIDTH), where the middle's stretch may
-    be ``middle_off``; what is ``left`` of a long tube has the middle's, or that of the uniform tube. Returns what is
-    handed on.
+def tell(x, left, mid, cell, load, half, placed, at, moved, near, scratch, out):
+    """Write the FIELDS of a station that :func:`stand` found to ``out`` (FIELDS, WIDTH), where the middle may have moved by
+    the share ``placed`` of the layer; what is ``left`` of a long tube has the middle's, or that of the uniform tube.
+    Returns what is handed on.
     """
     here = look(get(at, 0), mid, cell, load, near, scratch)
     y, level = here.y, here.at
@@ -173,6 +173,7 @@ def tell(x, left, mid, cell, load, half, middle_off, at, moved, near, scratch, o
     sine = sqrt(max(1.0 - here.cosine * here.cosine, 0.0))
     off = get(moved, 0)
     z, turn = mid.s * x + get(at, 1), mid.psi * x + get(at, 2)
+    middle_off = abs(1.0 - mid.u) * placed
     wrong = s * sine * off + middle_off
     _, G_1, psi, _ = lagrangian.level_of(mid.u, cell, load, near)
     own = local(y, level, cell, load, scratch)
@@ -186,12 +187,20 @@ def tell(x, left, mid, cell, load, half, middle_off, at, moved, near, scratch, o
     put(
         out,
         VALUES + 1,
-        get(moved, 1) + abs(s * here.cosine - mid.s) * off + abs(sqrt(1.0 + G_1) - mid.s) * left + ROUNDING * half,
+        get(moved, 1)
+        + placed * abs(get(at, 1))
+        + abs(s * here.cosine - mid.s) * off
+        + abs(sqrt(1.0 + G_1) - mid.s) * left
+        + ROUNDING * half,
     )
     put(
         out,
         VALUES + 2,
-        get(moved, 2) + abs(level.psi - mid.psi) * off + abs(psi - mid.psi) * left + ROUNDING * max(1.0, abs(turn)),
+        get(moved, 2)
+        + placed * abs(get(at, 2))
+        + abs(level.psi - mid.psi) * off
+        + abs(psi - mid.psi) * left
+        + ROUNDING * max(1.0, abs(turn)),
     )
     for k in range(4):
         put(out, 3 + k, own[k])
@@ -240,13 +249,13 @@ def draw(
         last, fine = go(parts, pieces, edges, mid, cell, load, room, way, scratch)
         miss = half - get(way[X], last - 1)
         moved = min(mid.rate * (abs(miss) + get(way[DOUBT_X], last - 1)), 1.0)  # deep in a tube little depends on it
-        middle_off = 2.0 * mid.q * abs(1.0 - mid.u) * moved
+        placed = 2.0 * mid.q * moved
         turned = max(1.0, abs(half * mid.psi + get(way[TURN], last - 1)))
         worst, loose, tension, near = spread(0.0), spread(0.0), spread(0.0), nothing_yet(spread(0.0))
         for j in range(len(stations)):
             stand(stations[j], last, way, beside, at[0], at[1])
             left = max(stations[j] - get(way[X], last - 1), 0.0)
-            near = tell(stations[j], left, mid, cell, load, half, middle_off, at[0], at[1], near, scratch, out)
+            near = tell(stations[j], left, mid, cell, load, half, placed, at[0], at[1], near, scratch, out)
             worst, loose, tension = judge(out, half, turned, worst, loose, tension)
             for lane in range(count):
                 for k in range(FIELDS):
