@@ -303,9 +303,12 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    nearest = 2.0 * mid.q  # at most that far is a long tube's from the end
-    moved = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], DX)), 1.0)
-    placed = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], WITHIN)), 1.0)
+    moved = (
+        2.0 * mid.q * mid.rate * unmet(mid, miss, get(numbers[1], DX))
+    )  # all that a long tube has behind its layer, too
+    placed = (
+        2.0 * mid.q * min(mid.rate * unmet(mid, miss, get(numbers[1], WITHIN)), 1.0)
+    )  # no farther than its middle is
     largest = finish(mid, miss, moved, placed, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
     alpha, beta = limps
     if not has_two_families(load.wall):  # what is not there is not slack
