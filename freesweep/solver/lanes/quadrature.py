@@ -7,6 +7,8 @@ finds it, first by one rule along the whole depth, then part by part between the
 is what an output differs by from that of the middle; :mod:`outputs` makes of the sums what is told.
 """
 
+from math import sqrt
+
 from ...jit import kernel
 from ..along import places
 from ..cells import nothing_yet
@@ -237,6 +239,19 @@ def let_go(mid, cell, load, half):
 
 
 @kernel
+def left_behind(mid, length, cell, load):
+    """By how much outputs of so much of a long tube, which is uniform but for rounding, differ from those of the middle of
+    the layer that is summed: (length, volume, twist, energy).
+    """
+    _, G_1, psi, energy = lagrangian.level_of(mid.u, cell, load, nothing_yet(spread(0.0)))
+    s = sqrt(1.0 + G_1)
+    return (
+        length * abs(mid.s - s), length * abs(mid.y * mid.y * mid.s - mid.u * mid.u * s), length * abs(mid.psi - psi),
+        length * abs(mid.energy - energy),
+    )  # fmt: skip
+
+
+@kernel
 def stationary(u, cell, load, active):
     """``(u, lanes where it is met)``: the uniform stretch near one that is all but it."""
     zero, near, todo = spread(0.0), nothing_yet(spread(0.0)), active
@@ -303,13 +318,13 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    moved = (
-        2.0 * mid.q * mid.rate * unmet(mid, miss, get(numbers[1], DX))
-    )  # all that a long tube has behind its layer, too
-    placed = (
-        2.0 * mid.q * min(mid.rate * unmet(mid, miss, get(numbers[1], WITHIN)), 1.0)
-    )  # no farther than its middle is
-    largest = finish(mid, miss, moved, placed, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out)
+    nearest = 2.0 * mid.q  # at most that far is a long tube's from the end
+    moved = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], DX)), 1.0)
+    placed = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], WITHIN)), 1.0)
+    behind = left_behind(mid, select(depth >= DEEPEST, max(miss, 0.0), 0.0), cell, load)
+    largest = finish(
+        mid, miss, moved, placed, behind, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
+    )
     alpha, beta = limps
     if not has_two_families(load.wall):  # what is not there is not slack
         beta = mask_of(0)
