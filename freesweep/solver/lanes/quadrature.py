@@ -321,7 +321,9 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     nearest = 2.0 * mid.q  # at most that far is a long tube's from the end
     moved = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], DX)), 1.0)
     placed = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], WITHIN)), 1.0)
-    behind = left_behind(mid, select(depth >= DEEPEST, max(miss, 0.0), 0.0), cell, load)
+    behind = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    if has_two_families(load.wall):  # of others twist and stretch are looked for, and rounding is more
+        behind = left_behind(mid, select(depth >= DEEPEST, max(miss, 0.0), 0.0), cell, load)
     largest = finish(
         mid, miss, moved, placed, behind, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
     )
