@@ -22,12 +22,8 @@ LEAST = 1e-2  # of c10: a pressure that loads are measured by
 STILL = 1e-9  # a strain that is looked at as the least
 ON, MET, CLOSE, NONE = 1e-3, 1e-9, 1e-8, 1e-3  # misses by their slopes: of a step along, none; what is held; a miss
 WIDEST, MOST = 0.15, 2.0  # of one step: a stretch; a load, by its size
-ROUNDS, AGAIN, ENOUGH, CLOSER = (
-    24,
-    8,
-    16,
-    1e-8,
-)  # steps; after so many slopes are looked at anew, and loads need not be so close
+ROUNDS, AGAIN = 24, 8  # steps; after so many slopes are looked at anew
+ENOUGH, CLOSER = 16, 1e-8  # steps after which loads need not be so close
 UNEVEN, ASTRAY = 30.0, 0.3  # times what a slope was, and of a step along: more tells of other things
 BACK = 3  # steps across to a branch beside
 PARTS = 1, 2, 4, 16  # pieces of what is summed

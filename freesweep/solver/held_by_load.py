@@ -15,6 +15,7 @@ import numpy as np
 
 from ..interpret import run
 from .batch import OUTPUTS, PIECES, kinds_of
+from .lanes import held
 from .lanes.held import BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH
 from .physics.lagrangian import ROUNDING
 from .physics.wall import LOOSE
@@ -67,8 +68,6 @@ class Search:
 
     def begin(self, found):
         """Write what needs no search to ``found``; returns where others begin."""
-        from .lanes import held
-
         beginnings, some = np.full((len(self.problems), BEGINNING), np.nan), self.pressures > 0.0
         if wall_columns(self.problems) == PHYSICAL:
             some &= self.problems[:, THREADS] <= LOOSE  # of a single family the cylinder leaves the load open
@@ -85,8 +84,6 @@ class Search:
 
     def move(self, rows, before, after, stretches):
         """The uniform stretches of some rows carried from one multiplier to another; NaN where they are not."""
-        from .lanes import held
-
         carried = np.full((3, len(self.problems)), np.nan)
         carried[:, rows] = before, after, stretches
         for _, kind, some in self.kinds:

@@ -55,21 +55,8 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     put(told, DOUBT, select(driven & valid, doubt, 0.0))
     rest = select(deep, miss, 0.0)
     finish(
-        mid,
-        rest,
-        zero,
-        zero,
-        (zero, zero, zero, zero),
-        cell,
-        load,
-        half,
-        middle_limp,
-        doubts,
-        unsure,
-        numbers,
-        scratch,
-        out,
-    )
+        mid, rest, zero, zero, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
+    )  # fmt: skip
     outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
     scale, rounding = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
     put(told, SCALES, scale[0])

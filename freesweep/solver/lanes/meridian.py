@@ -37,7 +37,8 @@ SHALLOW, DEPTHS = (
 
 class Middle(NamedTuple):
     """Uniform stretch u, rate of the layer, depth of the middle, q, 1/(1 + q^2); stretch and level there, and how x
-    grows with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall.
+    grows with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall;
+    and by how much y^2 sqrt(G) and those are more where the tube is uniform, behind the deepest layer.
     """
 
     u: float
@@ -53,6 +54,7 @@ class Middle(NamedTuple):
     s: float
     psi: float
     energy: float
+    uniform: tuple
 
 
 class Place(NamedTuple):
@@ -88,7 +90,7 @@ def middle(u, depth, cell, load, scratch):
     """The :class:`Middle` at that depth."""
     zero = spread(0.0)
     (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
-    _, G_1, _, _ = lagrangian.level_of(u, cell, load, near)
+    _, G_1, psi_u, energy_u = lagrangian.level_of(u, cell, load, near)
     q, s_u = fallen(depth, scratch), sqrt(1.0 + G_1)
     whole = 1.0 / (1.0 + q * q)
     away = (1.0 - u) * 2.0 * q * whole
@@ -103,6 +105,7 @@ def middle(u, depth, cell, load, scratch):
     return Middle(
         u, sqrt(max(L_yy / L_vv, LEAST_RATE)), depth, q, whole, y, level, sqrt(max(-T / (s * mean_yy), 0.0)), rise,
         -(own_yy + 2.0 * rise * s_y) / s, s, psi, energy,
+        (s_u - s, u * u * s_u - y * y * s, psi_u - psi, energy_u - energy),
     )  # fmt: skip
 
 
@@ -132,7 +135,7 @@ def middle_at(y, cell, load, half, scratch):
     least = fall * reach * 2.0 / (1.0 / fallen(far, scratch) - 2.0)
     return Middle(
         y - gap, select(driven, 1.0 / select(driven, per_depth, 1.0), rate), depth, q, whole, y, level, per_depth, rise,
-        -(L_yy + rise * near[7] / s) / s, s, psi, energy,
+        -(L_yy + rise * near[7] / s) / s, s, psi, energy, (zero, zero, zero, zero),
     ), driven, rise / least - 1.0  # fmt: skip
 
 

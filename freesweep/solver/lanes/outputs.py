@@ -43,23 +43,25 @@ def unmet(mid, miss, missed):
 @kernel
 def finish(mid, miss, moved, placed, behind, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
     """Write outputs, numbers and bounds, where the middle may have ``moved`` by that share of the layer, and any place,
-    the middle itself, too, by the share ``placed``, and what lies ``behind`` the layer differs by so much; returns the
-    largest scaled bound of the outputs, rounding left out.
+    the middle itself, too, by the share ``placed``; what lies ``behind`` the deepest layer is uniform. Returns the largest
+    scaled bound of the outputs, rounding left out.
     """
     sums, missed = numbers[0], numbers[1]
     rest = fallen(mid.rate * miss, scratch)  # how much of what is left of the layer is left in the middle itself
     outputs = (
-        half * mid.s + get(sums, LENGTH), half * mid.y * mid.y * mid.s + get(sums, VOLUME),
-        half * mid.psi + get(sums, TWIST), half * mid.energy + get(sums, ENERGY),
+        half * mid.s + get(sums, LENGTH) + behind * mid.uniform[0],
+        half * mid.y * mid.y * mid.s + get(sums, VOLUME) + behind * mid.uniform[1],
+        half * mid.psi + get(sums, TWIST) + behind * mid.uniform[2],
+        half * mid.energy + get(sums, ENERGY) + behind * mid.uniform[3],
         mid.u + (mid.y - mid.u) * rest,
     )  # fmt: skip
     by = min(placed, 2.0 * mid.q)
     middle_moved = abs(1.0 - mid.u) * by
     errors = (
-        get(missed, LENGTH) + moved * abs(get(sums, LENGTH)) + behind[0],
-        get(missed, VOLUME) + moved * abs(get(sums, VOLUME)) + behind[1],
-        get(missed, TWIST) + moved * abs(get(sums, TWIST)) + behind[2],
-        get(missed, ENERGY) + moved * abs(get(sums, ENERGY)) + behind[3],
+        get(missed, LENGTH) + moved * abs(get(sums, LENGTH)),
+        get(missed, VOLUME) + moved * abs(get(sums, VOLUME)),
+        get(missed, TWIST) + moved * abs(get(sums, TWIST)),
+        get(missed, ENERGY) + moved * abs(get(sums, ENERGY)),
         middle_moved * rest,
     )  # fmt: skip
     scale, floors = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)

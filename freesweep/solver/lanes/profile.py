@@ -39,7 +39,7 @@ def chosen(given, one, other):
         select(given, one.q, other.q), select(given, one.whole, other.whole), select(given, one.y, other.y),
         select(given, one.level, other.level), select(given, one.per_depth, other.per_depth),
         select(given, one.rise, other.rise), select(given, one.bend, other.bend), select(given, one.s, other.s),
-        select(given, one.psi, other.psi), select(given, one.energy, other.energy),
+        select(given, one.psi, other.psi), select(given, one.energy, other.energy), one.uniform,
     )  # fmt: skip
 
 

@@ -7,8 +7,6 @@ finds it, first by one rule along the whole depth, then part by part between the
 is what an output differs by from that of the middle; :mod:`outputs` makes of the sums what is told.
 """
 
-from math import sqrt
-
 from ...jit import kernel
 from ..along import places
 from ..cells import nothing_yet
@@ -239,19 +237,6 @@ def let_go(mid, cell, load, half):
 
 
 @kernel
-def left_behind(mid, length, cell, load):
-    """By how much outputs of so much of a long tube, which is uniform but for rounding, differ from those of the middle of
-    the layer that is summed: (length, volume, twist, energy).
-    """
-    _, G_1, psi, energy = lagrangian.level_of(mid.u, cell, load, nothing_yet(spread(0.0)))
-    s = sqrt(1.0 + G_1)
-    return (
-        length * abs(mid.s - s), length * abs(mid.y * mid.y * mid.s - mid.u * mid.u * s), length * abs(mid.psi - psi),
-        length * abs(mid.energy - energy),
-    )  # fmt: skip
-
-
-@kernel
 def stationary(u, cell, load, active):
     """``(u, lanes where it is met)``: the uniform stretch near one that is all but it."""
     zero, near, todo = spread(0.0), nothing_yet(spread(0.0)), active
@@ -321,9 +306,7 @@ def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edg
     nearest = 2.0 * mid.q  # at most that far is a long tube's from the end
     moved = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], DX)), 1.0)
     placed = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], WITHIN)), 1.0)
-    behind = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    if has_two_families(load.wall):  # of others twist and stretch are looked for, and rounding is more
-        behind = left_behind(mid, select(depth >= DEEPEST, max(miss, 0.0), 0.0), cell, load)
+    behind = select(depth >= DEEPEST, max(miss, 0.0), 0.0)
     largest = finish(
         mid, miss, moved, placed, behind, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
     )
