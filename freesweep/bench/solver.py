@@ -149,19 +149,19 @@ def _grid(designs, pressures, repeats):
 
 
 def _newton_passes(repeats):
-    """Cost of a cell in a Newton pass, one design at a time and vectors of them, beside the machine's peak."""
+    """Cost of a cell in a Newton pass, one design at a time, and of a place in vectors of them, beside the machine's peak."""
     from ..solver.lanes.vector import WIDTH
     from ..solver.physics import membrane
     from .flops import density_flops
     from .lane_pass import EXTRA as OF_VECTORS
-    from .lane_pass import lane_cell_time
+    from .lane_pass import lane_place_time
     from .peak import EXTRA, cell_time, peak
 
     density, most = density_flops(membrane), peak(repeats=repeats)
     found = []
     for designs, flops, seconds in (
         (1, density + EXTRA, cell_time(repeats)),
-        (WIDTH, density + OF_VECTORS, lane_cell_time(repeats)),
+        (WIDTH, density + OF_VECTORS, lane_place_time(repeats)),
     ):
         found.append(
             {"designs": designs, "flops_per_cell": flops, "seconds_per_cell": seconds, "peak_flops_per_second": most}

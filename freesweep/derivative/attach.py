@@ -46,7 +46,7 @@ def attach(result, asked, loads, solve, target=None):
     same = _are_same((values, bounds), known, near, units)
     values[..., ~same] = bounds[..., ~same] = np.nan
     left = np.flatnonzero(~same)
-    if asked.is_alike and len(left) and is_worth_vectors(len(left), asked.is_physical):
+    if asked.is_alike and len(left) and is_worth_vectors(len(left)):
         found = asked.states(
             {name: value[left] for name, value in loads.items()}, None if target is None else target[left],
             [np.ravel(one)[todo][left] for one in (result["mid_radius"].values, _is_limp(result))],
@@ -80,13 +80,12 @@ def attach(result, asked, loads, solve, target=None):
     return result.assign(dict(_variables(asked, values, bounds, todo, dims, shape)))
 
 
-def is_worth_vectors(count, physical):
+def is_worth_vectors(count):
     """Whether so many states are worth the compiler's time, or it was spent already."""
     from ..interpret import is_at_hand
-    from ..solver.lanes.responses import differentiate_physical
-    from ..solver.lanes.slopes import differentiate_lanes
+    from ..solver.lanes.responses import differentiate_lanes
 
-    return count >= MANY or is_at_hand(differentiate_physical if physical else differentiate_lanes)
+    return count >= MANY or is_at_hand(differentiate_lanes)
 
 
 def _is_limp(result):

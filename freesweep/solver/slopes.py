@@ -3,12 +3,11 @@
 import numpy as np
 from numba import config
 
-from .load_path import is_loaded, legs
-from .problem import LENGTH, MOONEY_RIVLIN, PHYSICAL, PROBLEM_SIZE, SECOND, THIRD, YEOH, wall_columns
-from .slopes_physical import differentiate as differentiate_physical
+from .batch import OUTPUTS, kinds_of, walk_by_vectors
+from .problem import FORCE, MOONEY_RIVLIN, PHYSICAL, SECOND, SOURCE, THIRD, TORQUE, wall_columns
 
-BASE = 24  # cells of the base mesh, as of a sweep's
-OUTPUTS = 5
+FINENESS, SHARP = (1, 2, 4, 8), 1e-5  # pieces of parts; a bound that is taken where no more pieces are tried
+SURE = 1e-8  # accuracy of states that are not known
 
 
 def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None):
@@ -16,47 +15,66 @@ def differentiate(problems, pressures, changes, accuracy, middles=None, limp=Non
     ``pressures``, and of their derivatives along directions: ``changes`` (n, directions, columns + 1) are what the problem's
     columns and the pressure change by.
 
-    NaN where vectors have no answer. ``accuracy`` is that of derivatives, relative or by the size of the output; what is
-    known of physical tubes' states are ``middles`` and ``limp`` (:func:`.slopes_physical.differentiate`).
+    NaN where vectors have no answer. ``accuracy`` is that of derivatives, relative or by the size of the output.
+    ``middles`` (n,): stretches of the middle, of states that are known; ``limp`` (n,): where some family of these goes slack
+    along a part. Of others that state is taken that vectors find.
     """
-    if wall_columns(problems) == PHYSICAL:
-        return differentiate_physical(problems, pressures, changes, accuracy, middles, limp)
     count, directions = changes.shape[:2]
     values, bounds = (np.full((count, directions + 1, OUTPUTS), np.nan) for _ in range(2))
     if count == 0 or config.DISABLE_JIT:
         return values, bounds
-    from .lanes.pack import COLUMNS, PRESSURE
-    from .lanes.slopes import differentiate_lanes
-
-    seats = np.zeros((count, directions, COLUMNS))
-    seats[..., :PROBLEM_SIZE], seats[..., PRESSURE] = changes[..., :PROBLEM_SIZE], changes[..., PROBLEM_SIZE]
-    seats[..., LENGTH] *= 0.5  # half of a tube is solved
-    yeoh = np.any(problems[:, [SECOND, THIRD]] != 0.0, axis=1)
-    for constants, some in ((MOONEY_RIVLIN, ~yeoh), (YEOH, yeoh)):
-        stretches, cosines = uniform_stretches(problems, pressures, constants, np.flatnonzero(some))
-        rows = np.flatnonzero(some)  # one whose stretch is not known may be a straight cylinder
-        order = rows[np.argsort(cosines[rows], kind="stable")]  # what shares a vector should need much the same work
-        if len(order):
-            differentiate_lanes(problems, pressures, stretches, order, seats, constants, BASE, accuracy, values, bounds)
+    if middles is None:
+        found = walk_by_vectors(problems, np.arange(count + 1), pressures, SURE).values
+        middles, shares = np.ascontiguousarray(found[:, OUTPUTS - 1]), found[:, OUTPUTS : OUTPUTS + 2]
+        limp = np.any((shares > 0.0) & (shares < 1.0), axis=1)
+    limp = np.ones(count, bool) if limp is None else limp
+    if wall_columns(problems) == SOURCE:
+        problems, changes = as_physical(problems), as_physical(changes, problems.shape[1])
+    loaded = (pressures > 0.0) | (problems[:, FORCE] != 0.0) | (problems[:, TORQUE] != 0.0)
+    left = np.flatnonzero(np.isfinite(middles) & loaded)
+    for pieces in FINENESS:
+        enough = accuracy if pieces < FINENESS[-1] else max(accuracy, SHARP)
+        found = along(problems[left], pressures[left], middles[left], limp[left], changes[left], pieces)
+        met = found[2] <= enough
+        values[left[met]], bounds[left[met]] = found[0][met], found[1][met]
+        left = left[~met]
+        if len(left) == 0:
+            break
     return values, bounds
 
 
-def uniform_stretches(problems, pressures, constants, some):
-    """The stretch of the uniform tube of each problem, and its end's cosine, (n,): NaN but in rows ``some``, and where no
-    quick way leads to it.
+def as_physical(columns, at=None):
+    """The source's tubes as physical ones: their wall has no inside, and both families are bonded. Columns behind those
+    of a problem come behind these, too.
     """
-    from .lanes.free import carry_lanes
+    at = columns.shape[-1] if at is None else at
+    return np.ascontiguousarray(np.insert(columns, [at, at], 0.0, axis=-1))
 
-    count = len(problems)
-    stretches, cosines = np.full(count, np.nan), np.full(count, np.nan)
-    own = problems[some]
-    first, asked, rows = np.arange(len(some) + 1), pressures[some], np.arange(len(some))
-    if np.any(is_loaded(own)):
-        way = legs(own, first, asked)
-        own, first, asked, rows = own[way.owners], way.first, way.pressures, way.rows
-    found = np.full((2, len(asked)), np.nan)
-    nothing = np.empty((len(asked), OUTPUTS)), np.empty((len(asked), OUTPUTS)), np.empty(len(asked), np.int64)
-    carry_lanes(own, first, asked, np.arange(len(own)), constants, *nothing, *found)
-    wanted = rows >= 0
-    stretches[some[rows[wanted]]], cosines[some[rows[wanted]]] = found[:, wanted]
-    return stretches, cosines
+
+def along(problems, pressures, middles, limp, changes, pieces):
+    """Values and bounds as of :func:`differentiate`, of physical ``problems``, and the largest of these, scaled (n,); each
+    part of a tube is summed in so many ``pieces``.
+    """
+    from .lanes.chain import chain
+
+    told, doubts = answers(problems, pressures, middles, limp, pieces)
+    shape = len(problems), changes.shape[1] + 1, OUTPUTS
+    values, bounds, missed = np.empty(shape), np.empty(shape), np.empty(len(problems))
+    chain(problems, pressures, changes, told, doubts, values, bounds, missed)
+    return values, bounds, missed
+
+
+def answers(problems, pressures, middles, limp, pieces):
+    """Values and bounds (n, 5, 1 + numbers + 1) of :func:`.lanes.responses.differentiate_lanes`."""
+    from .lanes import second
+    from .lanes.responses import differentiate_lanes
+    from .lanes.told import TOLD
+
+    values, bounds = (np.empty((len(problems), OUTPUTS, TOLD)) for _ in range(2))
+    order = np.lexsort((middles, limp))  # what shares a vector should need much the same work
+    for _, _, (constants, layers), some in kinds_of(problems):
+        absent = (second.SECOND, second.THIRD) if constants == MOONEY_RIVLIN else ()
+        used = np.array([k for k in range(second.NUMBERS) if k not in absent])
+        given = problems, pressures, middles, limp, order[some[order]], constants, layers
+        differentiate_lanes(*given, used, pieces, values, bounds)
+    return values, bounds

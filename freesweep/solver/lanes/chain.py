@@ -7,6 +7,7 @@ from ..problem import AREA, FORCE, GAMMA, INNER, LENGTH, RATIO, SECOND, THIRD, T
 from . import second
 from .told import OUTPUTS, TOLD
 
+NONE = 1e-15  # of what an output is measured by: what stands for 0
 LITTLE, TURN = 1e-2, 0.5  # of the work of the loads, and of half a tube: what energy and twist are measured by at least
 
 
@@ -40,7 +41,7 @@ def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
                 )
                 by[TOLD - 1] = 0.5 * own[LENGTH]
             for i in range(OUTPUTS):
-                value, bound = 0.0, 0.0
+                value, bound = 0.0, NONE * size[i]
                 for j in range(TOLD):
                     if by[j] != 0.0:
                         value += by[j] * told[row, i, j]

@@ -26,9 +26,9 @@ from ..problem import (
     wall_of,
 )
 from ..status import COMPRESSED, INVALID, OK
-from .nested import OUTPUTS
 from .vector import WIDTH, get
 
+OUTPUTS = 5  # length, volume, twist, energy, stretch in the middle
 # H, D, area, gamma, c, shear, f, m, half length, c2, c3, inner, threads; pressure, pressure before, weight of the energy
 COLUMNS = THREADS + 4
 PRESSURE, BEFORE, WEIGHT = range(THREADS + 1, COLUMNS)

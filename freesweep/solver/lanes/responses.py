@@ -1,4 +1,4 @@
-"""Derivatives of free states of physical tubes that are the same all along, a vector of states at a time.
+"""Derivatives of free states of tubes that are the same all along, a vector of states at a time.
 
 A state that is known is one number, the stretch in the middle: it tells every place of half the tube (:mod:`meridian`), part
 by part between the places where families go slack. There the density's second derivatives (:mod:`second`) are summed to
@@ -149,7 +149,7 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
 
 
 @entry_point
-def differentiate_physical(problems, pressures, middles, limp, order, constants, layers, used, pieces, values, bounds):
+def differentiate_lanes(problems, pressures, middles, limp, order, constants, layers, used, pieces, values, bounds):
     """Values and bounds (rows, OUTPUTS, TOLD) of the rows in the given ``order``, WIDTH at a time: of the outputs, of their
     derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where vectors cannot.
 

@@ -17,10 +17,10 @@ OUTPUTS = LOADS + 1
 TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
 UNIFORM, SHALLOW = (
     17.0,
-    4.0,
+    12.0,
 )  # depth from which on the middle is the uniform tube's; times what is left of a layer there
-SAFETY, ALIKE = 0.25, 0.02  # of what FEWER bubbles lose; and of the most that this may be of a push in the middle
-FORCED, ROUGH = 10.0, 1e-2  # times the force that is left; of what is not smooth
+SAFETY, ALIKE = 0.5, 0.06  # of what FEWER bubbles lose; and of the most that this may be of a push in the middle
+FORCED, ROUGH = 10.0, 1.0  # times the force that is left; of what is not smooth
 ENDS, ROUNDING, FAINT = 3e-9, 1e-11, 1e-14  # of where ends of slack lie, of numbers, and of the drive of the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
 TINY = 1e-300
@@ -42,7 +42,7 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left,
     missed = FORCED * force_left(pulls, work, used, sums[1], left) + select(loose, ENDS, 0.0) + ROUNDING
     drive = -mid.rise * mid.s
     tell_loads(half, drive * pivot, missed, used, rows, carried, sums, known, left, rough, out)
-    tell_middle(mid, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out)
+    tell_middle(mid, rest, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out)
     return drive * pivot
 
 
@@ -95,7 +95,8 @@ def tell_loads(half, grown, missed, used, rows, carried, sums, known, left, roug
         one, sign = count - LOADS + i, -1.0 if i == LOADS - 1 else 1.0
         value = get(sums[0], LOADS * NUMBERS + i)
         put(out[0], TOLD * i, sign * value)
-        put(out[1], TOLD * i, missed * abs(value))
+        bent = ROUGH * get(rough, i) * abs(value - half * get(rows, OF_LOADS + LOADS * NUMBERS + i))
+        put(out[1], TOLD * i, missed * abs(value) + bent)
         for j in range(count - 1):
             n = NUMBERS * i + used[j]
             fixed, answer = get(sums[0], n), get(sums[1], n)
@@ -111,7 +112,7 @@ def tell_loads(half, grown, missed, used, rows, carried, sums, known, left, roug
 
 
 @kernel
-def tell_middle(mid, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out):
+def tell_middle(mid, rest, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out):
     """Write the stretch of the middle and its derivatives: the uniform tube's where less is missed so."""
     count, first, stiff = len(used), TOLD * LOADS, -get(rows, YY)
     lost = abs(pivot - fewer_pivot)  # of what the middle answers with to a push
@@ -129,7 +130,8 @@ def tell_middle(mid, load, half, drive, pivot, fewer_pivot, missed, used, rows, 
     even = 1.0 / sqrt(max(-stiff * get(rows, VV), TINY))  # of a long tube that falls toward its middle
     faint = FAINT * (load.p * mid.y * mid.y + abs(load.f))
     short = shallow * abs(drive) + faint + 2.0 * mid.q * abs(1.0 - mid.y) * stiff
-    near = abs(drive) * SAFETY * abs(pivot - fewer_pivot) + faint * abs(pivot)
+    # a half that its sums miss has another middle, which drives otherwise
+    near = abs(drive) * SAFETY * abs(pivot - fewer_pivot) + (faint + abs(drive * pivot * stiff) * (abs(rest) + missed * half)) * abs(pivot)
     grown = select(uniform, drive * even, drive * pivot)
     put(out[0], first + TOLD - 1, grown)
     put(out[1], first + TOLD - 1, missed * abs(grown) + select(uniform, abs(even) * short, near))
