@@ -149,7 +149,7 @@ def _grid(designs, pressures, repeats):
 
 
 def _newton_passes(repeats):
-    """Cost of a cell in a Newton pass, one design at a time, and of a place in vectors of them, beside the machine's peak."""
+    """Cost of a cell in a Newton pass, and of a place in vectors of designs, beside the machine's peak."""
     from ..solver.lanes.vector import WIDTH
     from ..solver.physics import membrane
     from .flops import density_flops

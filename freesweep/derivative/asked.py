@@ -14,7 +14,7 @@ from .rest import at_rest
 from .table import Held, rows_of
 from .vectors import differentiated
 
-SHARE = 0.01  # of the accuracy asked for: what bounds of derivatives have to meet on meshes, scaled
+SHARE, IN_VECTORS = 0.01, 0.1  # of the accuracy asked for: what bounds of derivatives have to meet, scaled
 TURNS, SETTLED = 4, 1e-10  # of finding the load that holds in vectors, relative
 UNSTRAINED = 1e-9  # of sizes: what a cylinder may differ by from itself
 
@@ -58,13 +58,14 @@ class Asked:
         """Values and bounds (outputs, 1 + parameters, n) of n states in vectors: ``loads`` and what is held, (n,) each;
         ``known``: middle radius [m], and where a family of fibers goes slack along a part.
         """
+
         def under(loads, seeds):
             design = Physics(self.tube, None, loads, seeds).design
             design["pressure"].value[...] = loads["pressure"]  # infinite, of a locked shape
             natural = measures(self.tube, loads)
             sizes = np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in seeds])
             kind = self.tube.is_thick, self.tube.threads
-            return differentiated(design, self.tube.energy, sizes, SHAPE, self.accuracy, *kind, known)
+            return differentiated(design, self.tube.energy, sizes, SHAPE, IN_VECTORS * self.accuracy, *kind, known)
 
         if self.unknown is None:
             return under(loads, self.seeds)

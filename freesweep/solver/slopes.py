@@ -4,7 +4,7 @@ import numpy as np
 from numba import config
 
 from .batch import OUTPUTS, kinds_of, walk_by_vectors
-from .problem import FORCE, MOONEY_RIVLIN, PHYSICAL, SECOND, SOURCE, THIRD, TORQUE, wall_columns
+from .problem import FORCE, MOONEY_RIVLIN, SOURCE, TORQUE, wall_columns
 
 FINENESS, SHARP = (1, 2, 4, 8), 1e-5  # pieces of parts; a bound that is taken where no more pieces are tried
 SURE = 1e-8  # accuracy of states that are not known

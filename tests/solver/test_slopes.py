@@ -1,4 +1,4 @@
-"""Derivatives of batches of physical tubes, in vectors: against differences of the solver, identities, cost."""
+"""Derivatives of batches of tubes, in vectors: against differences of the solver, identities, cost."""
 
 import time
 
@@ -8,7 +8,7 @@ from sloped import KINDS, PARAMETERS, batch, compared, problems_of, told
 
 from freesweep.derivative.request import SHAPE
 from freesweep.solver.batch import uniform, walk_all, walk_by_vectors
-from freesweep.solver.slopes_physical import along, differentiate
+from freesweep.solver.slopes import along, as_physical, differentiate
 from freesweep.solver.status import OK
 
 LENGTHS = {"length": 1, "radius": 1, "wall": 1, "force": 2, "torque": 3}  # powers of a length
@@ -23,7 +23,7 @@ def known(rows, pressures):
     return found.values[:, 4].copy(), np.any((shares > 0.0) & (shares < 1.0), axis=1), found.status == OK
 
 
-@pytest.mark.parametrize("kind", ["physical", "thick", "loose membrane"])
+@pytest.mark.parametrize("kind", ["source", "physical", "thick", "loose membrane"])
 def test_derivatives_of_batches_are_what_differences_tell(kind):
     number, sharp, wrong, states, lost = compared(24, 5, kind)
     assert not wrong
@@ -42,7 +42,7 @@ def test_derivatives_of_many_batches_are_what_differences_tell(kind, seed):
     assert lost <= 0.02 * states
 
 
-@pytest.mark.parametrize("kind", ["physical", "bonded outside"])
+@pytest.mark.parametrize("kind", ["source", "physical", "bonded outside"])
 def test_derivatives_of_batches_keep_scaling_and_the_work_of_loads(kind):
     """Euler's theorem of lengths and of pressures, Maxwell's symmetries, and the energy stored is the loads' work."""
     design = batch(64, 3, loaded=1.0)
@@ -81,11 +81,12 @@ def test_derivatives_of_batches_keep_scaling_and_the_work_of_loads(kind):
         assert np.median((missed / np.sum(np.abs(work), axis=0))[there]) < 1e-8
 
 
-@pytest.mark.parametrize("kind", ["physical", "thick"])
+@pytest.mark.parametrize("kind", ["source", "physical", "thick"])
 def test_bounds_of_derivatives_hold(kind):
     """Each part in one piece against each in eight."""
     rows, pressures, _ = problems_of(batch(256, 11), kind)
     middles, limp, there = known(rows, pressures)
+    rows = as_physical(rows) if kind == "source" else rows
     changes = np.zeros((len(rows), 12, 14))
     for k, column in enumerate((0, 1, 2, 3, 4, 6, 7, 8, 11, 13)):
         changes[:, k, column] = 1.0
@@ -99,7 +100,7 @@ def test_bounds_of_derivatives_hold(kind):
     broken = apart > unsure + rounding
     assert np.mean(broken) < 2e-3
     assert np.all(apart <= 100.0 * (unsure + rounding))
-    assert np.median(missed[both]) < 1e-6
+    assert np.median(missed[both]) < 2e-6
 
 
 def test_where_a_family_goes_slack_along_the_tube():
@@ -122,7 +123,7 @@ def test_where_a_family_goes_slack_along_the_tube():
 
 
 def test_derivatives_of_batches_cost_less_than_the_states():
-    """.37 to .45 of it where eight numbers fit into a register, .60 to .63 where four or two do."""
+    """Of loose fibers and a thick wall."""
     rows, pressures, _ = problems_of(batch(1024, 9), "physical")
     changes = np.zeros((len(rows), 11, 14))
     for k, column in enumerate((0, 1, 2, 3, 4, 6, 7, 8, 11, 13, 2)):

@@ -1,4 +1,4 @@
-"""Batches of random physical tubes, what vectors tell of their derivatives, and differences of the solver beside them."""
+"""Batches of random tubes, what vectors tell of their derivatives, and differences of the solver beside them."""
 
 from itertools import pairwise
 
@@ -14,6 +14,7 @@ from freesweep.solver.status import OK
 
 # thick, threads, share of the wall inside the fibers
 KINDS = {
+    "source": (False, 0.0, 0.0),
     "physical": (True, 1.0, 1.0), "thick": (True, 0.0, 0.5), "bonded outside": (True, 0.0, 1.0),
     "loose membrane": (False, 1.0, 0.0), "loose inside": (True, 1.0, 0.0),
 }  # fmt: skip

@@ -15,6 +15,8 @@ What it misses is told by FEWER bubbles, eliminated beside: what they lose is a 
 for what places and state miss.
 """
 
+from math import sqrt
+
 import numpy as np
 
 from ...jit import kernel
@@ -60,8 +62,8 @@ def weigh(k, weight, per_length, rows, middle, used, fields):
 
 @kernel
 def roughness(row):
-    """The last of Legendre's coefficients of a row, as a share of its largest number, squared: Gauss' rule errs by those
-    that are twice as high.
+    """What Gauss' rule misses of a row, by Legendre's coefficients that are twice as high as its last ones: a square of
+    these; and the row's largest number.
     """
     most, tail = spread(TINY), spread(0.0)
     for k in range(COUNT):
@@ -71,7 +73,8 @@ def roughness(row):
         for k in range(COUNT):
             total = total + TAILS[i, k] * get(row, k)
         tail = max(tail, abs(total))
-    return tail * tail / (most * most)
+    share = tail / most
+    return tail * share * sqrt(sqrt(share)), most
 
 
 @kernel

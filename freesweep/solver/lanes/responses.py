@@ -100,7 +100,7 @@ def over_parts(
         clear(sums[i])
         clear(carried[i])
         clear(known[i])
-    clear(rough)
+        clear(rough[i])
     for j in range(parts):
         first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
         width = (width - first) / pieces
@@ -121,8 +121,9 @@ def over_parts(
                 gather(weight, rows[0], used, sums[0])
                 length = length + weight
             for n in range(LOADS):
-                here_rough = roughness(fields[OF_STATE + 2 * len(used) + n])
-                put(rough, n, select(own, max(get(rough, n), here_rough), get(rough, n)))
+                missed, most = roughness(fields[OF_STATE + 2 * len(used) + n])
+                put(rough[0], n, get(rough[0], n) + select(own, missed, 0.0))
+                put(rough[1], n, get(rough[1], n) + select(own, most, 0.0))
             assemble(fields, len(used), matrix[0], pushed, room)
             eliminate(own, fixed, used, matrix[0], pushed, matrix[1], matrix[2], carried, known)
             derive(own, used, pushed, matrix[2], room[0], sums[1])
@@ -163,7 +164,7 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
     columns, start, scratch = small[0], small[1], small[2]
     rows, fields, pushed = aligned(2, ROWS), aligned(OF_STATE + 2 * count + LOADS, COUNT), aligned(count, SIZE)
     matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(3, count)
-    sums, rough, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(1, LOADS)[0], aligned(2, OUTPUTS * TOLD)
+    sums, rough, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(2, LOADS), aligned(2, OUTPUTS * TOLD)
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
         searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)

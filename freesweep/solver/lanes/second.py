@@ -15,13 +15,12 @@ from math import sqrt
 
 from ...jit import kernel
 from ..either import isnt, select
-from ..physics import wall as walls
 from ..physics.relaxed import is_taut
-from .inlined import inlined
-from .tangent import change_of, join, value_of
+from ..physics.wall import layer, rises, slopes, stored
 from .vector import put, spread
 
 NUMBERS = 12
+FAR = 1e8  # from a rubber's constant: what does not hang on it is rounding there
 # what a place answers to, beside its stretch and slope; the loads last
 T_ALPHA, T_BETA, GAMMA, AREA, INNER, RATIO, SECOND, THIRD, FORCE, PRESSURE, TORQUE, WEIGHT = range(NUMBERS)
 LOADS = 4  # the last of them
@@ -31,8 +30,6 @@ OF_LOADS = (
     VV + 1
 )  # rows of the bends along a load, of each number that is no load, and of f, p and m; then L by each load
 ROWS = OF_LOADS + LOADS * NUMBERS + LOADS
-
-slopes, stored, layer = inlined(walls.slopes), inlined(walls.stored), inlined(walls.layer)
 
 
 @kernel
@@ -72,36 +69,26 @@ def by_surfaces(y, G_1, psi, cell, load):
 
 
 @kernel
-def by_rubber(y, G_1, psi, area, rubber, wall):
-    """The wall's energy and its slopes as :func:`..physics.wall.energy` has them, and derivatives ``(W, W_y, W_G, W_psi)``
-    by each of three constants, 0 of those that the rubber does not have.
+def by_rubber(y, G_1, psi, area, rubber, wall, W, V):
+    """Derivatives ``(W, W_y, W_G, W_psi)`` by each of three constants, 0 of those that the rubber does not have, of a wall
+    of the energy W, whose slopes are V.
     """
-    one, zero = spread(1.0), spread(0.0)
+    far, zero = spread(FAR), spread(0.0)
     none = zero, zero, zero, zero
-    first = (join(rubber[0], one), *rubber[1:])
-    V = slopes(y, G_1, psi, area, first, wall)
-    W = stored(y, G_1, psi, area, first, wall)
-    own = change_of(W), change_of(V[0]), change_of(V[1]), change_of(V[2])
-    values = (
-        value_of(V[0]), value_of(V[1]), value_of(V[2]), value_of(V[3]), value_of(V[4]), value_of(V[5]), value_of(V[6]),
-        value_of(V[7]), value_of(V[8]),
-    )  # fmt: skip
+    own = by_constant(rises(y, G_1, psi, area, (rubber[0] + far, *rubber[1:]), wall), W, V)
     if len(rubber) == 1:
-        return value_of(W), values, own, none, none
+        return own, none, none
     return (
-        value_of(W), values, own,
-        by_constant(y, G_1, psi, area, (rubber[0], join(rubber[1], one), rubber[2]), wall),
-        by_constant(y, G_1, psi, area, (rubber[0], rubber[1], join(rubber[2], one)), wall),
-    )  # fmt: skip
+        own,
+        by_constant(rises(y, G_1, psi, area, (rubber[0], rubber[1] + far, rubber[2]), wall), W, V),
+        by_constant(rises(y, G_1, psi, area, (rubber[0], rubber[1], rubber[2] + far), wall), W, V),
+    )
 
 
 @kernel
-def by_constant(y, G_1, psi, area, rubber, wall):
-    """Derivatives ``(W, W_y, W_G, W_psi)`` by that of three constants which is a tangent."""
-    V = slopes(y, G_1, psi, area, rubber, wall)
-    return (
-        change_of(stored(y, G_1, psi, area, rubber, wall)), change_of(V[0]), change_of(V[1]), change_of(V[2])
-    )  # fmt: skip
+def by_constant(there, W, V):
+    """Derivatives by a constant, in which energies are linear, from what they are FAR from here."""
+    return (there[0] - W) / FAR, (there[1] - V[0]) / FAR, (there[2] - V[1]) / FAR, (there[3] - V[2]) / FAR
 
 
 @kernel
@@ -132,7 +119,8 @@ def bends(y, v, cosine, at, cell, load, rows):
     """
     H, D, gamma, e = cell[0], cell[1], load.gamma, load.e
     G_1, psi, yy, zero = at.G_1, at.psi, y * y, spread(0.0)
-    W, V, by_c, by_2, by_3 = by_rubber(y, G_1, psi, cell[2], load.rubber, load.wall)
+    W, V = stored(y, G_1, psi, cell[2], load.rubber, load.wall), slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
+    by_c, by_2, by_3 = by_rubber(y, G_1, psi, cell[2], load.rubber, load.wall, W, V)
     by_area, by_inner = by_surfaces(y, G_1, psi, cell, load)
     W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = V
     T = load.p * yy + load.f

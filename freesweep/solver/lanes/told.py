@@ -19,8 +19,8 @@ UNIFORM, SHALLOW = (
     17.0,
     12.0,
 )  # depth from which on the middle is the uniform tube's; times what is left of a layer there
-SAFETY, ALIKE = 0.5, 0.06  # of what FEWER bubbles lose; and of the most that this may be of a push in the middle
-FORCED, ROUGH = 10.0, 1.0  # times the force that is left; of what is not smooth
+SAFETY, ALIKE = 0.25, 0.03  # of what FEWER bubbles lose; and of the most that this may be of a push in the middle
+FORCED, ROUGH = 10.0, 4.0  # times the force that is left; and what is not smooth
 ENDS, ROUNDING, FAINT = 3e-9, 1e-11, 1e-14  # of where ends of slack lie, of numbers, and of the drive of the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
 TINY = 1e-300
@@ -41,8 +41,13 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left,
     )
     missed = FORCED * force_left(pulls, work, used, sums[1], left) + select(loose, ENDS, 0.0) + ROUNDING
     drive = -mid.rise * mid.s
-    tell_loads(half, drive * pivot, missed, used, rows, carried, sums, known, left, rough, out)
-    tell_middle(mid, rest, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out)
+    wrong = abs(drive * pivot) * (abs(rest) + missed * half)  # a half that sums miss has another middle
+    grown, doubt = growth(mid, load, drive, pivot, fewer_pivot, missed, wrong, rows)
+    tell_loads(half, grown, doubt, wrong, missed, used, rows, carried, sums, known, left, rough, out)
+    tell_middle(mid, half, pivot, fewer_pivot, missed, used, rows, carried, known, out)
+    first = TOLD * LOADS + TOLD - 1
+    put(out[0], first, grown)
+    put(out[1], first, doubt)
     return drive * pivot
 
 
@@ -88,14 +93,17 @@ def force_left(pulls, work, used, answers, left):
 
 
 @kernel
-def tell_loads(half, grown, missed, used, rows, carried, sums, known, left, rough, out):
-    """Write what loads are conjugate to, and its derivatives; ``grown`` is how the middle grows with the length."""
+def tell_loads(half, grown, doubt, wrong, missed, used, rows, carried, sums, known, left, rough, out):
+    """Write what loads are conjugate to, and its derivatives; ``grown`` is how the middle grows with the length, but for
+    its ``doubt``; the middle itself may be ``wrong``.
+    """
     count = len(used)
     for i in range(LOADS):
         one, sign = count - LOADS + i, -1.0 if i == LOADS - 1 else 1.0
         value = get(sums[0], LOADS * NUMBERS + i)
         put(out[0], TOLD * i, sign * value)
-        bent = ROUGH * get(rough, i) * abs(value - half * get(rows, OF_LOADS + LOADS * NUMBERS + i))
+        bend = ROUGH * get(rough[0], i) / (get(rough[1], i) + TINY)
+        bent = bend * abs(value - half * get(rows, OF_LOADS + LOADS * NUMBERS + i))
         put(out[1], TOLD * i, missed * abs(value) + bent)
         for j in range(count - 1):
             n = NUMBERS * i + used[j]
@@ -103,22 +111,36 @@ def tell_loads(half, grown, missed, used, rows, carried, sums, known, left, roug
             lost = sqrt(get(known[LOST], one) * get(known[LOST], j))
             first, other = sqrt(get(known[SQUARES], one)), sqrt(get(known[SQUARES], j))
             forced = FORCED * (get(left, one) * other + get(left, j) * first)
-            bent = ROUGH * get(rough, i) * abs(fixed - half * get(rows, OF_LOADS + n))
+            bent = bend * abs(fixed - half * get(rows, OF_LOADS + n))
             put(out[0], TOLD * i + 1 + used[j], sign * (fixed + answer))
             put(out[1], TOLD * i + 1 + used[j], SAFETY * lost + forced + bent + missed * (abs(fixed) + first * other))
         value = get(rows, OF_LOADS + LOADS * NUMBERS + i) + grown * get(carried[0], 1 + one)
         put(out[0], TOLD * i + TOLD - 1, sign * value)
-        put(out[1], TOLD * i + TOLD - 1, missed * abs(value))
+        there = wrong * abs(get(rows, BY_Y + used[one])) + doubt * abs(get(carried[0], 1 + one))
+        put(out[1], TOLD * i + TOLD - 1, missed * abs(value) + there)
 
 
 @kernel
-def tell_middle(mid, rest, load, half, drive, pivot, fewer_pivot, missed, used, rows, carried, known, out):
+def growth(mid, load, drive, pivot, fewer_pivot, missed, wrong, rows):
+    """How the middle grows with the length, and what that may miss where the middle is ``wrong`` by so much."""
+    stiff, shallow = -get(rows, YY), SHALLOW * mid.depth * mid.q
+    even = 1.0 / sqrt(max(-stiff * get(rows, VV), TINY))  # of a long tube that falls toward its middle
+    faint = FAINT * (load.p * mid.y * mid.y + abs(load.f))
+    uniform = mid.depth > UNIFORM
+    short = shallow * abs(drive) + faint + 2.0 * mid.q * abs(1.0 - mid.y) * stiff
+    near = abs(drive) * SAFETY * abs(pivot - fewer_pivot) + (faint + abs(stiff) * wrong) * abs(pivot)
+    grown = select(uniform, drive * even, drive * pivot)
+    return grown, missed * abs(grown) + select(uniform, abs(even) * short, near)
+
+
+@kernel
+def tell_middle(mid, half, pivot, fewer_pivot, missed, used, rows, carried, known, out):
     """Write the stretch of the middle and its derivatives: the uniform tube's where less is missed so."""
     count, first, stiff = len(used), TOLD * LOADS, -get(rows, YY)
     lost = abs(pivot - fewer_pivot)  # of what the middle answers with to a push
     put(out[0], first, mid.y)
     put(out[1], first, CLOSE * abs(1.0 - mid.y) + ROUNDING)
-    uniform, shallow = mid.depth > UNIFORM, SHALLOW * mid.depth * mid.q
+    shallow = SHALLOW * mid.depth * mid.q
     for j in range(count - 1):
         own, even, square = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff, get(known[SQUARES], j)
         typical = sqrt(square / (abs(stiff) * half))
@@ -127,11 +149,3 @@ def tell_middle(mid, rest, load, half, drive, pivot, fewer_pivot, missed, used, 
         of_even = shallow * (abs(even) + typical)
         put(out[0], first + 1 + used[j], select(of_even < doubt, even, own))
         put(out[1], first + 1 + used[j], min(doubt, of_even) + missed * (abs(own) + typical))
-    even = 1.0 / sqrt(max(-stiff * get(rows, VV), TINY))  # of a long tube that falls toward its middle
-    faint = FAINT * (load.p * mid.y * mid.y + abs(load.f))
-    short = shallow * abs(drive) + faint + 2.0 * mid.q * abs(1.0 - mid.y) * stiff
-    # a half that its sums miss has another middle, which drives otherwise
-    near = abs(drive) * SAFETY * abs(pivot - fewer_pivot) + (faint + abs(drive * pivot * stiff) * (abs(rest) + missed * half)) * abs(pivot)
-    grown = select(uniform, drive * even, drive * pivot)
-    put(out[0], first + TOLD - 1, grown)
-    put(out[1], first + TOLD - 1, missed * abs(grown) + select(uniform, abs(even) * short, near))
