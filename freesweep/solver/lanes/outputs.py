@@ -10,10 +10,10 @@ from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
 from ..physics.wall import may_go_slack
 from .meridian import fallen
+from .pack import OUTPUTS
 from .vector import get, put, select, spread
 
 SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
-OUTPUTS = 5
 SLACK, WORST, WITHIN = (
     5,
     7,
