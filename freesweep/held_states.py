@@ -46,7 +46,7 @@ def hold(tube, given, x, accuracy, buckled=False, derivatives=None, tied=False):
     axes = {name: read_load(name, value, units[name], faults, **domains.get(name, {})) for name, value in given.items()}
     names = asked_of(tube, derivatives, faults, ("pressure", load_name), held_name)
     stations, accuracy = read_stations(tube, x, accuracy, faults)
-    warn_of_loads(tube, **{name: axes[name] for name in (load_name, "pressure")}, stacklevel=4)
+    warn_of_loads(tube, **{name: axes[name] for name in axes if name != "rotation"}, stacklevel=4)
     held = Held(held_name, axes, stations, bool(buckled))
     result = _solve(tube, held, accuracy)
     if not names:

@@ -82,7 +82,7 @@ def blocked_torque(
 
     Parameters
     ----------
-    tube : the actuator; any profile and fiber extension, but alpha = -beta has no rotation to hold
+    tube : the actuator; any profile and fiber extension, but alpha = -beta has no rotation to hold if fibers are bonded
     pressure, force : number or 1-D array [Pa, N]
     rotation : held rotation [degree], number or 1-D array (a torque-rotation curve)
     deformed_length : None; a held length beside the held rotation is refused, with the reason
@@ -106,11 +106,12 @@ def blocked_torque(
     if isinstance(tube, Actuator):
         alpha, beta = tube.angles(np.linspace(0.0, 1.0, 257))
         single = np.where(np.isnan(alpha), beta, alpha)  # not a number where there is none
-        if np.all(alpha == -beta) or not (tube.has_two_families or np.any(np.abs(single) > 0.0)):
+        turns = tube.is_loose or np.any(alpha != -beta)  # of loose fibers one family goes slack
+        if not (turns if tube.has_two_families else np.any(np.abs(single) > 0.0)):
             raise ActuatorError(
                 [
-                    "rotation: a tube with alpha = -beta does not rotate, nor does one of straight fibers alone or without"
-                    " any, so no torque holds it; use blocked_force"
+                    "rotation: a tube of bonded fibers with alpha = -beta does not rotate, nor does one of straight fibers"
+                    " alone or without any, so no torque holds it; use blocked_force"
                 ]
             )
         if buckled and (tube.threads > 0.0 or tube.is_thick):

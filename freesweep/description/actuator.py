@@ -180,7 +180,7 @@ class Actuator:
         own = {name: numbers[name] for name in (*VARYING, "length", "c10")}
         if self.is_body:
             own["thickness"] = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY)
-        warn_of(doubts(**own), stacklevel=3)
+        warn_of(doubts(**own, thick=self.is_thick), stacklevel=3)
 
     @classmethod
     def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":

@@ -12,23 +12,30 @@ LARGEST = {"length": 20.0, "radius": 1.0}  # [m]: beyond any tube that is wound 
 SMALLEST = {"length": 1e-4, "radius": 1e-5}  # [m]
 SLENDER = 2e4  # length over radius
 THINNEST = 1e-4  # wall over radius
+THICKEST = {False: 1.0, True: 20.0}  # of a membrane, and of a wall that is taken for as thick as it is
 RADIANS = 0.5 * np.pi  # [degree]: if no fiber is steeper, angles are likely given in radians
 SOFTEST, HARDEST = 10.0, 1e9  # [Pa] of c10: gels, hard plastics
-USUAL = 1e-3, 1e4  # of the largest pressure over c10 wall/radius, which is a tenth to a hundred
+USUAL = 3e-3, 1e4  # of the largest pressure over c10 wall/radius, which is a tenth to a hundred
 LOAD = 1e4  # largest force over radius^2 c10, torque over radius^3 c10
+HELD = 10.0  # times the undeformed length, or a part of it: a length that is held
 HINT = 'plain numbers are in SI units and degrees, others need theirs, as in "4.76 mm" or "0.17 MPa"'
 
 
-def doubts(alpha, beta, length, radius, wall, c10, thickness=None, pressure=None, force=0.0, torque=0.0) -> list:
+def doubts(
+    alpha, beta, length, radius, wall, c10, thickness=None, thick=False, pressure=None, force=0.0, torque=0.0,
+    deformed_length=None,
+) -> list:  # fmt: skip
     """Sentences on the values of designs and loads, numbers or arrays [degree, m, Pa, N, N m]; none for most.
 
-    ``thickness`` is wall over radius of each design, where these are more than one. Without ``pressure`` the design alone is
-    looked at, with it the load alone.
+    ``thickness`` is wall over radius of each design, where these are more than one; a wall may be taken for ``thick``.
+    Without ``pressure`` the design alone is looked at, with it the load alone.
     """
     given = {"alpha": alpha, "beta": beta, "length": length, "radius": radius, "wall": wall, "c10": c10}
     given["thickness"] = np.divide(wall, radius) if thickness is None else thickness
     given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in given.items()}
-    return _of_design(**given) if pressure is None else _of_load(**given, pressure=pressure, force=force, torque=torque)
+    if pressure is None:
+        return _of_design(**given, thick=thick)
+    return _of_load(**given, pressure=pressure, force=force, torque=torque, held=deformed_length)
 
 
 def warn_of(found, stacklevel):
@@ -37,13 +44,14 @@ def warn_of(found, stacklevel):
         warnings.warn(doubt, stacklevel=stacklevel + 1)
 
 
-def _of_design(alpha, beta, length, radius, wall, c10, thickness):
+def _of_design(alpha, beta, length, radius, wall, c10, thickness, thick):
     found = []
-    if thickness.max() > 1.0:
+    if thickness.max() > THICKEST[thick]:
         k = int(np.argmax(thickness))
-        thick = wall[k] if wall.size == thickness.size else wall.max()
+        widest = wall[k] if wall.size == thickness.size else wall.max()
         narrow = radius[k] if radius.size == thickness.size else radius.min()
-        found.append(f"wall {thick:g} m is thicker than the inner radius {narrow:g} m: the model takes a thin wall")
+        why = HINT if thick else "the model takes a thin wall"
+        found.append(f"wall {widest:g} m is thicker than the inner radius {narrow:g} m: {why}")
     for name, values in (("length", length), ("radius", radius)):
         if values.max() > LARGEST[name]:
             found.append(f"the {name} is {values.max():g} m; {HINT}")
@@ -61,7 +69,7 @@ def _of_design(alpha, beta, length, radius, wall, c10, thickness):
     return found
 
 
-def _of_load(pressure, force, torque, radius, c10, thickness, **_):
+def _of_load(pressure, force, torque, held, length, radius, c10, thickness, **_):
     found = []
     low, high = USUAL
     highest, softest = np.max(pressure), c10.min()
@@ -70,6 +78,8 @@ def _of_load(pressure, force, torque, radius, c10, thickness, **_):
         found.append(f"no pressure exceeds {highest:g} Pa, which hardly deforms a c10 of {softest:g} Pa; {HINT}")
     if highest > high * softest * thickness.max():
         found.append(f"the pressure reaches {highest:g} Pa, far beyond a c10 of {softest:g} Pa; {HINT}")
+    if held is not None and (np.max(held) > HELD * length.max() or np.max(held) < length.min() / HELD):
+        found.append(f"a held length of {np.max(held):g} m is far from the tube's {length.max():g} m; {HINT}")
     for name, values, unit, power in (("force", force, "N", 2), ("torque", torque, "N m", 3)):
         if (largest := np.max(np.abs(values))) > LOAD * radius.max() ** power * c10.max():
             found.append(f"a {name} of {largest:g} {unit} is far beyond what this tube can bear; {HINT}")

@@ -19,8 +19,8 @@ from .lanes import held
 from .lanes.held import BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH
 from .physics.lagrangian import ROUNDING
 from .physics.wall import LOOSE
-from .problem import FORCE, PHYSICAL, THREADS, TORQUE, wall_columns
-from .status import COMPRESSED, OK, PENDING
+from .problem import AREA, FORCE, PHYSICAL, THREADS, TORQUE, wall_columns
+from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 30  # solutions of one state, at most; some six do nearly always
 LARGEST, FIRST = 4.0, 2.0  # step of mu, and the first one, to the loads
@@ -31,6 +31,7 @@ SHORTER, LEAST_STEP = 0.3, 1e-3  # where free states are not carried so far: the
 UNKNOWN = 0.25  # of the loads: a step where no secant is known
 ASIDE, CAUTION = 1e-3, 2.0  # a state beside another, and times what it differs by
 ROUGH, LEAST_ACCURACY = 1e-3, 1e-10  # asked of free states, at first and at most
+FAR = 1e3  # times the loads, or what the wall bears: a length that so much force does not come to is beyond reach
 FEW = 2  # tries at what is asked at first
 COLUMN = {FORCE: 0, TORQUE: 2}  # of a free state's values
 
@@ -122,6 +123,7 @@ def hold_by_load(problems, pressures, targets, unknown, accuracy, found, soon=Fa
             if not len(way.rows):
                 break
             way.step(found)
+        way.end(found)
 
 
 class Way:
@@ -132,6 +134,7 @@ class Way:
     def __init__(self, search, rows, beginnings):
         n, own = len(search.problems), beginnings[rows]
         self.search, self.rows, self.states = search, rows, room_for(n, search.columns)
+        self.begun = rows
         self.at, self.stretch, self.first = (beginnings[:, k].copy() for k in (MULTIPLIER, STRETCH, HELD))
         self.origin, self.longest = self.at.copy(), beginnings[:, LONGEST]
         self.before, self.sides = np.full((2, n), np.nan), np.full((2, 2, n), np.nan)
@@ -187,6 +190,14 @@ class Way:
         refused = self.refuse(rows, c, found) & np.logical_not(done)
         finer = self.settle(rows[done], found)
         self.rows = np.sort(np.concatenate([short[far], rows[np.logical_not(done | refused)], finer]))
+
+    def end(self, found):
+        """Tell of which rows no pull comes to the length that is held."""
+        if self.search.unknown == TORQUE:
+            return
+        rows = self.begun[(found.status[self.begun] == PENDING) & np.isnan(self.sides[1, 0, self.begun])]
+        least = FAR * np.maximum(self.loads[rows], self.search.problems[rows, AREA])
+        found.status[rows[self.at[rows] > least]] = HELD_IMPOSSIBLE
 
     def carried(self, rows):
         """Uniform stretches under the next multipliers, NaN where none is come to; and which lie between two known ones."""

@@ -17,7 +17,8 @@ def doubts_of(sweep) -> list:
     columns = (sweep.designs or {}).get("columns", {})  # each with its own; else each with each
     thickness = wall / radius if {"wall", "radius"} <= set(columns) else np.divide.outer(wall, radius)
     loads = {name: _values(sweep, name) for name in LOAD}
-    return doubts(**design, thickness=thickness) + doubts(**design, thickness=thickness, **loads)
+    thick = sweep.model.is_thick
+    return doubts(**design, thickness=thickness, thick=thick) + doubts(**design, thickness=thickness, **loads)
 
 
 def _values(sweep, name):

@@ -84,3 +84,26 @@ def test_a_loose_tube_whose_threads_would_push_is_held_from_the_free_one():
     assert (one["status"], other["status"]) == (OK, OK)
     taut = other["least_tension_alpha"] >= 0.0 and other["least_tension_beta"] >= 0.0
     assert taut == (abs(one["force"] - other["force"]) <= one["force_error"] + other["force_error"])
+
+
+MUSCLE = {"alpha": 30, "beta": -30, "length": 0.131, "radius": 4.76e-3, "wall": 1.59e-3}
+
+
+def test_a_muscle_of_loose_fibers_is_held_turned():
+    """Bonded fibers of alpha = -beta do not turn; of loose ones a family goes slack."""
+    tube = fs.Actuator(**MUSCLE, material=fs.MooneyRivlin(0.17e6, 0.08e6), model="physical")
+    for torque in (0.08, -0.15):
+        free = fs.inflate(tube, 1e5, torque=torque)
+        held = fs.blocked_torque(tube, 1e5, float(free["rotation"]))
+        assert int(held["status"]) == 0
+        assert abs(float(held["torque"]) - torque) <= 2.0 * float(held["torque_error"])
+    assert int(fs.blocked_torque(tube, 1e5, 0.0)["status"]) == 4  # by any torque up to that
+
+
+@pytest.mark.parametrize(("model", "most"), [("source", 0.2191), ("physical", 0.2094)])
+def test_a_length_that_no_pull_comes_to_is_impossible(model, most):
+    """Whatever the pressure: the fibers, bent at their ends, are not long enough, or the wall would close the bore."""
+    tube = fs.Actuator(**MUSCLE | {"length": 0.192}, material=fs.MooneyRivlin(0.17e6, 0.08e6), model=model)
+    lengths = most * np.array([0.98, 1.004, 1.01, 1.2])
+    held = fs.blocked_force(tube, 1e5, lengths)
+    assert held["status"].values.tolist() == [0, 4, 4, 4]

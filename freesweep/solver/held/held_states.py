@@ -15,6 +15,7 @@ from ..numerics import held, nested
 from ..numerics.properties_along import Tube, make_cells, of_problems, seat, turns, volume
 from ..numerics.shapes import MESH_CHANGE
 from ..physics import lagrangian
+from ..physics.wall import may_go_slack
 from ..problem import GAMMA, LENGTH, D, H, wall_of
 from ..status import (
     BEYOND_LIMIT,
@@ -234,7 +235,7 @@ def hold(states, i, problem, walls, p, other, target, kind, buckled, tube, accur
         states.status[i] = INVALID
     elif p == 0.0 and other == 0.0 and natural and not buckled:
         leave_at_rest(states, i, problem, walls, tube)
-    elif kind == HELD_ROTATION and not turns(tube.course):
+    elif kind == HELD_ROTATION and not (turns(tube.course) or may_go_slack(wall_of(problem, walls))):
         states.status[i] = HELD_IMPOSSIBLE
     else:
         own_target = 0.5 * target if tube.half else target

@@ -8,6 +8,7 @@ from ...jit import kernel
 from .. import guide
 from ..load import Load, at_pressure, by, loaded
 from ..physics import lagrangian
+from ..physics.wall import may_go_slack
 from ..problem import GAMMA, rubber_of, wall_of
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, OK, PENDING
 from .ways import cylinder_multiplier
@@ -106,10 +107,10 @@ def refused(load, target, kind, tube):
     """COMPRESSED or HELD_IMPOSSIBLE where nothing has to be solved to know it, else PENDING."""
     cell, course, places = guide.cell_along(tube, 0.5), tube.course, tube.places
     varies = course.shape[0] > 1 or course.shape[1] > 1
-    # no load turns what has alpha = -beta
+    # no load turns what has alpha = -beta, unless fibers go slack
     if (
         kind == HELD_ROTATION
-        and not varies
+        and not (varies or may_go_slack(load.wall))
         and lagrangian.conjugate(1.0, 0.0, cell, load, unit_of(kind, 1.0))[1] == 0.0
     ):
         return HELD_IMPOSSIBLE

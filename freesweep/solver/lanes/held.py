@@ -80,6 +80,12 @@ def _both_pull(cell, load, wall):
 
 
 @kernel
+def loose_turn(load, length_held):
+    """Where a torque turns what has alpha = -beta: loose fibers go slack, bonded ones do not turn."""
+    return mask_of(-1 if may_go_slack(load.wall) and not length_held else 0)
+
+
+@kernel
 def free_start(cell, load, half, asked):
     """The uniform stretch with nothing held, carried from rest; where there is one."""
     one, zero = spread(1.0), spread(0.0)
@@ -130,20 +136,21 @@ def start(
         cell, _, load = loads(columns, constants, walls, layers)
         half, target = get(columns, LENGTH), get(found, HELD)
         c, c_y, mu = cylinder(cell, load, length_held)
-        first, todo = c * half, mask_of(valid) & (abs(c_y) > POLE * (cell[0] * cell[0] + cell[1] * cell[1]))
+        first, upheld = c * half, abs(c_y) > POLE * (cell[0] * cell[0] + cell[1] * cell[1])
+        todo = mask_of(valid) & (upheld | loose_turn(load, length_held))
         most, never, pushed = half * lagrangian.longest(cell, load.gamma, load.wall), mask_of(0), mask_of(0)
         if length_held:
             never = todo & (target > (1.0 + LONGER) * most)
         else:  # p + f alone decides
             pushed = todo & isnt(load.p + load.f > 0.0)
-            never = mask_of(valid) & (cell[0] == 0.0)  # no torque turns what has alpha = -beta
+            never = mask_of(valid) & (cell[0] == 0.0) & isnt(loose_turn(load, length_held) & isnt(target == 0.0))
         todo = todo & isnt(never | pushed)
         now = holding(load, length_held, mu)
         pulled = lagrangian.density(spread(1.0), 0.0, cell, bonded(now))[0] > 0.0
-        stands = todo & pulled & both_pull(cell, now)
+        stands = todo & upheld & pulled & both_pull(cell, now)
         firm, gone = cylinder_stability(cell, now, half)
         straight = stands & (target == first)
-        lost = gone & (first == (half if length_held else 0.0)) & isnt(target == first)
+        lost = upheld & gone & (first == (half if length_held else 0.0)) & isnt(target == first)
         stands = stands & isnt(lost)
         u, came = free_start(cell, load, half, todo & isnt(stands))
         put(found, MULTIPLIER, select(stands, mu, 0.0))
