@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..scaling import OUTPUTS, output_scales, problem_columns
-from ..solver.problem import FORCE, TORQUE
+from ..solver.problem import FORCE, PROBLEM_SIZE, TORQUE
 from .dual import Dual
 from .physics import OWN, outputs_of
 from .table import rows_of
@@ -14,8 +14,8 @@ def differentiated(design, energy, sizes, names, accuracy, thick=False, threads=
 
     ``design``: name -> dual number, or array, of design and loads in SI units and degrees; the locked shape's pressure is
     infinite. ``sizes`` (seeds, n or 1): what each seed is measured by. The wall is ``thick``, or the ``threads`` are not
-    two bonded families, of physical tubes; what is ``known`` of their states, if anything, are middle radius [m] and where
-    a family goes slack along a part, (n,) each.
+    two bonded families, of physical tubes. What is ``known`` of the states, if anything, are middle radius [m] and where
+    a family goes slack along a part, (n,) each: from a middle no way from rest has to be found, of the source's tubes, too.
     """
     from ..solver.slopes import differentiate
 
@@ -24,7 +24,10 @@ def differentiated(design, energy, sizes, names, accuracy, thick=False, threads=
     n = max(np.size(number.value) for number in design.values())
     locked = np.broadcast_to(np.isinf(design["pressure"].value), n)
     design["pressure"] = Dual(np.where(locked, 0.0, design["pressure"].value), design["pressure"].parts)
-    columns = (*problem_columns(design, energy, thick, threads), design["pressure"] / design["c10"])
+    columns = problem_columns(design, energy, thick, threads)
+    if known is not None and len(columns) == PROBLEM_SIZE:
+        columns += (0.0, 0.0)  # no thick wall, two bonded families
+    columns += (design["pressure"] / design["c10"],)
     problems, changes = np.zeros((n, len(columns))), np.zeros((n, seeds, len(columns)))
     for k, column in enumerate(columns):
         if not isinstance(column, Dual):
