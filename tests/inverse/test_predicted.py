@@ -190,7 +190,8 @@ def test_candidates_that_do_it_are_made_sure_of_on_their_own_way(monkeypatch):
 # angles apart by five degrees, and swollen four and six times: no quick way from rest leads vectors there
 SWOLLEN = [
     ({"alpha": 77.84364, "beta": 72.74, "length": 0.2388795, "radius": 0.01135674, "wall": 3.873622e-4}, 105e3, "volume"),
-    ({"alpha": 58.85298, "beta": 63.3148, "length": 0.1138253, "radius": 0.01006925, "wall": 4.926953e-4}, 62564.0, "mid_radius"),
+    ({"alpha": 58.85298, "beta": 63.3148, "length": 0.1138253, "radius": 0.01006925, "wall": 4.926953e-4}, 62564.0,
+     "mid_radius"),
 ]  # fmt: skip
 
 
