@@ -43,6 +43,8 @@ def exact_slopes(space, wishes, u, choice, values, middles=None):
     for k, wish in enumerate(wishes):
         if wish.kind == "design":
             slopes[:, k] = rows_of(columns, [wish.output], free + 1)[0, 1:-1].T
+        elif wish.kind == "every":
+            slopes[:, k] = 0.0
         elif wish.output in (*SHAPE, *followed, *HELD) and wish.kind != "limit":
             states.setdefault(state_of(wish), []).append(k)
     jobs = [(state, own, some) for state, own in states.items() for some in _shares(values[:, own])]

@@ -36,7 +36,7 @@ def polish(misfit: Misfit, u, choice):
         near = misfit.ahead(found.part(rows), slopes[rows], ahead - u[rows])
         trial, missed = misfit.at(ahead, choice[rows], thorough=False, near=near)
         new = _cost(missed)
-        dear = np.flatnonzero(~np.isfinite(new))
+        dear = np.flatnonzero(~np.isfinite(new) & ~np.any(trial.falls, axis=1))
         if misfit.space.is_source and len(dear) and np.all(cost > DONE**2):
             again, missed[dear] = misfit.at(ahead[dear], choice[rows[dear]])
             for own, other in zip(trial, again):

@@ -22,7 +22,7 @@ class Cliff:
             self.seen += u[:, 0].tolist()
         values = np.where(u < self.edge, 10.0 * (self.edge - u) + 1.0, np.nan)
         none = np.zeros_like(values)
-        return Predicted(values, none, none, none, none[:, 0]), values
+        return Predicted(values, none, none, none, np.ones_like(values), none[:, 0]), values
 
     def slopes(self, u, choice, found):
         return np.full((len(u), 1, 1), -10.0)
