@@ -59,7 +59,7 @@ def hidden(rng):
             goals.append(fs.Goal(str(output), value, pressure=None if at_free else pressure))
         else:
             start = {name: np.mean(RANGES[name]) if name in free else values[name] for name in RANGES}
-            start["beta"] -= 5.0 if abs(start["alpha"] - start["beta"]) < 1.0 else 0.0
+            start["alpha" if "alpha" in free else "beta"] -= 5.0 if abs(start["alpha"] - start["beta"]) < 1.0 else 0.0
             return tube(start), {str(name): RANGES[name] for name in free}, goals, tube(values)
 
 
@@ -120,7 +120,7 @@ def hidden_physical(rng):
         wanted = [stands(physical(values), *each) for each in zip(outputs, own)]
         if all(abs(value) >= least.get(output, 0.0) for output, value in zip(outputs, wanted)):
             start = {name: np.mean(RANGES[name]) if name in free else values[name] for name in RANGES}
-            start["beta"] -= 5.0 if abs(start["alpha"] - start["beta"]) < 1.0 else 0.0
+            start["alpha" if "alpha" in free else "beta"] -= 5.0 if abs(start["alpha"] - start["beta"]) < 1.0 else 0.0
             goals = [fs.Goal(name, value, pressure=p) for name, value, p in zip(outputs, wanted, given)]
             return physical(start), {name: RANGES[name] for name in free}, goals, values
 
