@@ -10,6 +10,7 @@ DAMPING, LESS, MORE, MOST = 1e-3, 0.2, 5.0, 1e9  # of the diagonal; after a step
 DONE = 1e-3  # tolerances: closer is close enough
 STILL = 1e-9  # of the cost: no more is won
 LARGEST = 0.2  # of the unit box, in one step
+PATIENCE = 3  # steps of a design, one after the other, to dear states that did not help: then no more of these
 SHORTER, LONGER = 0.5, 2.0  # the largest step, after one that did not help, of that; and after one that did
 
 
@@ -23,6 +24,7 @@ def polish(misfit: Misfit, u, choice):
     slopes = misfit.slopes(u, choice, found)
     cost, damping, reach = _cost(residuals), np.full(count, DAMPING), np.full(count, LARGEST)
     active = np.isfinite(cost) & (free > 0)
+    in_vain = np.zeros(count, int)  # dear steps
     spent = 0  # rounds since a design met everything
     for _ in range(ROUNDS[dear_ones]):
         active &= (np.sqrt(cost) > DONE) & (damping < MOST)
@@ -36,13 +38,15 @@ def polish(misfit: Misfit, u, choice):
         near = misfit.ahead(found.part(rows), slopes[rows], ahead - u[rows])
         trial, missed = misfit.at(ahead, choice[rows], thorough=False, near=near)
         new = _cost(missed)
-        dear = np.flatnonzero(~np.isfinite(new) & ~np.any(trial.falls, axis=1))
+        dear = np.flatnonzero(~np.isfinite(new) & ~np.any(trial.falls, axis=1) & (in_vain[rows] < PATIENCE))
         if misfit.space.is_source and len(dear) and np.all(cost > DONE**2):
             again, missed[dear] = misfit.at(ahead[dear], choice[rows[dear]])
             for own, other in zip(trial, again):
                 own[dear] = other
             new[dear] = _cost(missed[dear])
         better = new < cost[rows]
+        in_vain[rows[dear]] += 1
+        in_vain[rows[better]] = 0
         damping[rows] *= np.where(better, LESS, MORE)
         step = np.max(np.abs(ahead - u[rows]), axis=1)
         reach[rows] = np.where(better, np.minimum(LONGER * reach[rows], LARGEST), SHORTER * step)
