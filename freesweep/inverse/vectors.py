@@ -26,6 +26,7 @@ TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tub
 OF_SOURCE = (*WORST, "limit_pressure", *STIFF)
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
 STRAIGHT = 1e-6  # strain in the middle: beside it a tube is straight, and leads to none that is not
+ONSET = 1e-2  # strain of the middle from which a state is looked for beside a straight one
 SUMMED = 1e-6  # accuracy that such sums have nearly always
 ROUGH = 1e-3  # of states beside which something else is asked
 
@@ -137,8 +138,10 @@ def _held(kind, points, own, near, accuracy, two, free, like, alone):
     what both do not find.
     """
     (loads, radii), radius = near, points[:, COLUMNS.index("fiber_radius")]
-    known = np.flatnonzero((np.abs(radii / radius - 1.0) > STRAIGHT) & np.isnan(straight_loads(kind, points)))
-    pair = beside(Held(kind, points[known], own), loads[known], radii[known] / radius[known], accuracy)
+    stretch = radii / radius
+    known = np.flatnonzero(np.isfinite(loads) & np.isnan(straight_loads(kind, points)))
+    stretch = np.where(np.abs(stretch - 1.0) > STRAIGHT, stretch, 1.0 + ONSET)[known]  # what was straight will swell
+    pair = beside(Held(kind, points[known], own), loads[known], stretch, accuracy)
     met = np.isfinite(pair.load)
     rest = np.setdiff1d(np.arange(len(points)), known[met] if alone else known)
     others = hold_by_loads(kind, points[rest], free, like, alone, accuracy, two, loads[rest])
