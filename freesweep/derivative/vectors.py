@@ -9,13 +9,14 @@ from .physics import OWN, outputs_of
 from .table import rows_of
 
 
-def differentiated(design, energy, sizes, names, accuracy, thick=False, threads=0.0, known=None):
+def differentiated(design, energy, sizes, names, accuracy, thick=False, threads=0.0, known=None, as_physical=False):
     """Rows and bounds (outputs ``names``, 1 + seeds, n) of n free states, NaN where vectors have no answer.
 
     ``design``: name -> dual number, or array, of design and loads in SI units and degrees; the locked shape's pressure is
     infinite. ``sizes`` (seeds, n or 1): what each seed is measured by. The wall is ``thick``, or the ``threads`` are not
-    two bonded families, of physical tubes. What is ``known`` of the states, if anything, are middle radius [m] and where
-    a family goes slack along a part, (n,) each: from a middle no way from rest has to be found, of the source's tubes, too.
+    two bonded families, of physical tubes; what is ``known`` of their states, if anything, are middle radius [m] and where
+    a family goes slack along a part, (n,) each. ``as_physical``: the source's tubes, under finite loads, are taken for
+    physical ones with a thin wall and bonded fibers: from a known middle no way from rest has to be found.
     """
     from ..solver.slopes import differentiate
 
@@ -25,7 +26,7 @@ def differentiated(design, energy, sizes, names, accuracy, thick=False, threads=
     locked = np.broadcast_to(np.isinf(design["pressure"].value), n)
     design["pressure"] = Dual(np.where(locked, 0.0, design["pressure"].value), design["pressure"].parts)
     columns = problem_columns(design, energy, thick, threads)
-    if known is not None and len(columns) == PROBLEM_SIZE:
+    if as_physical and len(columns) == PROBLEM_SIZE:
         columns += (0.0, 0.0)  # no thick wall, two bonded families
     columns += (design["pressure"] / design["c10"],)
     problems, changes = np.zeros((n, len(columns))), np.zeros((n, seeds, len(columns)))

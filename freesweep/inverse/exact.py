@@ -83,10 +83,13 @@ def _state(space, state, outputs, columns, values, middles, some, free):
 
     def slopes_of(design, sizes, accuracy, middles):
         known = None if middles is None else (middles, np.ones(len(middles), bool))
-        return differentiated(design, tube.energy, sizes, SHAPE, accuracy, tube.is_thick, tube.threads, known)[0]
+        kind = tube.is_thick, tube.threads, known, known is not None
+        return differentiated(design, tube.energy, sizes, SHAPE, accuracy, *kind)[0]
 
     rows = slopes_of(design, sizes, ACCURACY, None if space.is_source else middles)
-    if space.is_source and middles is not None:  # to some states no quick way leads, but from their own middles
+    if (
+        space.is_source and middles is not None and state.kind != "locked"
+    ):  # to some states no quick way leads, but from their own middles
         lost = np.flatnonzero(np.any(np.isnan(rows), axis=(0, 1)) & np.isfinite(middles))
         if len(lost):
             own = {name: number.take(lost) for name, number in design.items()}
