@@ -6,6 +6,7 @@ import numpy as np
 
 from ..query.reference import COLUMNS
 from ..status import NOT_CONVERGED, OK, VALUED
+from .predict import UNKNOWN
 from .wishes import HELD
 
 ROUNDS, FEW, ROUGH = 24, 10, 1e-5  # steps; of a rough look, whose accuracy is not that
@@ -86,7 +87,7 @@ def hold_by_loads(kind, points, free, like, alone, accuracy, two, near):
     status[done] = OK
     found = {
         kind: np.where(done, value, np.nan), f"{kind}_error": np.where(done, bound, np.nan), "status": status,
-        "slack_fiber": np.where(done, slack, 0).astype(np.int8),
+        "slack_fiber": np.where(done, slack, 0).astype(np.int8), "stable": np.full(count, UNKNOWN, np.int8),
         "mid_radius": np.where(done & np.isnan(straight), radii, np.nan),
     }  # fmt: skip
     left = np.flatnonzero(~done)

@@ -28,7 +28,8 @@ class Found(NamedTuple):
 
 def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=0) -> Found:
     """The candidates at points u (n, p), ``near`` which that was predicted, in the order given, but without objectives those
-    first that do it. ``tolerances`` of manufacture, if any, spread what they do.
+    first that do it; without those in which some state is unstable, if others do it. ``tolerances`` of manufacture, if any,
+    spread what they do.
     """
     import xarray as xr
 
@@ -37,12 +38,15 @@ def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=
     asked, last = misfit.goals, len(wishes) - objectives
     residuals, met, kept = _judged(misfit, found)
     done = np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)
-    if not objectives and np.any(done):
-        order = np.argsort(~done, kind="stable")
-        u, choice, slopes, found, done = u[order], choice[order], slopes[order], found.part(order), done[order]
-        residuals, met, kept = residuals[order], met[order], kept[order]
+    stands = ~np.any(found.falls, axis=1)
+    if np.any(done):
+        order = np.arange(len(u)) if objectives else np.argsort(~done, kind="stable")
+        if np.any(done & stands):  # what the smallest disturbance ends is no answer where another one is
+            order = order[(stands | ~done)[order]]
+        u, choice, slopes, found = u[order], choice[order], slopes[order], found.part(order)
+        residuals, met, kept, done, stands = (each[order] for each in (residuals, met, kept, done, stands))
     tubes = [space.actuator(one, k) for one, k in zip(u, choice)]
-    columns = space.columns(u, choice)
+    columns, worst = space.columns(u, choice), _worst(found.status[:, :last])
     data = {
         name: ("candidate", columns[name], {"units": PARAMETERS[name].units})
         for name in FIELDS
@@ -61,7 +65,8 @@ def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=
         "goal_high": ("goal", [wish.high for wish in wishes[:asked]]),
         "goal_tolerance": ("goal", misfit.tolerances[:asked]),
         "slope": (("candidate", "goal", "parameter"), _slopes(misfit, slopes)[:, :asked]),
-        "status": (("candidate",), _worst(found.status[:, :last])),
+        "status": (("candidate",), worst),
+        "stable": (("candidate",), (stands & (worst == 0)).astype(np.int8), variable_attributes("stable")),
         "slack_fiber": (("candidate",), found.slack, variable_attributes("slack_fiber")),
         "met": (("candidate",), done),
         "misfit": (("candidate",), np.sqrt(np.sum(residuals[:, :last] ** 2, axis=1))),

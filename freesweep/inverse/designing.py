@@ -60,8 +60,9 @@ def design(
 
     Returns a Dataset along ``candidate``: parameters by name, ``goal_value``, ``goal_error`` (bound), ``goal_met``,
     ``limit_value``, ``limit_kept``, ``misfit`` (root of the sum of squares, in tolerances), ``slope`` (change of each
-    goal's output by what is free), ``status``, ``met``, ``python`` (the line that makes it); ``attrs["summary"]`` says in a
-    sentence whether it can be done and, if not, what stands against it. Raises :class:`ActuatorError` for invalid input.
+    goal's output by what is free), ``status``, ``stable``, ``met``, ``python`` (the line that makes it);
+    ``attrs["summary"]`` says in a sentence whether it can be done and, if not, what stands against it. A candidate in which
+    some state is unstable is given only where no other does it. Raises :class:`ActuatorError` for invalid input.
     """
     return find(template, free, goals, limits, minimize, count, atlas, seed, tolerances).data
 
@@ -91,16 +92,31 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
     if faults:
         raise ActuatorError(faults)
     misfit = make(space, asked, kept)
-    u, choice = look(misfit, STARTS * count, seed, atlas)
-    if len(u) == 0:
+    first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
+    made = _searched(first, objectives, count, seed, atlas, allowed)
+    is_done = made is not None and np.any(made.data["met"].values)
+    hopeless = made is not None and any(wish.kind == "every" for wish in misfit.wishes)  # it has to be stable
+    if first.left_out and not is_done and not hopeless:
+        other = _searched(misfit, objectives, count, seed, atlas, allowed)
+        if other is not None and (made is None or np.any(other.data["met"].values)):
+            made = other
+    if made is None:
         titles = ", ".join(wish.title for wish in misfit.wishes)
         raise ActuatorError([f"goals, limits: {NONE} has all the states in which they count: {titles}"])
+    return made
+
+
+def _searched(misfit, objectives, count, seed, atlas, allowed):
+    """Candidates, None where no design has all the states in which goals and limits count."""
+    u, choice = look(misfit, STARTS * count, seed, atlas)
+    if len(u) == 0:
+        return None
     misfit = with_dear(misfit, u, choice)
     u, found, residuals, slopes = polish(misfit, u, choice)
     if objectives:
         return _with_least(misfit, objectives, u, choice, residuals, count, allowed)
     cost = np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf)
-    best = spread(space, u, choice, _order(cost), count, DIFFERENT)
+    best = spread(misfit.space, u, choice, _order(cost), count, DIFFERENT)
     return gather(misfit, u[best], choice[best], found.part(best), slopes[best], allowed)
 
 
@@ -110,7 +126,7 @@ def _order(cost):
 
 
 def _needs_pressure(wish):
-    return wish.kind not in ("design", "limit") and "pressure" not in dict(wish.conditions)
+    return wish.kind not in ("design", "limit", "every") and "pressure" not in dict(wish.conditions)
 
 
 def _objectives(minimize, faults):

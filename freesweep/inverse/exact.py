@@ -19,8 +19,9 @@ from .vectors import STRAIGHT, Kind, points_of
 from .wishes import HELD
 
 ACCURACY = 1e-6  # of the slopes, in the unit box
+ROUGH = 1e-4  # of those that are told from a middle: in a long tube its last digits decide where the layer lies
 STEP = 1e-4  # of the unit box, of central differences
-SAME = 1e-5  # relative: by how much a value may differ from the one that was predicted
+SAME = 1e-4  # relative: by how much a value may differ from the one that was predicted
 
 
 def exact_slopes(space, wishes, u, choice, values, middles=None):
@@ -42,13 +43,15 @@ def exact_slopes(space, wishes, u, choice, values, middles=None):
     for k, wish in enumerate(wishes):
         if wish.kind == "design":
             slopes[:, k] = rows_of(columns, [wish.output], free + 1)[0, 1:-1].T
+        elif wish.kind == "every":
+            slopes[:, k] = 0.0
         elif wish.output in (*SHAPE, *followed, *HELD) and wish.kind != "limit":
             states.setdefault(state_of(wish), []).append(k)
     jobs = [(state, own, some) for state, own in states.items() for some in _shares(values[:, own])]
 
     def solve(job):
         state, own, some = job
-        known = None if middles is None or space.is_source else middles[some, own[0]]
+        known = None if middles is None else middles[some, own[0]]
         outputs = [wishes[k].output for k in own]
         return _state(space, state, outputs, columns, values[np.ix_(some, own)], known, some, free)
 
@@ -77,8 +80,17 @@ def _state(space, state, outputs, columns, values, middles, some, free):
         load[-1] = 1.0
         design[state.kind] = Dual(values[:, 0], load)
     tube, sizes = space.template, _sizes(design, state, len(some), free)
-    known = None if middles is None else (middles, np.ones(len(some), bool))
-    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads, known)
+
+    def slopes_of(design, sizes, accuracy, middles):
+        known = None if middles is None else (middles, np.ones(len(middles), bool))
+        return differentiated(design, tube.energy, sizes, SHAPE, accuracy, tube.is_thick, tube.threads, known)[0]
+
+    rows = slopes_of(design, sizes, ACCURACY, None if space.is_source else middles)
+    if space.is_source and middles is not None:  # to some states no quick way leads, but from their own middles
+        lost = np.flatnonzero(np.any(np.isnan(rows), axis=(0, 1)) & np.isfinite(middles))
+        if len(lost):
+            own = {name: number.take(lost) for name, number in design.items()}
+            rows[..., lost] = slopes_of(own, sizes[:, lost], ROUGH, middles[lost])
     if held is not None:
         rows = _straight(tube, design, rows, free + 1) if space.is_source else rows
         target = (

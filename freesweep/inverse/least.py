@@ -7,6 +7,7 @@ from .misfit import FAR, Misfit
 ROUNDS = 60
 ENOUGH = 1e-8  # of the objective, relative
 INSIDE = 0.5  # of a goal's tolerance that the search may use
+NEAREST = 1e-3  # of the unit box: as near the search comes to where there is no state
 ALIKE = 1e-5  # of the objectives: as little of one as another point has
 ACTIVE = 1e-3  # of the unit box, or tolerances: a bound or a limit that stops the search
 
@@ -26,8 +27,19 @@ class Least:
             found, _ = self.misfit.at(u[None], self.choice)
             slopes = np.nan_to_num(self.misfit.slopes(u[None], self.choice, found)[0])
             values = found.values[0] / self.misfit.tolerances
-            self._known = {key: (np.where(np.isfinite(values), values, FAR), slopes)}  # the last one only
+            self._known = {key: (np.where(np.isfinite(values), values, self._none()), slopes)}  # the last one only
         return self._known[key]
+
+    def _none(self):
+        """What stands for the values of states that are not there: beyond each range, and more than any objective."""
+        low, high = np.array([(wish.low, wish.high) for wish in self.misfit.wishes]).T / self.misfit.tolerances
+        beyond = np.where(np.isfinite(high), high + FAR, np.where(np.isfinite(low), low - FAR, 0.0))
+        beyond[len(beyond) - self.objectives :] = FAR * self.scale
+        return beyond
+
+    def is_there(self, u):
+        """Whether all states are."""
+        return bool(np.all(np.isfinite(self.misfit.at(u[None], self.choice)[0].values)))
 
     def objective(self, k):
         """One objective and its gradient, of size 1."""
@@ -60,12 +72,27 @@ class Least:
         }
 
     def search(self, u, k, levels):
-        """The point with the least of objective ``k`` from ``u`` (p,) on."""
+        """The point with the least of objective ``k`` from ``u`` (p,) on: where that leads to where there is no state, from
+        the last one that has all of them, within a box that is halved each time.
+        """
+        end, reach = self._descend(u, k, levels, 1.0), 0.5
+        if self.is_there(end):
+            return end
+        while reach > NEAREST:
+            end = self._descend(u, k, levels, reach)
+            if self.is_there(end) and self.objective(k)[0](end) < self.objective(k)[0](u):
+                u = end
+            else:
+                reach *= 0.5
+        return u
+
+    def _descend(self, u, k, levels, reach):
         from scipy.optimize import minimize
 
         fun, jac = self.objective(k)
+        box = list(zip(np.maximum(u - reach, 0.0), np.minimum(u + reach, 1.0)))
         found = minimize(
-            fun, u, jac=jac, method="SLSQP", bounds=[(0.0, 1.0)] * len(u), constraints=self.constraints(levels),
+            fun, u, jac=jac, method="SLSQP", bounds=box, constraints=self.constraints(levels),
             options={"maxiter": ROUNDS, "ftol": ENOUGH},
         )  # fmt: skip
         return np.clip(found.x, 0.0, 1.0)

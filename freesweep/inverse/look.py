@@ -38,7 +38,8 @@ def look(misfit: Misfit, count, seed, atlas=None):
         residuals = np.where(known, misfit.residuals(values), 0.0)
     else:
         residuals = by_and_by(misfit, draws, choice)
-        if not np.any(np.all(np.isfinite(residuals), axis=1)):
+        none = not np.any(np.all(np.isfinite(residuals), axis=1))
+        if none and not misfit.left_out:  # else there are states, but none that stand
             if not space.is_source:  # each by itself, for seconds
                 few, count = max(DEAR, len(shown)), min(count, DEAR_STARTS)
                 draws, choice = draws[:few], choice[:few]

@@ -13,7 +13,7 @@ LOOKING, POLISHING = 1e-4, 1e-9  # accuracies of the solver
 NATURAL = {"rotation": 1.0, "stroke": 0.01}  # [degree], [1]: a wish for 0 is measured by
 SHARE = {"deformed_length": "length", "length_change": "length", "mid_radius": "radius", "outer_radius": "radius"}
 INSIDE = 1e-2  # tolerances: a limit is kept where the search ends a little short of it
-WISHED = "values", "bounds", "status", "middles"  # what is predicted of each wish
+WISHED = "values", "bounds", "status", "middles", "stable"  # what is predicted of each wish
 FAR = 1e3  # tolerances by which a state that is not there counts as missed
 
 
@@ -25,6 +25,7 @@ class Misfit(NamedTuple):
     goals: int
     tolerances: np.ndarray
     is_dear: bool = False  # vectors tell no state of any design that is near: each is solved by itself
+    left_out: list | None = None  # takes whether unstable states were taken for none; None: they count as others do
 
     @property
     def is_quick(self) -> bool:
@@ -32,7 +33,7 @@ class Misfit(NamedTuple):
         from .vectors import Kind
 
         told = Kind.of(self.space.template).told
-        return self.space.is_alike and all(wish.kind == "design" or wish.output in told for wish in self.wishes)
+        return self.space.is_alike and all(w.kind in ("design", "every") or w.output in told for w in self.wishes)
 
     def residuals(self, values):
         """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""
@@ -51,6 +52,9 @@ class Misfit(NamedTuple):
         """``(what is predicted, residuals)`` at points u (n, p); ``near``: that of points beside."""
         dear = self.is_dear and not self._is_followed(near)
         found = predict(self.space, self.wishes, u, choice, accuracy, thorough or dear, near=near)
+        if self.left_out is not None and np.any(found.falls):
+            self.left_out.append(True)
+            found = found._replace(values=np.where(found.falls, np.nan, found.values))
         return found, self.residuals(found.values)
 
     def _is_followed(self, near):

@@ -10,27 +10,35 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..status import INVALID, OK
+from ..status import INVALID, OK, VALUED
 from .freedom import Space
 from .wishes import HELD
+
+UNKNOWN, UNSTABLE, STABLE = -1, 0, 1  # of a state; vectors do not tell it of physical tubes that are held bent
 
 
 class Predicted(NamedTuple):
     """Values (n, wishes) in SI units and degrees, NaN where there is no state; bounds of their errors; status; the middle's
-    radius [m] where vectors tell it; and which fiber families are slack in some state, or would have
-    to push (n,).
+    radius [m] where vectors tell it; whether states are STABLE; and which fiber families are slack in some state, or would
+    have to push (n,).
     """
 
     values: np.ndarray
     bounds: np.ndarray
     status: np.ndarray
     middles: np.ndarray
+    stable: np.ndarray
     slack: np.ndarray
 
     def held(self, wishes, states) -> dict:
         """Held state -> (load, the middle's radius), (2, n), of those of the ``wishes``."""
         own = [k for k, wish in enumerate(wishes) if wish.output in HELD]
         return {states[k]: np.array([self.values[:, k], self.middles[:, k]]) for k in own}
+
+    @property
+    def falls(self):
+        """Which of the states (n, wishes) that are there are known to be unstable."""
+        return (self.stable == UNSTABLE) & np.isin(self.status, VALUED)
 
     def part(self, where):
         """Some of the designs."""
@@ -68,14 +76,17 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False
 
     shape, accuracy = (len(u), len(wishes)), space.accuracy(accuracy)
     found = Predicted(
-        *np.full((2, *shape), np.nan), np.full(shape, INVALID), np.full(shape, np.nan), np.zeros(len(u), np.int8)
-    )
+        *np.full((2, *shape), np.nan), np.full(shape, INVALID), np.full(shape, np.nan), np.full(shape, STABLE, np.int8),
+        np.zeros(len(u), np.int8),
+    )  # fmt: skip
     columns, states = space.columns(u, choice), [state_of(wish) for wish in wishes]
     for k, wish in enumerate(wishes):
         if wish.kind == "design":
             found.values[:, k], found.bounds[:, k], found.status[:, k] = columns[wish.output], 0.0, OK
     asked = {
-        state: [w.output for w, s in zip(wishes, states) if s == state] for state in states if state.kind != "design"
+        state: [w.output for w, s in zip(wishes, states) if s == state]
+        for state in states
+        if state.kind not in ("design", "every")
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # designs on the way are nobody's
@@ -91,5 +102,10 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False
         if state in answers:
             found.values[:, k], found.bounds[:, k] = answers[state][wish.output]
             found.status[:, k], found.middles[:, k] = answers[state]["status"], answers[state]["middle"]
+            found.stable[:, k] = answers[state]["stable"]
             found.slack[:] |= answers[state]["slack"]
+    falls = np.any(found.falls, axis=1)
+    for k, wish in enumerate(wishes):
+        if wish.kind == "every":
+            found.values[:, k], found.bounds[:, k], found.status[:, k] = ~falls, 0.0, OK
     return found

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..statics import inflate
 from .predict import state_of
-from .singles import solve_single
+from .singles import solve_single, states_of
 from .wishes import UNITS
 
 CANDIDATES, GOALS = 5, 2  # that are shown
@@ -72,11 +71,16 @@ def _curve(goal, tubes, loads):
 
 
 def _shapes(goals, tubes, loads):
-    asked = [p for goal in goals for p in _pressures(goal, loads)]
+    """In the state of the first goal that has a pressure: free, or held as it says."""
+    asked = [wish for goal in goals for wish in goal.wishes([]) if wish.kind in ("free", "force", "torque")]
+    asked = [wish for wish in asked if math.isfinite(dict(wish.conditions).get("pressure", 0.0))]
+    kind, conditions = (asked[0].kind, dict(asked[0].conditions)) if asked else ("free", {})
+    rest = tuple(item for item in conditions.items() if item[0] != "pressure")
     found = []
     for tube, own in zip(tubes, loads):
-        pressure = asked[0] if asked else own["pressure"]
-        state = inflate(tube, pressure, own["force"], own["torque"], accuracy=ROUGH)
+        given = own | conditions
+        state = states_of(tube, kind, rest, given["pressure"], given, None, accuracy=ROUGH)
         position, radius = state["axial_position"].values, state["deformed_radius"].values
-        found.append(Shape(pressure, position, radius, float(state["rotation"]), (tube.length, tube.fiber_surface)))
+        rotation = float(state["rotation"])
+        found.append(Shape(given["pressure"], position, radius, rotation, (tube.length, tube.fiber_surface)))
     return found

@@ -10,6 +10,7 @@ from ..holding import blocked_force, blocked_torque
 from ..statics import inflate, lock
 from ..status import INVALID, OK
 from .outputs import FOLLOWING, output
+from .predict import STABLE, UNSTABLE
 from .stiff import derivatives_for, stiffness_of
 from .vectors import HARDLY
 
@@ -26,19 +27,19 @@ def solve_singles(tubes, asked, columns, accuracy) -> dict:
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         rows = list(pool.map(one, range(len(tubes))))
-    none, unknown = {"status": INVALID, "slack": 0}, np.full(len(tubes), np.nan)
+    none, unknown = {"status": INVALID, "slack": 0, "stable": UNSTABLE}, np.full(len(tubes), np.nan)
     answers = {}
     for state, names in asked.items():
         own = [none | dict.fromkeys(names, (np.nan, np.nan)) if row is None else row[state] for row in rows]
         answers[state] = {name: tuple(np.array([each[name] for each in own], float).T) for name in names}
-        for name in ("status", "slack"):
+        for name in ("status", "slack", "stable"):
             answers[state][name] = np.array([each[name] for each in own], np.int8)
         answers[state]["middle"] = unknown
     return answers
 
 
 def solve_single(tube, asked, design, accuracy) -> dict:
-    """Of one tube: state -> "status", and output -> (value, bound); ``design`` has its numbers and loads."""
+    """Of one tube: state -> "status", "stable", "slack", and output -> (value, bound); ``design``: its numbers and loads."""
     answers, families = {}, {}
     for state in asked:
         rest = tuple((name, value) for name, value in state.conditions if name != "pressure")
@@ -65,6 +66,7 @@ def solve_single(tube, asked, design, accuracy) -> dict:
                     answers.setdefault(state, {})[name] = float(value[place]), float(bound[place])
         for state, place in zip(states, places):
             answers[state]["status"] = OK if kind == "limit" else int(numbers["status"][place])
+            answers[state]["stable"] = STABLE if kind == "limit" else int(numbers["stable"][place])
             answers[state]["slack"] = int(numbers["slack_fiber"][place]) if "slack_fiber" in numbers else 0
     return answers
 

@@ -15,6 +15,7 @@ from ..status import INVALID, NOT_CONVERGED, OK
 from .beside import Held, beside
 from .by_loads import hold_by_loads, straight_loads
 from .outputs import output
+from .predict import STABLE, UNKNOWN
 from .stiff import stiffness
 from .wishes import HELD, STIFF
 
@@ -25,7 +26,9 @@ TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tub
 OF_SOURCE = (*WORST, "limit_pressure", *STIFF)
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
 STRAIGHT = 1e-6  # strain in the middle: beside it a tube is straight, and leads to none that is not
+ONSET = 1e-2  # strain of the middle from which a state is looked for beside a straight one
 SUMMED = 1e-6  # accuracy that such sums have nearly always
+ROUGH = 1e-3  # of states beside which something else is asked
 
 
 class Kind(NamedTuple):
@@ -82,6 +85,7 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, nea
             limit = np.where(numbers["status"] == INVALID, INVALID, OK)
             answers[state]["slack"] = np.where(kind == "limit", 0, numbers["slack_fiber"]).astype(np.int8)
             answers[state]["status"] = limit if kind == "limit" else numbers["status"]
+            answers[state]["stable"] = numbers["stable"] if kind != "limit" else np.full(count, STABLE)
             answers[state]["middle"] = numbers["mid_radius"] if kind != "limit" else np.full(count, np.nan)
     return answers
 
@@ -107,7 +111,15 @@ def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
 
         if sure:
             return alone(points)
-        return _held(kind, points, own, near, accuracy, two, free, like, alone if thorough else None)
+
+        def stands(points):
+            return solve(KINDS[kind], points, own.energy, max(accuracy, ROUGH), thorough=False, **given)["stable"]
+
+        found = _held(kind, points, own, near, accuracy, two, free, like, alone if thorough else None)
+        straight = np.flatnonzero(np.isfinite(straight_loads(kind, points))) if two else []
+        if len(straight):
+            found["stable"][straight] = stands(points[straight])
+        return found
     if own.is_source:  # the few that vectors leave are not worth it that scalar kernels are compiled for them
         found = solve(KINDS[kind], points, own.energy, accuracy, thorough=False, along=True, **given)
     else:
@@ -126,8 +138,10 @@ def _held(kind, points, own, near, accuracy, two, free, like, alone):
     what both do not find.
     """
     (loads, radii), radius = near, points[:, COLUMNS.index("fiber_radius")]
-    known = np.flatnonzero((np.abs(radii / radius - 1.0) > STRAIGHT) & np.isnan(straight_loads(kind, points)))
-    pair = beside(Held(kind, points[known], own), loads[known], radii[known] / radius[known], accuracy)
+    stretch = radii / radius
+    known = np.flatnonzero(np.isfinite(loads) & np.isnan(straight_loads(kind, points)))
+    stretch = np.where(np.abs(stretch - 1.0) > STRAIGHT, stretch, 1.0 + ONSET)[known]  # what was straight will swell
+    pair = beside(Held(kind, points[known], own), loads[known], stretch, accuracy)
     met = np.isfinite(pair.load)
     rest = np.setdiff1d(np.arange(len(points)), known[met] if alone else known)
     others = hold_by_loads(kind, points[rest], free, like, alone, accuracy, two, loads[rest])
@@ -139,6 +153,7 @@ def _held(kind, points, own, near, accuracy, two, free, like, alone):
         "mid_radius": middle,
         "slack_fiber": pair.slack,
         "status": status,
+        "stable": np.full(len(known), UNKNOWN),
     }
     for name, array in found.items():
         array[known], array[rest] = own[name], others[name]

@@ -21,7 +21,7 @@ from .curve_file import columns_of, is_path
 FREE = {name: each.units for name, each in schema.VARIABLES.items() if each.without == schema.HELD}  # of a free state
 UNITS = FREE | {
     "force": "N", "torque": "N m", "stroke": "1", "length_change": "m", "limit_pressure": "Pa",
-    "stiffness": "N/m", "torsional_stiffness": "N m/degree",
+    "stiffness": "N/m", "torsional_stiffness": "N m/degree", "stable": "1",
 }  # fmt: skip
 CONDITIONS = {"pressure": "Pa", "force": "N", "torque": "N m", "deformed_length": "m", "rotation": "degree"}
 HELD = {
@@ -46,7 +46,9 @@ class Wish(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """One of "free", "locked", "force" or "torque" (held), "limit" or "design"."""
+        """One of "free", "locked", "force" or "torque" (held), "limit", "design" or "every" (of the states of others)."""
+        if self.output == "stable":
+            return "every"
         if self.output in DESIGN or self.output == "pressure":
             return "design"
         if self.output in HELD:
@@ -69,7 +71,8 @@ class _Asked:
         ``torque`` [N m] at a held rotation), or what follows from them: ``stroke`` (1 - deformed_length/length),
         ``length_change`` [m], ``outer_radius`` [m] (the largest of the deformed tube), ``limit_pressure`` [Pa],
         ``stiffness`` [N/m] and ``torsional_stiffness`` [N m/degree] of a free tube's end, or of one held at a
-        ``deformed_length`` or ``rotation`` that is given; or a parameter of the design
+        ``deformed_length`` or ``rotation`` that is given; ``stable``, 1 where every state that is wished for is, else 0; or
+        a parameter of the design
     value : the number wished for, or an array: a curve over arrays of the same length among the conditions; or the path of a
         CSV file (``pressure [kPa],deformed_length [mm],force [N]``): its columns are the output and conditions
     at_least, at_most, between : a range instead
@@ -164,7 +167,7 @@ class _Asked:
 
     def _conditions(self) -> tuple:
         """What may be said of a state with this output."""
-        if self.output in DESIGN or self.output == "pressure":
+        if self.output in (*DESIGN, "pressure", "stable"):
             return ()
         if self.output == "limit_pressure":
             return ("force", "torque")

@@ -19,6 +19,9 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
     count = int(np.sum(result["met"].values))
     if count:
         said = f"{count} of {len(u)} candidates meet every goal and keep every limit"
+        falling = int(np.sum(result["met"].values & (result["stable"].values == 0)))
+        if falling:
+            said += f"; in {falling} of them a state is unstable: the smallest disturbance ends it (stable)"
         pushing = int(np.sum(result["met"].values & (result["slack_fiber"].values > 0)))
         if pushing == 0 or misfit.space.template.is_loose:  # slack threads are none the worse
             return said

@@ -192,4 +192,4 @@ def _held(kind, rows, own, accuracy, followed, thorough):
     own = slice(hold_batch.OUTPUTS - 1, None)  # the stretch in the middle, and what is known along the tube
     values = np.column_stack([found.loads, found.states.values[:, own]])
     bounds = widened(values, np.column_stack([found.load_bounds, found.states.bounds[:, own]]), error)
-    return values, bounds, found.status, np.zeros(count, np.int64), found.stable
+    return values, bounds, found.status, found.states.slack, found.stable

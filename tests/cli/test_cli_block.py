@@ -66,7 +66,7 @@ def test_the_force_that_holds_another_length_under_a_torque(capsys):
     assert run(*MIXED, *LENGTH, "--pressure", "30 kPa", "--at", "12.9 cm", "--torque", "1 N mm") == DONE
     _, [row] = columns(capsys.readouterr().out)
     expected = blocked_force(tube(20, -50), 3e4, 0.129, 1e-3)
-    assert float(row[0]) == pytest.approx(expected["force"].item(), rel=1e-6)
+    assert float(row[0]) == pytest.approx(expected["force"].item(), rel=2e-6)
 
 
 def test_an_unstable_cylinder_is_called_so_and_the_buckled_state_is_not(capsys):

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import freesweep as fs
+from freesweep.inverse import freedom
 from freesweep.inverse.beside import Held, beside, load_slopes
+from freesweep.inverse.predict import predict
 from freesweep.inverse.vectors import Kind
 from freesweep.query.reference import COLUMNS
 
@@ -60,3 +62,20 @@ def test_beside_what_is_far_away_is_nothing():
     found = beside(held, np.array([1e9, np.nan]), np.array([30.0, 1.1]), 1e-6)
     assert np.isnan(found.load).all()
     assert np.isnan(found.middle).all()
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")  # of thick walls
+@pytest.mark.parametrize("alpha", [54.6, 53.0])
+def test_a_tube_that_no_longer_stays_straight_is_found_beside_one_that_does(alpha):
+    """From 54.74 degrees on all its threads pull as it is undeformed; below, one family is slack and the other swells it."""
+    design = {"alpha": 55.0, "beta": 34.289, "length": 0.05586, "radius": 5.2675e-3, "wall": 1.3048e-3}
+    wishes = fs.Goal("torque", 0.0, pressure=128506.0).wishes([])
+    space, choice = freedom.read(tube(design), {"alpha": (50.0, 60.0)}, []), np.zeros(1, int)
+    straight = predict(space, wishes, space.point(np.array([55.0]))[None], choice, 1e-7, thorough=False)
+    assert np.isfinite(straight.values.item())
+    assert np.isnan(straight.middles.item())
+    found = predict(space, wishes, space.point(np.array([alpha]))[None], choice, 1e-7, thorough=False, near=straight)
+    value, bound, middle = alone(design | {"alpha": alpha}, "torque", 128506.0)
+    assert abs(found.values.item() - value) <= bound + found.bounds.item()
+    assert found.middles.item() == pytest.approx(middle, rel=1e-4)
+    assert middle > 1.001 * (design["radius"] + design["wall"])

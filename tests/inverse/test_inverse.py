@@ -17,6 +17,7 @@ from freesweep.cli import main
 from freesweep.inverse import look, wish_file
 from freesweep.inverse.least import beaten
 from freesweep.inverse.predict import State
+from freesweep.inverse.shown import shown
 from freesweep.inverse.singles import solve_single
 from freesweep.inverse.wishes import Wish
 from freesweep.sweep.spec import parse
@@ -462,6 +463,19 @@ def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, cap
     assert {"alpha [degree]", "radius [m]", "rotation at pressure 100000 Pa", "python"} <= set(rows[0])
     assert len({len(row) for row in rows}) == 1
     assert picture.stat().st_size > 20_000
+
+
+def test_shapes_are_shown_in_the_state_that_is_asked_for():
+    """Of a held rotation: undeformed, by hand; of a held length: as long as that."""
+    template, loads = tube(30.0, -50.0), {}
+    for goal, length, rotation in (
+        (fs.Goal("torque", 0.1, pressure=5e4), 0.15, 0.0),
+        (fs.Goal("force", 1.0, pressure=5e4, deformed_length=0.145), 0.145, None),
+        (fs.Goal("rotation", 1.0, pressure=5e4), None, fs.inflate(template, 5e4, x=0.0)["rotation"].item()),
+    ):
+        _, (shape,) = shown(loads, [template], [goal])
+        assert length is None or shape.position[-1] == pytest.approx(length, rel=1e-6)
+        assert rotation is None or shape.rotation == pytest.approx(rotation, rel=1e-4)
 
 
 def test_a_wish_file_lists_every_fault(tmp_path, capsys):

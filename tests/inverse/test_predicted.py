@@ -44,7 +44,7 @@ def test_vectors_tell_what_one_tube_at_a_time_tells(kind):
         if kind == "source" and ("tension" in wish.output or wish.output in WORST):
             close += SAMPLED * abs(value)
         assert abs(found.values[0, k] - value) <= close, wish.title
-        assert found.bounds[0, k] <= (3e-3 if "tension" in wish.output else 1e-5) * max(abs(value), 1e-2), wish.title
+        assert found.bounds[0, k] <= (5e-3 if "tension" in wish.output else 1e-5) * max(abs(value), 1e-2), wish.title
 
 
 def test_the_largest_stretch_of_a_source_s_tube_is_told_from_its_middle():
@@ -185,3 +185,29 @@ def test_candidates_that_do_it_are_made_sure_of_on_their_own_way(monkeypatch):
     assert not found["met"].any()
     assert asked == [(found.sizes["candidate"], False), (1, True)]
     assert found.attrs["summary"].startswith("none of the designs that were looked at does it")
+
+
+# angles apart by five degrees, and swollen four and six times: no quick way from rest leads vectors there
+SWOLLEN = [
+    ({"alpha": 77.84364, "beta": 72.74, "length": 0.2388795, "radius": 0.01135674, "wall": 3.873622e-4}, 105e3, "volume"),
+    ({"alpha": 58.85298, "beta": 63.3148, "length": 0.1138253, "radius": 0.01006925, "wall": 4.926953e-4}, 62564.0,
+     "mid_radius"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("design", "pressure", "output"), SWOLLEN)
+def test_slopes_of_swollen_tubes_are_known_from_their_middles(design, pressure, output):
+    """As differences of the public functions tell them."""
+    tube = fs.Actuator(**design, material=RUBBER, model="source")
+    wishes = fs.Goal(output, 0.0, pressure=pressure).wishes([])
+    space = freedom.read(tube, {"beta": (60, 80), "wall": (3e-4, 6e-4)}, [])
+    u, choice = space.point(np.array([tube.beta, tube.wall]))[None], np.zeros(1, int)
+    assert np.isnan(predict(space, wishes, u, choice, 1e-9, thorough=False).values).all()
+    found = predict(space, wishes, u, choice, 1e-9)
+    slopes = exact_slopes(space, wishes, u, choice, found.values, found.middles)[0, 0]
+    step = 1e-4
+    for k in range(2):
+        ends = np.repeat(u, 2, axis=0)
+        ends[:, k] += [step, -step]
+        values = predict(space, wishes, ends, np.zeros(2, int), 1e-9).values[:, 0]
+        assert slopes[k] == pytest.approx((values[0] - values[1]) / (2 * step), rel=2e-3)
