@@ -51,7 +51,8 @@ class Calibration:
     notes : what a reader has to know, in sentences
     profile_intervals : (p, 2) at 95 % from the profile likelihood: other parameters are fitted anew at each value
     fits : whether the residuals look like noise; where they do not, intervals are widened for it, ``widening`` times (p,)
-    leave_one_out : root mean square misfit by quantity of curves left out of the fit in turn (NaN: one curve only)
+    leave_one_out : root mean square misfit by quantity of curves, each by a fit to all others (NaN: one curve only, or these
+        do not tell the parameters)
     hysteresis : half of what parts the branches of loops, root mean square, by quantity
     dead_length, threshold_pressure : of the bench [m, Pa]
     quantile : Student's, of the intervals; ``parameters`` : how theta becomes actuators
@@ -215,7 +216,7 @@ def _fitted(asked):
             sigma[problem.quantity == name] = scatter
         if settled:
             break
-    return _result(problem, theta, sigma, rows, unknown, asked.notes)
+    return _result(problem, theta, home, sigma, rows, unknown, asked.notes)
 
 
 def _span(measured):
@@ -280,7 +281,7 @@ def _effects(problem, derivative, rows):
     return effects
 
 
-def _result(problem, theta, sigma, rows, unknown, notes):
+def _result(problem, theta, home, sigma, rows, unknown, notes):
     from scipy.stats import t as student
 
     parameters = problem.parameters
@@ -295,7 +296,7 @@ def _result(problem, theta, sigma, rows, unknown, notes):
     scaled, condition = covariance_of(slopes, theta, effects)
     weighed = (residuals / sigma)[rows]
     chi_square = float(weighed @ weighed + np.sum(((theta - parameters.mean) * known) ** 2)) / freedom
-    judged = judge(problem, theta, residuals, derivative, sigma, active, unknown, chi_square, freedom)
+    judged = judge(problem, theta, home, residuals, derivative, sigma, rows, active, unknown, chi_square, freedom)
     freedom = judged.freedom
     values = parameters.values(theta)
     each, whole = np.full(len(theta), float(freedom)), scaled

@@ -2,8 +2,8 @@
 
 Noise scatters from one state of a curve to the next; what a model lacks bends along the curve. Within each curve a low
 polynomial takes what bends; what is left is noise, or what replicates and loops say of it. The test is Fisher's: bends
-over noise. A second one counts runs of one sign. Leaving curves out needs no new fits: to first order, a curve k that the
-fit did not see is missed by ``(1 - H_kk)^-1 r_k``, H the hat matrix.
+over noise. A second one counts runs of one sign. How parameters change when a curve k is left out needs no new fits: to
+first order it is then missed by ``(1 - H_kk)^-1 r_k``, H the hat matrix. By how much it is missed does: a fit may move far.
 """
 
 from typing import NamedTuple
@@ -29,17 +29,17 @@ class Judged(NamedTuple):
     notes: tuple
 
 
-def judge(problem, theta, residuals, derivative, sigma, active, unknown, chi_square, freedom) -> Judged:
-    """Judge a fit by its residuals and their derivative (values, p)."""
+def judge(problem, theta, home, residuals, derivative, sigma, rows, active, unknown, chi_square, freedom) -> Judged:
+    """Judge a fit of the ``rows`` that count by its residuals and their derivative (values, p)."""
     curve, along = _curves(problem)
     weighed, slopes = residuals / sigma, derivative / sigma[:, None]
     known = np.diag(1.0 / problem.parameters.sigma)
     left = _left_out(weighed, slopes, known, curve, active)
-    missed = {}
+    missed, unseen = {}, _unseen(problem, theta, home, sigma, rows, curve, active)
     for name in dict.fromkeys(problem.quantity.tolist()):
         own = active & (problem.quantity == name)
-        some = left.residuals[own] * sigma[own]
-        missed[name] = float(np.sqrt(np.mean(some**2))) if own.any() and left.curves > 1 else np.nan
+        some = unseen[own & np.isfinite(unseen)]
+        missed[name] = float(np.sqrt(np.mean(some**2))) if len(some) else np.nan
     reasons = _reasons(problem, residuals, sigma, curve, along, active, unknown, chi_square, freedom, len(theta))
     largest = max((np.max(np.abs(problem.measured[problem.quantity == n]), initial=0.0) for n in missed), default=1.0)
     if not reasons or np.max(np.abs(residuals[active]), initial=0.0) <= NO_NOISE * largest:
@@ -57,6 +57,21 @@ def judge(problem, theta, residuals, derivative, sigma, active, unknown, chi_squ
     return Judged(False, widening, own, missed, (sentence,))
 
 
+def _unseen(problem, theta, home, sigma, rows, curve, active):
+    """Residuals (values,) of each curve by a fit to all others; NaN where these do not tell the parameters."""
+    found, known = np.full(len(curve), np.nan), int(np.isfinite(problem.parameters.sigma).sum())
+    for k in np.unique(curve[active]):
+        others = rows & (curve != k)
+        if not others.any() or others.sum() + known < len(theta):
+            continue
+        other = problem.solve(theta, home, sigma, others)
+        own = curve == k
+        found[own] = problem.residuals(*problem.model(other))[own]
+    problem.model(theta)
+    problem.predictor.refresh(problem.parameters.setups(theta))
+    return found
+
+
 def _curves(problem):
     """Number of the curve of each value (values,), over all measurements and quantities, and the place along it."""
     curve, along, count = [], [], 0
@@ -72,28 +87,25 @@ def _curves(problem):
 
 
 class _Left(NamedTuple):
-    residuals: np.ndarray
     covariance: np.ndarray
     jackknife: np.ndarray  # standard errors (p,) by leaving out curves
-    curves: int
 
 
 def _left_out(weighed, slopes, known, curve, active):
-    """Residuals (values,) of curves that the fit did not see, and how the parameters then change."""
+    """How the parameters change where a curve is left out, to first order."""
     normal = slopes[active].T @ slopes[active] + known**2
     scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
     covariance = np.linalg.pinv(normal / np.outer(scale, scale), hermitian=True, rcond=1e-12) / np.outer(scale, scale)
-    found, changes = np.full(len(weighed), np.nan), []
+    changes = []
     for k in np.unique(curve[active]):
         own = np.flatnonzero(active & (curve == k))
         hat = slopes[own] @ covariance @ slopes[own].T
         left = np.linalg.lstsq(np.eye(len(own)) - hat, weighed[own], rcond=1e-9)[0]
-        found[own] = left
         changes.append(covariance @ slopes[own].T @ left)
     count = len(changes)
     changes = np.array(changes) if count else np.zeros((1, slopes.shape[1]))
     jackknife = np.sqrt((count - 1.0) / max(count, 1) * np.sum((changes - changes.mean(axis=0)) ** 2, axis=0))
-    return _Left(found, covariance, jackknife, count)
+    return _Left(covariance, jackknife)
 
 
 def _reasons(problem, residuals, sigma, curve, along, active, unknown, chi_square, freedom, parameters):
