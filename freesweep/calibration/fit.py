@@ -51,8 +51,7 @@ class Calibration:
     notes : what a reader has to know, in sentences
     profile_intervals : (p, 2) at 95 % from the profile likelihood: other parameters are fitted anew at each value
     fits : whether the residuals look like noise; where they do not, intervals are widened for it, ``widening`` times (p,)
-    leave_one_out : root mean square misfit by quantity of curves, each by a fit to all others (NaN: one curve only, or these
-        do not tell the parameters)
+    leave_one_out : root mean square misfit by quantity of curves, each by a fit to all others (NaN: there are none)
     hysteresis : half of what parts the branches of loops, root mean square, by quantity
     dead_length, threshold_pressure : of the bench [m, Pa]
     quantile : Student's, of the intervals; ``parameters`` : how theta becomes actuators
