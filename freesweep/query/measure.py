@@ -11,7 +11,7 @@ from ..scaling import ACCURACIES
 from ..status import NOT_CONVERGED, VALUED
 from . import calibration, errors, exact
 from .answer import Inquiry
-from .calibrate import calibrate, piece_scales
+from .calibrate import calibrate, cell_factors, piece_scales
 from .family import FAMILIES, FAMILY_OF
 from .query import Reader
 from .reference import ALPHA, BETA
@@ -19,7 +19,8 @@ from .refine import solved_states, told_of
 from .table import MUCH, TOGETHER
 
 SEED = 20260101
-MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
+MOST, EACH = 40_000, 40  # designs: at most, and one for so many nodes
+FEW, LEAST, FOR_EACH = 6_000, 10_000, 2  # at least, and at least of more than a few nodes, so many for each
 BODIES = 500, 2_000  # at least and at most of bodies, each of which is followed along and solved by itself
 HELD_SHARE = 2  # held states cost more: so much fewer designs
 SHARPER = (1e-2, 0.1, 1.0)  # accuracies of the exact solutions, relative to the atlas': the first that vectors reach
@@ -43,8 +44,9 @@ def measured(data, designs=None) -> dict:
     reader = Reader(data)
     if not reader.frame.in_numbers:
         return {}
-    least, most = (LEAST, MOST) if reader.frame.bodies is None else BODIES
-    count = designs or int(np.clip(data["status"].size // EACH, least, most))
+    nodes, of_bodies = data["status"].size, reader.frame.bodies is not None
+    least, most = BODIES if of_bodies else (int(np.clip(FOR_EACH * nodes, FEW, LEAST)), MOST)
+    count = designs or int(np.clip(nodes // EACH, least, most))
     kinds = {}  # of states that are solved: their families
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data and FAMILY_OF[name] == key]
@@ -147,8 +149,10 @@ def _family(reader, key, names, inquiry, solve):
             if where.any():
                 pick = where[places] & good & np.isfinite(error)  # what was solved
                 rows[region] = _row(int(where.sum()), answered[where].mean(), error[pick], stated[pick], size[pick])
-        axes = {axis.name: row.tolist() for axis, row in zip(table.axes, factors.scales) if np.any(row != 1.0)}
+        of_axes = zip(table.axes, table.ranks, factors.scales)
+        axes = {axis.name: row[: own.max() + 1].tolist() for axis, own, row in of_axes if np.any(row != 1.0)}
         found = {"factors": factors.classes.tolist(), "bound": factors.bound, "scales": axes}
+        found |= {"cells": factors.cells.tolist()} if len(factors.cells) else {}
         results[name] = found | {"regions": rows}
     return float(answered.mean()), results
 
@@ -162,8 +166,10 @@ def _compare(inquiry, name, places, exact, solved, interpolated, tolerance):
     allowed = tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
     error = np.where(solved, np.abs(value - exact), np.inf)
     factors = calibrate(error, estimate, bound, size, beside, allowed)._replace(scales=scales)
+    stated, cell = errors.stated(factors, estimate, bound, size, beside), inquiry.cell[places]
+    factors = factors._replace(cells=cell_factors(error, stated, cell, inquiry.table.size))
     inquiry.table.forget(name)
-    return error, errors.stated(factors, estimate, bound, size, beside), size, allowed, factors
+    return error, errors.stated(factors, estimate, bound, size, beside, cell), size, allowed, factors
 
 
 def _regions(inquiry):
