@@ -23,6 +23,7 @@ MOST, EACH = 40_000, 40  # designs: at most, and one for so many nodes
 FEW, LEAST, FOR_EACH = 6_000, 10_000, 2  # at least, and at least of more than a few nodes, so many for each
 BODIES = 500, 2_000  # at least and at most of bodies, each of which is followed along and solved by itself
 HELD_SHARE = 2  # held states cost more: so much fewer designs
+DOUBTFUL = 0.1  # of the allowed error: how much an exact number may leave open of itself
 SHARPER = (1e-2, 0.1, 1.0)  # accuracies of the exact solutions, relative to the atlas': the first that vectors reach
 REGIONS = ("I", "IIa", "IIb")
 
@@ -131,7 +132,8 @@ def _family(reader, key, names, inquiry, solve):
             places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
             exact = told_of(reader, key, [name], states)
             solved = np.isin(exact[FAMILIES[key].answer_status][places], VALUED)
-            return _compare(inquiry, name, places, exact[name][places], solved, interpolated, reader.tolerance)
+            own = exact[name][places], exact[f"{name}_error"][places]
+            return _compare(inquiry, name, places, *own, solved, interpolated, reader.tolerance)
 
         kept = dict(zip(names, pool.map(compare, names)))
     table.release()
@@ -157,14 +159,19 @@ def _family(reader, key, names, inquiry, solve):
     return float(answered.mean()), results
 
 
-def _compare(inquiry, name, places, exact, solved, interpolated, tolerance):
-    """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared."""
+def _compare(inquiry, name, places, exact, open_of_exact, solved, interpolated, tolerance):
+    """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared.
+
+    Where the ``exact`` number itself leaves much open of what is allowed, as of tensions at clamped ends, that is no error
+    of the atlas.
+    """
     scales = piece_scales(inquiry, name, interpolated, places, np.where(solved, exact, np.nan))
     value, estimate, bound, beside = inquiry.estimate(name, scales, interpolated)
     size = inquiry.natural_size(name, value)[places]
     value, estimate, bound, beside = value[places], estimate[places], bound[places], beside[places]
     allowed = tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
-    error = np.where(solved, np.abs(value - exact), np.inf)
+    left_open = np.where(open_of_exact > DOUBTFUL * allowed, open_of_exact, 0.0)
+    error = np.where(solved, np.maximum(np.abs(value - exact) - left_open, 0.0), np.inf)
     factors = calibrate(error, estimate, bound, size, beside, allowed)._replace(scales=scales)
     stated, cell = errors.stated(factors, estimate, bound, size, beside), inquiry.cell[places]
     factors = factors._replace(cells=cell_factors(error, stated, cell, inquiry.table.size))
