@@ -159,6 +159,7 @@ def _family(reader, key, names, inquiry, solve):
     return float(answered.mean()), results
 
 
+@np.errstate(all="ignore")  # where there is no number there is nothing to compare
 def _compare(inquiry, name, places, exact, open_of_exact, solved, interpolated, tolerance):
     """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared.
 
