@@ -8,6 +8,7 @@ import math
 import struct
 import zlib
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from io import SEEK_END
 from itertools import product
 
@@ -143,6 +144,17 @@ class AtlasWriter:
         self.store.flush()
         self.file.check()
         return netcdf.dataset(self.file.temporary)
+
+    @contextmanager
+    def misread(self):
+        """What netCDF4 cannot read of the :meth:`dataset`, which it was told to write, is the disk's fault."""
+        try:
+            yield
+        except RuntimeError as error:
+            if "NetCDF" not in str(error):
+                raise
+            self.file.check()
+            raise self.file.misread() from None
 
     def describe(self, attrs):
         """Add attributes of the atlas: name -> text."""

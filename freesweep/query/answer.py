@@ -137,7 +137,8 @@ class Inquiry:
         """
         bubble = 4.0 * self.shares[places] * (1.0 - self.shares[places])
         scale = scales[np.arange(scales.shape[0]), self.ranks[places]]
-        return np.where(bubble > 0.0, known[:, ROUGH:] * bubble * scale, 0.0)  # on a node the unknown says nothing
+        with np.errstate(invalid="ignore"):  # on a node the unknown says nothing
+            return np.where(bubble > 0.0, known[:, ROUGH:] * bubble * scale, 0.0)
 
     def _restored(self, name, places, effects, rest, noise):
         """``(value, estimate, bound)`` at some places, (k,) each, from end effects, what they lack and their bounds."""
@@ -160,7 +161,7 @@ class Inquiry:
     def _as_stored(self, name, factors):
         """The same by the order of the families in the table."""
         value, estimate, bound, beside = self.estimate(name, factors.scales)
-        error = errors.stated(factors, estimate, bound, self.natural_size(name, value), beside)
+        error = errors.stated(factors, estimate, bound, self.natural_size(name, value), beside, self.cell)
         if self.exact.any():
             at = self.node[self.exact]
             value[self.exact], error[self.exact] = self.table.stored(name)[at], self.table.errors(name)[at]

@@ -1,8 +1,9 @@
 """One axis of an atlas as the kernels take it: a coordinate in which the physics is smooth, and weights at its nodes.
 
 Cubic Hermite pieces between the nodes, with slopes from the five nearest ones (fourth order): once continuously
-differentiable, local, and a ninth of the error of cubics through four nodes. The coordinate is the square root of a
-pressure (end layers give P^1.5 near zero), the logarithm of a size, else the value itself.
+differentiable, local, and a ninth of the error of cubics through four nodes. Nodes that lie far off for the pieces at hand
+say little of a slope and may spoil it. The coordinate is the square root of a pressure (end layers give P^1.5 near zero),
+the logarithm of a size, else the value itself.
 """
 
 from dataclasses import dataclass, replace
@@ -10,8 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 WINDOW = 6  # nodes that a piece knows
-SLOPE = 5  # nodes that a slope knows
+SLOPE = 5  # nodes that a slope knows at most
+FEWEST = 4  # and at least, however far they lie
+ROUNDING = 1e-9  # of widths: equal pieces are that far from equal
 SQRT, LOG, LINEAR, LABEL = 0, 1, 2, 3
+# how far off they may lie, in pieces as the wider one beside the slope's node: along pressures and angles tubes change
+# from one kind to another, along sizes what the ends add has no such places, and all five nodes pay at the ends, too
+FAR = {SQRT: 3.0, LINEAR: 3.0, LOG: 4.0}
 SIZES = ("length", "radius", "wall", "fiber_radius", "c10")
 
 
@@ -80,18 +86,13 @@ def make_axis(name: str, values) -> Axis:
     for i in range(count - 1):
         places = np.arange(first[i], first[i] + window)
         width = nodes[i + 1] - nodes[i]
-        left[i, :window] = width * _slope(nodes, i, places)
-        right[i, :window] = width * _slope(nodes, i + 1, places)
+        left[i, :window] = width * _slope(nodes, i, places, FAR[kind])
+        right[i, :window] = width * _slope(nodes, i + 1, places, FAR[kind])
         middle = 0.125 * (left[i] - right[i])
         middle[i - first[i] : i - first[i] + 2] += 0.5
-        best = np.zeros(WINDOW)
-        best[:window] = lagrange(nodes[places], nodes[i] + 0.5 * width)
-        if window <= SLOPE:  # slopes know all nodes, there is no better: what would be without the farthest one?
-            far = np.argmax(np.abs(nodes[places] - nodes[i] - 0.5 * width))
-            others = np.delete(np.arange(window), far)
-            best[:] = 0.0
-            best[others] = lagrange(nodes[places[others]], nodes[i] + 0.5 * width)
-        remainder[i] = best - middle
+        remainder[i, :window] = (
+            _better(nodes[places], i - first[i], left[i, :window], right[i, :window]) - middle[:window]
+        )
     return Axis(name, values, kind, nodes, first, left, right, remainder)
 
 
@@ -125,27 +126,37 @@ def part_of(axis: Axis, start, stop) -> Axis:
     return replace(part, first=first, left=weights[0], right=weights[1], remainder=weights[2])
 
 
-def ranks(axis: Axis) -> np.ndarray:
-    """Which of calibration.RANKS each piece of an axis is; (n,). One with a bend is two."""
-    count = len(axis.nodes)
-    return np.concatenate([_ranks(axis.bend + 1)[:-1], _ranks(count - axis.bend)]) if axis.bend else _ranks(count)
+def _better(x, here, left, right):
+    """Weights of nodes ``x`` in the middle of the piece from the one ``here`` to the next: of a polynomial of another order
+    than what the slopes at its ends, with these weights, make of them.
+
+    It knows all nodes but the farthest. What knows as many on either side tells nothing of an error where the fourth
+    derivative is zero, as if there were no fifth.
+    """
+    known = np.stack([left, right]) != 0.0
+    known[:, here : here + 2] = True
+    middle = 0.5 * (x[here] + x[here + 1])
+    kept = np.ones(len(x), bool)
+    if known.all() or (known[0] != known[1]).any():  # else both slopes may know just those: nothing would be told
+        kept[np.argmax(np.abs(x - middle))] = False
+    weights = np.zeros(len(x))
+    weights[kept] = lagrange(x[kept], middle)
+    return weights
 
 
-def _ranks(count):
-    piece = np.arange(count)
-    from_end = count - 2 - piece
-    return np.where((piece < 2) & (piece <= from_end), piece, np.where(from_end < 2, np.minimum(4 - from_end, 4), 2))
-
-
-def _slope(nodes, i, places):
-    """Weights, one for each of ``places``, of the slope at node i from the nodes nearest to it."""
+def _slope(nodes, i, places, far):
+    """Weights, one for each of ``places``, of the slope at node i from the nodes nearest to it, up to ``far`` pieces off."""
     count = min(SLOPE, len(nodes))
     start = min(max(i - count // 2, 0), len(nodes) - count)
     near = np.arange(start, start + count)
+    away = np.abs(nodes[near] - nodes[i])
+    beside = np.diff(nodes[max(i - 1, 0) : i + 2]).max()
+    kept = away <= np.maximum(far * (1.0 + ROUNDING) * beside, np.sort(away)[min(FEWEST, count) - 1])
+    near = near[kept]
     weights = np.zeros(len(places))
-    x, here = nodes[near], i - start
-    for j in range(count):
-        others = [k for k in range(count) if k != j]
+    x, here = nodes[near], int(np.flatnonzero(near == i)[0])
+    for j in range(len(near)):
+        others = [k for k in range(len(near)) if k != j]
         if j == here:
             weight = np.sum(1.0 / (x[here] - x[others]))
         else:

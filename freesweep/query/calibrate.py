@@ -5,11 +5,9 @@ import functools
 import numpy as np
 
 from . import calibration, errors
-from .calibration import CLASSES, CLEAR, LYING, RANKS
-from .cells import ROUGH
+from .calibration import CLASSES, CLEAR, LYING, MOST_CELLS, RANKS
 from .family import TOLD_FROM
 from .reference import MID_RADIUS
-from .spline import RANK
 
 BEYOND = 4e-4  # share of the designs of a class that may need more than its factor
 FEW = 200.0  # factors go beyond what was seen, the more the fewer designs were seen
@@ -18,9 +16,14 @@ ENOUGH, LEAST = 500, 200  # designs of a class that speak for it; of all classes
 SMALLEST = 0.03  # of all factors
 SHARES = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)  # of stored bounds, from which the sharpest is taken
 ALONE = 0.6  # share of an estimate with which one axis makes it
-HIGH = 0.95  # quantile of errors over estimates that is made equal among the pieces of the axes
-SPEAK = 50  # designs of a piece that speak for it
-WIDEST = 10.0  # largest scale, and the smallest's inverse
+HIGH = 0.97  # quantile of errors over estimates that is made one on all pieces of the axes
+SPEAK = 100  # designs of a piece that speak for it
+SPEAK_IN_CELL, IN_CELL = (
+    30,
+    15.0,
+)  # designs of a cell that speak for it, and so many that would miss half of what it needs
+ROUNDS = 3  # of finding those; more change little
+WIDEST = 1e3  # largest scale, and the smallest's inverse
 PLAIN = 1.0  # of the bound: below it, what was stored wrongly would pass for what the next order adds
 
 
@@ -87,28 +90,52 @@ def _quantile(numbers, share):
 
 
 def piece_scales(inquiry, name, interpolated, places, exact):
-    """Scales (d, RANKS) of what the next order would add, so that errors reach the same share of it on all pieces.
+    """Scales (d, RANKS) of what the next order would add, so that errors reach up to it on each piece of each axis.
 
-    ``interpolated`` at all points of the inquiry; ``exact`` (k,) solutions at ``places``, NaN where there is none.
+    ``interpolated`` at all points of the inquiry; ``exact`` (k,) solutions at ``places``, NaN where there is none. A piece
+    is told from the designs whose estimate it makes almost alone; which these are hangs on the scales.
     """
     table = inquiry.table
     scales = np.ones((len(table.axes), RANKS))
     value, estimate, bound, beside = (array[places] for array in inquiry.estimate(name, scales, interpolated))
-    pieces, shares = inquiry.pieces[places], inquiry.shares[places]
-    parts = interpolated[1][places][:, ROUGH:] * (shares * (1.0 - shares))
+    parts = inquiry.rests(interpolated[1][places], scales, places)
+    whole = parts.sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.abs(value - exact) / estimate
-        alone = parts > ALONE * parts.sum(axis=1, keepdims=True)
-    use = np.isfinite(ratio) & (beside == CLEAR) & (estimate > PLAIN * bound)
+        error = np.abs(value - exact) * whole / estimate  # as an end effect's
+    use = np.isfinite(error) & (beside == CLEAR) & (estimate > PLAIN * bound) & (whole > 0.0)
     summed = table.family.variables[name] != MID_RADIUS and name not in TOLD_FROM
     if use.sum() < SPEAK or not summed:  # an estimate that is no sum over axes
         return scales
-    usual = _quantile(ratio[use & alone.any(axis=1)], HIGH) if (use & alone.any(axis=1)).any() else 0.0
-    for a in range(len(table.axes)):
-        ranks = table.knots[a, pieces[:, a], RANK]
-        for rank in range(RANKS):
-            mine = ratio[use & alone[:, a] & (ranks == rank)]
-            if len(mine) >= SPEAK and usual > 0.0:
-                scale = np.clip(_quantile(mine, HIGH) / usual, 1.0 / WIDEST, WIDEST)
-                scales[a, rank] = float(f"{scale:.3g}")
-    return scales
+    error, parts, ranks = error[use], parts[use], inquiry.ranks[places][use]
+    rows = np.arange(len(table.axes))
+    for _ in range(ROUNDS):
+        own = parts * scales[rows, ranks]
+        whole = own.sum(axis=1)
+        ratio = error / whole
+        usual = _quantile(ratio, HIGH)
+        if usual == 0.0:
+            break
+        change = np.full(scales.shape, usual)
+        for a in rows:
+            alone = np.flatnonzero(own[:, a] > ALONE * whole)
+            alone = alone[np.argsort(ranks[alone, a], kind="stable")]
+            edges = np.searchsorted(ranks[alone, a], np.arange(RANKS + 1))
+            for rank in np.flatnonzero(np.diff(edges) >= SPEAK):
+                change[a, rank] = _quantile(ratio[alone[edges[rank] : edges[rank + 1]]], HIGH)
+        scales = np.clip(scales * change, 1.0 / WIDEST, WIDEST)
+    return np.array([[float(f"{scale:.3g}") for scale in row] for row in scales])
+
+
+def cell_factors(error, stated, cell, nodes):
+    """What share of ``stated`` errors (n,) those of the designs in each ``cell`` (n,) need, with a margin: (nodes,), all
+    of it where too few designs speak; (0,) for tables of more than a few ``nodes``.
+    """
+    if nodes > MOST_CELLS or len(error) < LEAST:
+        return np.empty(0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        needed = np.where(error > 0.0, error / stated, 0.0)
+    found, many = np.zeros(nodes), np.bincount(cell, minlength=nodes)
+    np.maximum.at(found, cell, needed)
+    margin = 1.0 + IN_CELL / np.sqrt(np.maximum(many, 1))
+    found = np.where(many >= SPEAK_IN_CELL, np.clip(found * margin, SMALLEST, 1.0), 1.0)
+    return np.array([float(f"{share:.3g}") for share in found])

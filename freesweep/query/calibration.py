@@ -3,8 +3,8 @@
 The estimate is what the next order would add, and a share of the bounds of what is stored, which hold but are far from
 sharp. Where the grid resolves the physics well it is sharp; where not, it falls short by factors that the measurement finds:
 one for each decade of the estimate relative to the value, where all nodes that tell it are there, where some are holes, as
-those on the other side of where fibers go slack, and where most is told from what fills these. The ends of an axis have
-scales of their own, measured as well.
+those on the other side of where fibers go slack, and where most is told from what fills these. Each piece of an axis has a
+scale of its own, measured as well: where nodes are too few says nothing of where they are not.
 """
 
 import json
@@ -14,23 +14,31 @@ import numpy as np
 
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
-ESTIMATES = 6  # which estimates were measured: of others, factors say nothing
+ESTIMATES = 7  # which estimates were measured: of others, factors say nothing
 DEFAULT_TOLERANCE = 1e-4
 DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
 CLASSES = len(DECADES) + 1
-RANKS = 5  # of the pieces of an axis: the first, the next, those between, the last but one, the last
+MOST_CELLS = 1000  # nodes of a table at most whose cells have factors of their own
+RANKS = 100  # of the pieces of an axis at most: of longer ones some beside each other share one
 CLEAR, NEAR_HOLES, FILLED = range(LYING := 3)  # told from nodes that are there; not all; more from what was put in
 UNMEASURED = 12.0  # factor of an atlas that was not measured, or of a class with too few samples
 
 
 class Factors(NamedTuple):
-    """Of one variable: ``classes`` (LYING, CLASSES), by how it lies to holes, the share of stored ``bound`` that counts, and
-    ``scales`` (d, RANKS) of what the next order would add.
+    """Of one variable: ``classes`` (LYING, CLASSES), by how it lies to holes, the share of stored ``bound`` that counts,
+    ``scales`` (d, RANKS) of what the next order would add, and what share ``cells`` (nodes,) of a small table need of all
+    that; (0,) where none has its own.
     """
 
     classes: np.ndarray
     bound: float
     scales: np.ndarray
+    cells: np.ndarray = np.empty(0)
+
+
+def ranks(count) -> np.ndarray:
+    """Which rank the pieces of an axis with ``count`` nodes have, (count,)."""
+    return (np.arange(count) * min(1.0, RANKS / count)).astype(int)
 
 
 def cautious(count) -> Factors:
@@ -38,16 +46,20 @@ def cautious(count) -> Factors:
     return Factors(np.full((LYING, CLASSES), UNMEASURED), 1.0 / UNMEASURED, np.ones((count, RANKS)))
 
 
-def factors(data, name, axes=()) -> Factors:
-    """What was measured of one variable over ``axes``, by their names; else cautious numbers."""
+def factors(data, name, axes=(), nodes=0) -> Factors:
+    """What was measured of one variable over ``axes``, by their names, with so many ``nodes``; else cautious numbers."""
     found = read(data).get("variables", {})
     try:
         found = found[name]
         numbers, share = np.array(found["factors"], float), float(found["bound"])
-        scales = np.array([found["scales"].get(axis, [1.0] * RANKS) for axis in axes], float).reshape(-1, RANKS)
-        shapes = numbers.shape == (LYING, CLASSES) and scales.shape == (len(axes), RANKS)
-        if shapes and np.all(numbers > 0.0) and share > 0.0 and np.all(scales > 0.0):
-            return Factors(numbers, share, scales)
+        scales = np.ones((len(axes), RANKS))
+        for own, axis in zip(scales, axes):
+            known = found["scales"].get(axis, [])
+            own[: len(known)] = known
+        cells = np.array(found.get("cells", []), float)
+        sound = numbers.shape == (LYING, CLASSES) and share > 0.0 and len(cells) in (0, nodes)
+        if sound and all(np.all(each > 0.0) for each in (numbers, scales, cells)):
+            return Factors(numbers, share, scales, cells)
     except (AttributeError, KeyError, TypeError, ValueError):
         pass
     return cautious(len(axes))

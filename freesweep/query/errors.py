@@ -7,12 +7,13 @@ from .calibration import DECADES
 EDGES = 10.0**DECADES  # of the classes, relative to the value
 
 
-def stated(factors, estimate, bound, size, beside):
+def stated(factors, estimate, bound, size, beside, cell=None):
     """Stated errors (n,) from estimates of the interpolation and bounds of what was stored; ``beside``: how they lie to
-    holes.
+    holes; ``cell`` (n,): in which they lie.
     """
     total = estimate + factors.bound * bound
-    return factors.classes[np.asarray(beside, int), classes(total, size)] * total
+    found = factors.classes[np.asarray(beside, int), classes(total, size)] * total
+    return found * factors.cells[cell] if len(factors.cells) else found
 
 
 def classes(estimate, size) -> np.ndarray:

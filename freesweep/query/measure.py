@@ -11,7 +11,7 @@ from ..scaling import ACCURACIES
 from ..status import NOT_CONVERGED, VALUED
 from . import calibration, errors, exact
 from .answer import Inquiry
-from .calibrate import calibrate, piece_scales
+from .calibrate import calibrate, cell_factors, piece_scales
 from .family import FAMILIES, FAMILY_OF
 from .query import Reader
 from .reference import ALPHA, BETA
@@ -19,9 +19,11 @@ from .refine import solved_states, told_of
 from .table import MUCH, TOGETHER
 
 SEED = 20260101
-MOST, LEAST, EACH = 40_000, 10_000, 40  # designs: at most, at least, and one for so many nodes
+MOST, EACH = 40_000, 40  # designs: at most, and one for so many nodes
+FEW, LEAST, FOR_EACH = 6_000, 10_000, 2  # at least, and at least of more than a few nodes, so many for each
 BODIES = 500, 2_000  # at least and at most of bodies, each of which is followed along and solved by itself
 HELD_SHARE = 2  # held states cost more: so much fewer designs
+DOUBTFUL = 0.1  # of the allowed error: how much an exact number may leave open of itself
 SHARPER = (1e-2, 0.1, 1.0)  # accuracies of the exact solutions, relative to the atlas': the first that vectors reach
 REGIONS = ("I", "IIa", "IIb")
 
@@ -43,8 +45,9 @@ def measured(data, designs=None) -> dict:
     reader = Reader(data)
     if not reader.frame.in_numbers:
         return {}
-    least, most = (LEAST, MOST) if reader.frame.bodies is None else BODIES
-    count = designs or int(np.clip(data["status"].size // EACH, least, most))
+    nodes, of_bodies = data["status"].size, reader.frame.bodies is not None
+    least, most = BODIES if of_bodies else (int(np.clip(FOR_EACH * nodes, FEW, LEAST)), MOST)
+    count = designs or int(np.clip(nodes // EACH, least, most))
     kinds = {}  # of states that are solved: their families
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data and FAMILY_OF[name] == key]
@@ -129,7 +132,8 @@ def _family(reader, key, names, inquiry, solve):
             places = np.flatnonzero(inquiry.valued & ~inquiry.exact)
             exact = told_of(reader, key, [name], states)
             solved = np.isin(exact[FAMILIES[key].answer_status][places], VALUED)
-            return _compare(inquiry, name, places, exact[name][places], solved, interpolated, reader.tolerance)
+            own = exact[name][places], exact[f"{name}_error"][places]
+            return _compare(inquiry, name, places, *own, solved, interpolated, reader.tolerance)
 
         kept = dict(zip(names, pool.map(compare, names)))
     table.release()
@@ -147,23 +151,33 @@ def _family(reader, key, names, inquiry, solve):
             if where.any():
                 pick = where[places] & good & np.isfinite(error)  # what was solved
                 rows[region] = _row(int(where.sum()), answered[where].mean(), error[pick], stated[pick], size[pick])
-        axes = {axis.name: row.tolist() for axis, row in zip(table.axes, factors.scales) if np.any(row != 1.0)}
+        of_axes = zip(table.axes, table.ranks, factors.scales)
+        axes = {axis.name: row[: own.max() + 1].tolist() for axis, own, row in of_axes if np.any(row != 1.0)}
         found = {"factors": factors.classes.tolist(), "bound": factors.bound, "scales": axes}
+        found |= {"cells": factors.cells.tolist()} if len(factors.cells) else {}
         results[name] = found | {"regions": rows}
     return float(answered.mean()), results
 
 
-def _compare(inquiry, name, places, exact, solved, interpolated, tolerance):
-    """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared."""
+@np.errstate(all="ignore")  # where there is no number there is nothing to compare
+def _compare(inquiry, name, places, exact, open_of_exact, solved, interpolated, tolerance):
+    """``(error, stated error, size, allowed error, factors)`` of one variable at ``places`` (k,) where it is compared.
+
+    Where the ``exact`` number itself leaves much open of what is allowed, as of tensions at clamped ends, that is no error
+    of the atlas.
+    """
     scales = piece_scales(inquiry, name, interpolated, places, np.where(solved, exact, np.nan))
     value, estimate, bound, beside = inquiry.estimate(name, scales, interpolated)
     size = inquiry.natural_size(name, value)[places]
     value, estimate, bound, beside = value[places], estimate[places], bound[places], beside[places]
     allowed = tolerance * (10.0 if inquiry.is_loose(name) else 1.0) * size
-    error = np.where(solved, np.abs(value - exact), np.inf)
+    left_open = np.where(open_of_exact > DOUBTFUL * allowed, open_of_exact, 0.0)
+    error = np.where(solved, np.maximum(np.abs(value - exact) - left_open, 0.0), np.inf)
     factors = calibrate(error, estimate, bound, size, beside, allowed)._replace(scales=scales)
+    stated, cell = errors.stated(factors, estimate, bound, size, beside), inquiry.cell[places]
+    factors = factors._replace(cells=cell_factors(error, stated, cell, inquiry.table.size))
     inquiry.table.forget(name)
-    return error, errors.stated(factors, estimate, bound, size, beside), size, allowed, factors
+    return error, errors.stated(factors, estimate, bound, size, beside, cell), size, allowed, factors
 
 
 def _regions(inquiry):

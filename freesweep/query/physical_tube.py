@@ -49,6 +49,8 @@ PULLS, ENOUGH = 30, 1e-10  # Newton's steps for the resultant, three are usual; 
 FAR = 8.0  # of the stretch: balloons are past their limit long before
 LEAST = 1e-6  # of G, where fibers leave nothing
 MISSING = 1e-5  # of G, what a slack family lacks: below it, the stored state's own end decides otherwise
+HALVED = 5  # times the way between two places, to find where a tension is least
+LEFT = 0.25**HALVED  # of what lies between places
 TOLD = 4  # numbers of :func:`worst_places`
 MOONEY_RIVLIN, YEOH = (C01,), (C01, C20, C30)
 
@@ -289,18 +291,34 @@ def worst_at(y, constant, cell, load, outside, out):
 
 
 @kernel
+def sought_between(i, y_middle, constant, cell, load, outside, seen, most, at):
+    """What is worst of the i-th number, ``most[i]``, and at which share of the way to the middle, ``at[i]``: sought on
+    either side of the place that it was found at, ever nearer.
+    """
+    step = 1.0 / PLACES
+    for _ in range(HALVED):
+        step, centre = 0.5 * step, at[i]
+        for side in (-1.0, 1.0):
+            share = centre + side * step
+            if 0.0 <= share <= 1.0:
+                worst_at(1.0 + (y_middle - 1.0) * share, constant, cell, load, outside, seen)
+                if seen[i] > most[i]:
+                    most[i], at[i] = seen[i], share
+
+
+@kernel
 def seen_again(y_middle, at, cell, load, outside, seen, most):
     """The worst of a tube whose middle is a little off, into ``most`` (TOLD,): at both ends, and where it was worst, ``at``
-    (TOLD,).
+    (TOLD,), shares of the way to the middle.
     """
     constant = uniform_tube(y_middle, cell, load)[2]
     for n in range(-2, TOLD):
-        j = at[n] if n >= 0 else (n + 2) * PLACES
-        new = n < 0 or 0 < j < PLACES
+        share = at[n] if n >= 0 else n + 2.0
+        new = n < 0 or 0.0 < share < 1.0
         for i in range(n):
-            new = new and at[i] != j
+            new = new and at[i] != share
         if new:
-            worst_at(1.0 + (y_middle - 1.0) * j / PLACES, constant, cell, load, outside, seen)
+            worst_at(1.0 + (y_middle - 1.0) * share, constant, cell, load, outside, seen)
             for i in range(TOLD):
                 most[i] = max(most[i], seen[i]) if n > -2 else seen[i]
 
@@ -318,7 +336,7 @@ def worst_places(points, mid_radius, beside, thick, loose, columns, out, missed)
     the middle (n,) [m], from the clamped ends on, and of those ``beside`` (n, 2): (n, 3, TOLD); and what the first may miss
     between the places looked at, (n, TOLD).
     """
-    seen, most, doubt, at = np.empty((3, TOLD)), np.empty(TOLD), np.empty(TOLD), np.empty(TOLD, np.int64)
+    seen, most, doubt, at = np.empty((3, TOLD)), np.empty(TOLD), np.empty(TOLD), np.empty(TOLD)
     for k in range(len(points)):
         point, r = points[k], points[k, FIBERS]
         cell, load = problem(point, thick, loose, columns)
@@ -340,7 +358,11 @@ def worst_places(points, mid_radius, beside, thick, loose, columns, out, missed)
                 here, last, before = seen[now, i], seen[now - 1, i], seen[now - 2, i]
                 doubt[i] = max(doubt[i], 0.125 * abs(here - 2.0 * last + before)) if j > 1 else 0.0
                 if j == 0 or here > most[i]:
-                    most[i], at[i] = here, j
+                    most[i], at[i] = here, j / PLACES
+        for i in range(2, TOLD):  # tensions, which may be least just before the middle
+            if most[i] < 0.0:
+                doubt[i] *= LEFT
+                sought_between(i, y_middle, constant, cell, load, outside, seen[(PLACES + 1) % 3], most, at)
         write_told(most, r, tension, out[k, 0])
         for i in range(TOLD):
             inside = most[i] > seen[PLACES % 3, i] and (loose == 0.0 or i < 2 or most[i] < 0.0)

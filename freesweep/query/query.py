@@ -1,5 +1,6 @@
 """What an atlas answers at any point: numbers with their stated error, or the status that says why there is none."""
 
+import math
 import os
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
@@ -58,8 +59,9 @@ class Reader:
         """What was measured of one variable's stated errors."""
         if name not in self._factors:
             names = list(self.frame.axes_of(FAMILIES[FAMILY_OF[name]].variables))
-            axes = names + [""] * (2 - sum(axis != "design" for axis in names))  # the kernels' own
-            self._factors[name] = calibration.factors(self.data, name, axes)
+            padding = max(0, 2 - sum(axis != "design" for axis in names))  # axes of the kernels' own
+            nodes = math.prod(len(self.frame.values[axis]) for axis in names) << padding
+            self._factors[name] = calibration.factors(self.data, name, names + [""] * padding, nodes)
         return self._factors[name]
 
     def attributes(self, name) -> dict:

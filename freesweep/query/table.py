@@ -10,7 +10,8 @@ import numpy as np
 from ..atlas.schema import VARIABLES
 from ..status import INACCURATE, OK
 from . import reference
-from .axis import LABEL, WINDOW, bent, make_axis, part_of, ranks
+from .axis import LABEL, WINDOW, bent, make_axis, part_of
+from .calibration import ranks
 from .cells import Cells
 from .family import SLACK_FLAGS, TOLD_FROM, family_of
 from .grid import GridPoints, GridStates
@@ -51,11 +52,11 @@ class Table:
         self.names = frame.axes_of(self.family.variables)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
         whole = self._whole_axes()
-        self.ranks = [ranks(axis)[slice(*self.box[axis.name])] for axis in whole]
+        self.ranks = [ranks(len(axis.nodes))[slice(*self.box[axis.name])] for axis in whole]
         self.axes = [part_of(axis, *self.box[axis.name]) for axis in whole]
         self.padding = max(0, 2 - sum(axis.kind != LABEL for axis in self.axes))
         none = [make_axis(f"none {k}", [0.0, 1.0]) for k in range(self.padding)]
-        self.axes, self.ranks = self.axes + none, self.ranks + [ranks(axis) for axis in none]
+        self.axes, self.ranks = self.axes + none, self.ranks + [ranks(len(axis.nodes)) for axis in none]
         self.shape = np.array([len(axis.nodes) for axis in self.axes], np.int64)
         self.strides = np.array([int(np.prod(self.shape[k + 1 :])) for k in range(len(self.shape))], np.int64)
         self.size = int(np.prod(self.shape))

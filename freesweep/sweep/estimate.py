@@ -14,7 +14,8 @@ from .shard_file import MOST_KEPT
 
 BASE_MEMORY = 400_000_000  # [bytes] of the program, its kernels and what is solved at the time
 DESIGN_MEMORY = 80  # [bytes] of each design while a plan is made
-LEAST_MEASURED, MOST_MEASURED = 5_000, 15_000_000  # points of an atlas that measures itself
+LEAST_MEASURED, MOST_MEASURED = 2, 15_000_000  # points of an atlas that measures itself
+LEAST_OF_BODIES = 5_000  # the same of bodies, each of which is followed for it
 MEASURING, POINT_MEMORY = 200_000_000, 110  # [bytes] of its kernels, and of each point in a table
 TWO_TABLES = 5_000_000  # points up to which it makes two at a time
 SHRINKS = 0.9  # of the numbers when they are compressed, at least
@@ -38,7 +39,8 @@ def grids(sweep) -> dict:
 
 def is_measured(sweep) -> bool:
     """Whether the atlas compares its answers between the nodes with exact ones when it is made."""
-    return LEAST_MEASURED <= sweep.points <= MOST_MEASURED
+    least = LEAST_OF_BODIES if sweep.is_of_bodies else LEAST_MEASURED
+    return least <= sweep.points <= MOST_MEASURED
 
 
 def memory(sweep) -> int:

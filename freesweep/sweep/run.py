@@ -256,7 +256,8 @@ def _write(sweep, tables, records, out, attrs, needed, threads, progress, overwr
             with writer.dataset() as data, ThreadPoolExecutor(1) as aside:
                 if look:
                     aside.submit(look, data)
-                found = measure(data)
+                with writer.misread():
+                    found = measure(data)
             writer.describe(found)
         writer.publish(replace=overwrite)
 

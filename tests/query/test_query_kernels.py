@@ -5,7 +5,8 @@ import pytest
 
 from freesweep import Actuator, MooneyRivlin, closed_form, inflate
 from freesweep.query import reference, spline
-from freesweep.query.axis import bent, make_axis, ranks
+from freesweep.query.axis import bent, make_axis
+from freesweep.query.calibration import UNMEASURED
 from freesweep.query.doubts import doubts_at
 from freesweep.query.missing_nodes import fill
 from freesweep.query.slack import UNKNOWN, slack_families
@@ -73,14 +74,14 @@ THREE = [
 ]
 
 
-def test_slopes_beside_the_numbers_are_exact_for_quartics_and_come_from_the_nodes_beside_where_one_lacks():
+def test_slopes_beside_the_numbers_are_exact_for_cubics_and_come_from_the_nodes_beside_where_one_lacks():
     a, b, m = np.meshgrid(*(axis.nodes for axis in THREE), indexing="ij")
-    values = (1.0 + a) * (b**4 - m**4 + b * m**2)
+    values = (1.0 + a) * (b**3 - m**3 + b * m**2)
     table, windows, _ = knots(THREE)
     shape, found = np.array(values.shape), np.empty(4 * values.size)
     tabulate(values.ravel(), table, windows, shape, found)
     own = found.reshape(*values.shape, 4)
-    exact = values, (1.0 + a) * (2.0 * b * m - 4.0 * m**3), (1.0 + a) * (4.0 * b**3 + m**2), (1.0 + a) * 2.0 * m
+    exact = values, (1.0 + a) * (2.0 * b * m - 3.0 * m**2), (1.0 + a) * (3.0 * b**2 + m**2), (1.0 + a) * 2.0 * m
     for k, array in enumerate(exact):
         np.testing.assert_allclose(own[..., k], array, rtol=1e-10, atol=1e-9)
     values[2, 0, 0] = np.nan
@@ -128,13 +129,12 @@ def test_no_window_reaches_across_a_bend():
         gap = np.abs(middle - np.abs(between) * (1.0 + 0.3 * between**2)).max()
         assert gap < worst
     assert gap > 0.01
-    assert ranks(axis).tolist() == [0, 1, 2, 2, 2, 2, 2, 2, 3, 4, 0, 1, 2, 2, 2, 2, 2, 2, 3, 4, 4]
     assert bent(plain, 0.5) is plain
     assert bent(plain, 8.0) is plain  # too few nodes beyond
 
 
 @pytest.mark.parametrize("count", [17, 33])
-def test_slopes_are_of_fourth_order_and_the_remainder_is_the_error(count):
+def test_slopes_are_of_fourth_order_and_the_remainder_is_about_the_error(count):
     nodes = np.linspace(0.0, 2.0, count)
     axis = make_axis("force", nodes)
     values = np.sin(3.0 * nodes)
@@ -145,7 +145,7 @@ def test_slopes_are_of_fourth_order_and_the_remainder_is_the_error(count):
         middle = 0.5 * (values[i] + values[i + 1]) + 0.125 * (axis.left[i] - axis.right[i]) @ window
         error = np.sin(3.0 * (nodes[i] + 0.5 * width)) - middle
         scale = (3.0 * width) ** 4 / 384.0
-        assert abs(axis.remainder[i] @ window - error) < (0.1 + 1.8 * width) * scale
+        assert abs(axis.remainder[i] @ window - error) < 2.0 * scale
 
 
 def test_holes_are_filled_by_the_polynomial_of_their_neighbours():
@@ -289,9 +289,20 @@ def test_slack_fibers_follow_from_the_stretch_in_the_middle():
     assert len(set(expected.tolist())) > 2
 
 
+def test_a_node_far_off_spoils_no_slope():
+    """A tube that snaps between two pressures far below the others says nothing of these."""
+    near = np.array([50e3, 60e3, 75e3, 90e3, 110e3])
+    alone, beside = make_axis("pressure", near), make_axis("pressure", [10.0, *near])
+    assert beside.first[1] == 0  # the window reaches there, the slopes of all but the nearest piece do not
+    np.testing.assert_allclose(beside.left[3:5, 1:6], alone.left[2:4, :5], atol=1e-12)
+    np.testing.assert_allclose(beside.right[2:5, 1:6], alone.right[1:4, :5], atol=1e-12)
+    assert (beside.left[3:5, 0] == 0.0).all()
+    assert (np.abs(beside.remainder[:5]).sum(axis=1) > 1e-3).all()  # something is told of the error everywhere
+
+
 @pytest.mark.parametrize("count", [3, 4, 5])
-def test_where_slopes_know_all_nodes_the_estimate_is_no_less_than_the_error(count):
-    """In the middle of each piece; a cubic through all but the farthest node is what it is told from."""
+def test_where_nodes_are_few_what_is_stated_without_a_measurement_is_no_less_than_the_error(count):
+    """In the middle of each piece; a polynomial through all but the farthest node is what it is told from."""
     axis = make_axis("torque", np.linspace(0.0, 1.0, count))
     for function in (lambda x: np.exp(1.5 * x), lambda x: 1.0 / (1.0 + x)):
         values, middles = function(axis.nodes), 0.5 * (axis.nodes[1:] + axis.nodes[:-1])
@@ -300,4 +311,4 @@ def test_where_slopes_know_all_nodes_the_estimate_is_no_less_than_the_error(coun
             slopes = (axis.left[i] - axis.right[i])[: axis.window] @ near
             told = 0.5 * (values[i] + values[i + 1]) + 0.125 * slopes
             estimate = abs(axis.remainder[i, : axis.window] @ near)
-            assert 0.0 < abs(told - function(middle)) < estimate
+            assert 0.0 < abs(told - function(middle)) < UNMEASURED * estimate
