@@ -55,12 +55,11 @@ def table(dataset, shown=SHOWN) -> str:
     if "limit_found" in dataset and bool(dataset["limit_found"]):
         lines.append(f"limit pressure: {dataset['limit_pressure'].item() * press:.6g} {pascal}")
     if bool((dataset["slack_fiber"] > 0).any()):
-        loose = dataset.attrs.get("fibers") == "loose"
-        lines.append(
-            "slack: a fiber family hangs loose somewhere, and carries nothing there"
-            if loose
-            else "slack: the state relies on a fiber family that would have to push somewhere; fibers cannot"
-        )
+        sentences = {
+            "slack": "a fiber family hangs loose somewhere, and carries nothing there",
+            "would push": "the state relies on a fiber family that would have to push somewhere; fibers cannot",
+        }
+        lines.append(f"{_word_of(dataset)}: {sentences[_word_of(dataset)]}")
     if any("unstable" in row[-1] for row in rows):
         lines.append("unstable: an equilibrium that the smallest disturbance makes the tube leave")
     if not all(int(value) in VALUED for value in dataset["status"].values.ravel()):
@@ -80,9 +79,15 @@ def number(value, error):
     return f"{value:.7g}"
 
 
+def _word_of(results):
+    """What families without a pull do: loose ones go slack, bonded ones are asked to push."""
+    return "slack" if results.attrs.get("fibers") == "loose" else "would push"
+
+
 def _flags(state):
     """Slack fibers and instability, in words."""
-    slack = ("", ", alpha fibers slack", ", beta fibers slack", ", fibers slack")[int(state["slack_fiber"])]
+    which, word = ("", "alpha ", "beta ", "")[flag := int(state["slack_fiber"])], _word_of(state)
+    slack = f", {which}fibers {word}" if flag else ""
     return slack + (", unstable" if int(state["status"]) in VALUED and not int(state["stable"]) else "")
 
 

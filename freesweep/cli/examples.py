@@ -34,7 +34,7 @@ EXAMPLES = {
     ),
     "freesweep export": (
         'freesweep export quick.nc -o slice.csv --variable rotation --at "length=100 mm" "radius=4.76 mm" beta=-40',
-        'freesweep export curves.nc --to c --variable blocked_force --at design=muscle pressure="50 kPa:150 kPa:21"',
+        "freesweep export curves.nc --to c --variable blocked_force --at design=muscle",
     ),
     "freesweep explore": ("freesweep explore quick.nc", "freesweep explore quick.nc --html explorer.html"),
     "freesweep lock": (f"freesweep lock {TUBE}",),

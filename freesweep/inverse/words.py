@@ -36,7 +36,7 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
     wish = wishes[worst]
     said = (
         f"{NONE} does it; the nearest one has {wish.title} of {values[worst]:.6g}"
-        f" {unit_of(wish.output)} instead of {_range(wish)}"
+        f"{_unit(wish.output)} instead of {_range(wish)}"
     )
     if np.isnan(values[worst]):
         state = "no state was found" if result["status"].values[0] == NOT_CONVERGED else "there is no state"
@@ -50,7 +50,7 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
         if other != worst and missed[other] > 0.0 and size > 0.0 and a @ b < FIGHT * size:
             same = f", {_range(wishes[other])}" if wishes[other].title == wish.title else ""
             return f"{said}: it fights with {wishes[other].title}{same}"
-    held = [f"{name} at {end:g} {unit_of(name)}" for name, end, _ in _stopping(misfit, u[0], pulls[worst])]
+    held = [f"{name} at {end:g}{_unit(name)}" for name, end, _ in _stopping(misfit, u[0], pulls[worst])]
     if not held:
         return said
     return f"{said}: the bounds {', '.join(held)} stop it{_bought(misfit, u[0], pulls[worst], worst)}"
@@ -73,7 +73,7 @@ def _bought(misfit, u, pulls, worst):
     amount = round_amount(SHARE * (space.high[i] - space.low[i]))
     won = abs(pulls[i]) * misfit.tolerances[worst] * amount / (space.high[i] - space.low[i])
     more = "more" if u[i] >= 1.0 else "less"
-    return f"; {amount:g} {unit_of(name)} {more} of {name} would buy {won:.3g} {unit_of(wish.output)}"
+    return f"; {amount:g}{_unit(name)} {more} of {name} would buy {won:.3g}{_unit(wish.output)}"
 
 
 def prices(result, wishes, names) -> str:
@@ -86,16 +86,14 @@ def prices(result, wishes, names) -> str:
     costs = [result[f"{group}_price"].values[0] for group in ("goal", "limit") if f"{group}_price" in result]
     for (title, output, level), price in zip(held, np.concatenate(costs)):
         amount = round_amount(SHARE * level)
-        found.append(
-            (abs(price) * amount, f"{amount:g} {unit_of(output)} {'less' if price > 0 else 'more'} of {title}")
-        )
+        found.append((abs(price) * amount, f"{amount:g}{_unit(output)} {'less' if price > 0 else 'more'} of {title}"))
     for name, price, end in zip(names, result["bound_price"].values[0], _ends(result, names)):
         if name == objective.output:
             continue  # that goes without saying
         amount = round_amount(SHARE * abs(end))
-        found.append((abs(price) * amount, f"{amount:g} {unit_of(name)} {'less' if price > 0 else 'more'} of {name}"))
-    unit, least = unit_of(objective.output), NOTHING * abs(result["objective"].values[0, 0])
-    words = [f"{what} would save {won:.2g} {unit}" for won, what in sorted(found, reverse=True) if won > least]
+        found.append((abs(price) * amount, f"{amount:g}{_unit(name)} {'less' if price > 0 else 'more'} of {name}"))
+    unit, least = _unit(objective.output), NOTHING * abs(result["objective"].values[0, 0])
+    words = [f"{what} would save {won:.2g}{unit}" for won, what in sorted(found, reverse=True) if won > least]
     return f"least {objective.title}: {'; '.join(words)}" if words else ""
 
 
@@ -122,12 +120,17 @@ def unit_of(name) -> str:
     return UNITS.get(name) or PARAMETERS[name.partition("[")[0]].units
 
 
+def _unit(name):
+    """What stands behind a number of that name: its unit, if it has one."""
+    return "" if unit_of(name) == "1" else f" {unit_of(name)}"
+
+
 def _range(wish):
-    unit = unit_of(wish.output)
+    unit = _unit(wish.output)
     if wish.low == wish.high:
-        return f"{wish.low:g} {unit}"
+        return f"{wish.low:g}{unit}"
     if np.isinf(wish.high):
-        return f"at least {wish.low:g} {unit}"
+        return f"at least {wish.low:g}{unit}"
     if np.isinf(wish.low):
-        return f"at most {wish.high:g} {unit}"
-    return f"{wish.low:g} to {wish.high:g} {unit}"
+        return f"at most {wish.high:g}{unit}"
+    return f"{wish.low:g} to {wish.high:g}{unit}"
