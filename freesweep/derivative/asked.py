@@ -15,7 +15,7 @@ from .table import Held, rows_of
 from .vectors import differentiated
 
 SHARE, IN_VECTORS = 0.01, 0.1  # of the accuracy asked for: what bounds of derivatives have to meet, scaled
-TURNS, SETTLED = 4, 1e-10  # of finding the load that holds in vectors, relative
+TURNS = 4  # of finding the load that holds in vectors
 UNSTRAINED = 1e-9  # of sizes: what a cylinder may differ by from itself
 
 
@@ -70,10 +70,12 @@ class Asked:
         if self.unknown is None:
             return under(loads, self.seeds)
         for _ in range(TURNS):
-            value, slope = self.holding.at(under(loads, self.seeds[:1])[0])
-            loads, before = loads | {self.unknown: loads[self.unknown] + (target - value) / slope}, loads[self.unknown]
-            if not np.any(np.abs(loads[self.unknown] - before) > SETTLED * np.abs(before)):
+            rows, bounds = under(loads, self.seeds[:1])
+            value, slope = self.holding.at(rows)
+            off = np.abs(target - value) > self.holding.at(bounds)[0]
+            if not np.any(off):
                 break
+            loads = loads | {self.unknown: loads[self.unknown] + np.where(off, (target - value) / slope, 0.0)}
         return self.holding.table(loads[self.unknown], *under(loads, self.seeds))
 
     def cylinders(self, loads, target, known):
