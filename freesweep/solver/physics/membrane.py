@@ -275,7 +275,7 @@ def scales(outputs, cell, load, length, tolerance):
     longer = abs(gg * gg * cell[0] * cell[0] - cell[1] * cell[1]) * wrong  # G_y/2 there
     larger = longer * volume / length
     by_turn = max(0.5, abs(turn))  # half a tube: half a radian
-    by_energy = max(energy, 1e-9 * work)
+    by_energy = max(abs(energy), 1e-9 * work)  # that of a Yeoh wall which softens may be negative
     by_load = max(abs(load.p), max(abs(load.f), abs(load.m)))
     return (length, volume, by_turn, by_energy, 1.0, by_load), (
         share * length + longer,
