@@ -59,7 +59,7 @@ def table(dataset, shown=SHOWN) -> str:
             "slack": "a fiber family hangs loose somewhere, and carries nothing there",
             "would push": "the state relies on a fiber family that would have to push somewhere; fibers cannot",
         }
-        lines.append(f"{_word_of(dataset)}: {sentences[_word_of(dataset)]}")
+        lines.append(f"{(word := _word_of(dataset))}: {sentences[word]}")
     if any("unstable" in row[-1] for row in rows):
         lines.append("unstable: an equilibrium that the smallest disturbance makes the tube leave")
     if not all(int(value) in VALUED for value in dataset["status"].values.ravel()):

@@ -153,15 +153,15 @@ def _newton_passes(repeats):
     from ..solver.lanes.vector import WIDTH
     from ..solver.physics import membrane
     from .flops import density_flops
-    from .lane_pass import EXTRA as OF_VECTORS
-    from .lane_pass import lane_place_time
+    from .lane_density import EXTRA as OF_VECTORS
+    from .lane_density import lane_density_time
     from .peak import EXTRA, cell_time, peak
 
     density, most = density_flops(membrane), peak(repeats=repeats)
     found = []
     for designs, flops, seconds in (
         (1, density + EXTRA, cell_time(repeats)),
-        (WIDTH, density + OF_VECTORS, lane_place_time(repeats)),
+        (WIDTH, density + OF_VECTORS, lane_density_time(repeats)),
     ):
         found.append(
             {"designs": designs, "flops_per_cell": flops, "seconds_per_cell": seconds, "peak_flops_per_second": most}

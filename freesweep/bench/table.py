@@ -47,14 +47,15 @@ def _with_error(row):
 
 
 def _passes(costs):
-    """What a Newton pass costs, against the machine's peak."""
+    """What a Newton pass costs, and the density in vectors, against the machine's peak."""
     most = costs[0]["peak_flops_per_second"]
-    lines = [f"a Newton pass, beside this core's multiply-add peak of {most / 1e9:.1f} Gflop/s"]
+    peak = f"this core's multiply-add peak of {most / 1e9:.1f} Gflop/s"
+    lines = [f"a Newton pass on meshes, and the density in vectors, beside {peak}"]
     for cost in costs:
         name = "one design" if cost["designs"] == 1 else f"{cost['designs']} designs"
         rate = cost["flops_per_cell"] / cost["seconds_per_cell"]
         lines.append(
-            f"  {name:<20}{1e9 * cost['seconds_per_cell']:.2f} ns a cell and design, {cost['flops_per_cell']} flops:"
+            f"  {name:<20}{1e9 * cost['seconds_per_cell']:.2f} ns a cell or place, {cost['flops_per_cell']} flops:"
             f" {rate / 1e9:.1f} Gflop/s, {100 * cost['share_of_peak']:.1f} % of the peak"
         )
     return lines

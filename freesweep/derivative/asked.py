@@ -69,14 +69,15 @@ class Asked:
 
         if self.unknown is None:
             return under(loads, self.seeds)
+        rows, bounds = under(loads, self.seeds)
         for _ in range(TURNS):
-            rows, bounds = under(loads, self.seeds[:1])
             value, slope = self.holding.at(rows)
             off = np.abs(target - value) > self.holding.at(bounds)[0]
             if not np.any(off):
                 break
             loads = loads | {self.unknown: loads[self.unknown] + np.where(off, (target - value) / slope, 0.0)}
-        return self.holding.table(loads[self.unknown], *under(loads, self.seeds))
+            rows, bounds = under(loads, self.seeds)
+        return self.holding.table(loads[self.unknown], rows, bounds)
 
     def cylinders(self, loads, target, known):
         """As :meth:`states`, of those that stay undeformed, by their ``known`` outputs (outputs, n); NaN of the others."""

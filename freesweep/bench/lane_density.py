@@ -13,7 +13,7 @@ EXTRA = 6  # flops of a place beside its density: its derivatives are added up
 
 
 @kernel
-def lane_passes(count, y, columns, total):
+def lane_densities(count, y, columns, total):
     """That many times the density at all places."""
     cell = (get(columns, 0), get(columns, 1), get(columns, 2))
     load = Load(
@@ -26,9 +26,9 @@ def lane_passes(count, y, columns, total):
             put(total, 0, get(total, 0) + (room + L_y + L_v + L_yy + L_yv + L_vv))
 
 
-def lane_place_time(repeats=5) -> float:
+def lane_density_time(repeats=5) -> float:
     """Seconds for the density of one design at one place, in vectors."""
     y, columns, total = aligned(1, CELLS)[0], aligned(1, 10)[0], aligned(1, 1)[0]
     y[:] = 1.0 + 0.2 * (1.0 - np.exp(-np.linspace(0.0, 10.0, CELLS)))[:, None]
     columns[:] = np.array([*TUBE, LOAD[0], RUBBER[0], *LOAD[2], *LOAD[3:]])[:, None]
-    return median_time(lane_passes, repeats, y, columns, total) / (PASSES * CELLS * WIDTH)
+    return median_time(lane_densities, repeats, y, columns, total) / (PASSES * CELLS * WIDTH)
