@@ -84,7 +84,7 @@ def answered(problems, kinds, asked, columns, soon=False):
             floors = np.column_stack([told[:, by_middle.FLOORS :], np.zeros(len(rows))])
             for n, k in enumerate(owners[rows].tolist()):
                 miss, doubt, slack = told[n, : by_middle.SCALES].tolist()
-                answers[k] = Answer(miss, doubt, values[n], bounds[n], scales[n], floors[n], int(slack))
+                answers[k] = Answer(miss, doubt, values[n], bounds[n], scales[n], floors[n], int(slack), fine)
     return answers
 
 

@@ -35,7 +35,7 @@ class Question(NamedTuple):
 class Answer(NamedTuple):
     """By how much a question misses being a state (NaN: no tube at all), and what may be missing of that, both times
     the strain; outputs, what may be missing of them, by what they are measured, and how much of that is rounding;
-    families that are slack.
+    families that are slack; and how fine it is.
     """
 
     miss: float
@@ -45,6 +45,7 @@ class Answer(NamedTuple):
     scales: np.ndarray
     floors: np.ndarray
     slack: int
+    fineness: int
 
 
 def ask(middle, share, tries=ALONG):
@@ -68,6 +69,8 @@ def crossing(place, low, high, width=0.0, tries=ALONG):
     By the regula falsi of Illinois; a bracket that it does not halve is halved.
     """
     weights, wide = [1.0, 1.0], abs(high[0] - low[0])
+    finer = max(low[1].fineness, high[1].fineness, tries[0].start)  # what a neighbour needs is not tried in vain
+    tries = range(min(finer, tries[0].stop - 1), tries[0].stop), tries[1]
     for trial in range(MOST_HALVINGS):
         below, above = weights[0] * low[1].miss, weights[1] * high[1].miss
         t = (low[0] * above - high[0] * below) / (above - below)

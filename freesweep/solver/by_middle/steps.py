@@ -5,11 +5,10 @@ the sign changes on a circle: round a corner, where fibers go slack, or a fold a
 it is smooth, and never to another branch beside it, which has its signs the other way round.
 """
 
-from itertools import pairwise
-from math import atan2, cos, exp, hypot, isnan, pi, sin
+from math import atan2, cos, exp, hypot, isnan, log, pi, sin
 from typing import NamedTuple
 
-from .question import SHARPLY, WIDER, ask, crossing, nearest
+from .question import SHARPLY, TRIES, WIDER, ask, crossing
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
 SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
@@ -22,9 +21,9 @@ SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be k
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
 BENT = 0.2  # from one step to the next [radian], from which on a snap may hide in it
-LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; parts that are looked at
-UNEVEN = 4.0  # times what the share changes on another part
-NOTHING_LESS = 1e-11  # of the share
+LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; places that are looked at
+UNEVEN = 4.0  # times as steep as at a dip between is a step that is looked at again in shorter ones
+ASIDE, CLEAR = 0.02, 0.01  # of a step: how far beside a place its miss is compared; of that: a doubt that says nothing
 BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed
 LEAST_SHARE, EARLY = 1e-9, 0.05  # of the way, where it is looked for, and up to where it has hardly begun
 ARRIVED, TURNED, LOST = range(3)
@@ -91,11 +90,9 @@ def follow(point, sense, far, answer):
             return LOST, points
         points = [*points[1 - KEPT :], ahead]
         if (yield from goes_on(points, sense)):
-            inner = yield from looked_between(points)
-            if (turned := turns_between([*points[:-2][-1:], *inner], sense)) is not None:
-                return TURNED, turned
-            if is_uneven(inner) and SHORTER * ahead.step > SMALLEST_STEP:
-                points, step = points[:-1], SHORTER * ahead.step
+            shorter = SHORTER * ahead.step
+            if may_hide(points) and shorter > SMALLEST_STEP and (yield from hides_a_snap(points, sense)):
+                points, step = points[:-1], shorter
                 continue
             yield from answer(*points[-2:])
             step = longer
@@ -174,43 +171,43 @@ def goes_on(points, sense):
     return sense * points[-1].share > sense * points[-2].share
 
 
-def looked_between(points):
-    """The last step of a branch that hardly leads on, or bends, as points of the branch beside even ones of its chord,
-    in which a small snap would show; else its two ends.
-    """
+def may_hide(points):
+    """Whether the last step of a branch hardly leads on, or bends: only there a snap may hide in it."""
     here, there = points[-2:]
-    if abs(there.share - here.share) > LEVEL * there.step and not abs(there.chord - here.chord) > BENT:
-        return points[-2:]
-    points[-2], points[-1] = here, there = (yield from sharpened(here)), (yield from sharpened(there))
-    wide, high = there.middle - here.middle, there.share - here.share
-    inner, length = [here], hypot(wide, high)
-    for k in range(1, LOOKS):
-
-        def beside(t, part=k / LOOKS):
-            return here.middle + part * wide - t * high / length, here.share + part * high + t * wide / length
-
-        met = yield from nearest(beside, there.step, SHARPLY)
-        if met is None:
-            return points[-2:]
-        middle, share = beside(met[0])
-        inner.append(there._replace(middle=middle, share=share))
-    return [*inner, there]
+    return abs(there.share - here.share) <= LEVEL * there.step or abs(there.chord - here.chord) > BENT
 
 
-def turns_between(inner, sense):
-    """Three points, of which the middle one is the first that no one behind it passes; None where each one passes the
-    one before it.
+def hides_a_snap(points, sense):
+    """Whether the branch falls back somewhere on the last step, or all but does, as far as looks at even places tell."""
+    here, there = points[-2:]
+    wide, high = log(there.middle / here.middle), there.share - here.share
+    climbs = []
+    for k in range(LOOKS):
+        part = (k + 0.5) / LOOKS
+        bulge = 0.5 * there.turn * part * (1.0 - part) * there.step  # of a branch that turns evenly, beside its chord
+        place = here.middle * exp(part * wide + bulge * high), here.share + part * high - bulge * wide
+        climb = yield from climb_beside(*place, there)
+        if climb is None:
+            return False
+        climbs.append(sense * climb)
+    low = min(climbs)
+    dips = 0 < climbs.index(low) < LOOKS - 1
+    return low < 0.0 or (dips and max(climbs) > UNEVEN * low)
+
+
+def climb_beside(middle, share, there):
+    """The sine of the angle at which the share rises along the branch, where it passes beside a place on the step that led
+    ``there``; None where it does not, or there is no tube. The gradient of the miss is normal to the branch.
     """
-    for k in range(1, len(inner) - 1):
-        if sense * inner[k + 1].share < sense * inner[k].share - NOTHING_LESS:
-            return inner[k - 1 : k + 2]
-    return None
-
-
-def is_uneven(inner):
-    """Whether the share hardly changes on a part of a step, beside others."""
-    changes = [abs(there.share - here.share) for here, there in pairwise(inner)]
-    return max(changes) > UNEVEN * min(changes)
+    far = ASIDE * there.step
+    tries, doubt = range(TRIES), CLEAR * far
+    here = yield from ask(middle, share, (tries, doubt))
+    tries = tries[min(here.fineness, TRIES - 1) :], doubt
+    right, above = (yield from ask(middle * exp(far), share, tries)), (yield from ask(middle, share + far, tries))
+    across, along = (right.miss - here.miss) / far, (above.miss - here.miss) / far
+    size = hypot(across, along)
+    beside = size > 0.0 and abs(here.miss) < size * there.step
+    return -there.left * across / size if beside else None
 
 
 def sharpened(here):
