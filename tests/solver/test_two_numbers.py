@@ -6,7 +6,7 @@ from math import hypot
 import numpy as np
 import pytest
 
-from freesweep.solver.by_middle.question import Answer
+from freesweep.solver.by_middle.question import Answer, Told
 from freesweep.solver.by_middle.states import middle_at, state_at, turning_point
 from freesweep.solver.by_middle.steps import ARRIVED, LOST, TURNED, Point, advance, begin, follow
 
@@ -29,8 +29,8 @@ def answered(steps, missing):
             return end.value, count
         count += 1
         miss = missing(question.middle, question.share) / (question.middle - 1.0)
-        values = np.array([question.middle])
-        answer = Answer(miss, 0.0, values, 1e-15 * values, np.ones(1), np.zeros(1), 0)
+        values, one = np.array([[question.middle]]), np.ones((1, 1))
+        answer = Answer(miss, 0.0, question.fineness, Told(values, 1e-15 * values, one, 0.0 * one, [0]), 0)
 
 
 def branch(missing, far=1.0):
@@ -63,8 +63,8 @@ def test_state_between_two_points_is_met_to_rounding():
     _, _, seen, _ = branch(over_the_hill)
     near, far = next(pair for pair in pairwise(seen) if pair[0].share < 0.2 <= pair[1].share)
     exact = 1.0 + 0.5 * (RISE - np.sqrt(RISE**2 - 0.8))
-    (answer, bounds, _), _ = answered(state_at(0.2, near, far, 1e-9), over_the_hill)
-    assert abs(answer.values[0] - exact) <= bounds[0] + 1e-14 < 1e-9
+    (told, bounds, _), _ = answered(state_at(0.2, near, far, 1e-9), over_the_hill)
+    assert abs(told.values[0] - exact) <= bounds[0] + 1e-14 < 1e-9
     assert answered(middle_at(0.2, near, far), over_the_hill)[0] == pytest.approx(exact, abs=1e-9)
 
 

@@ -13,7 +13,7 @@ from ..physics.wall import LOOSE
 from ..problem import PROBLEM_SIZE, THREADS
 from ..stability import PUSHED
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
-from .question import Answer
+from .question import Answer, Told
 from .states import middle_at, state_at, turning_point
 from .steps import ARRIVED, FLAT, LARGEST_STEP, SHARP, TURNED, Point, begin, follow
 from .ways import fading, ways_of
@@ -66,25 +66,24 @@ def answered(problems, kinds, asked, columns, soon=False):
     from ..lanes import by_middle
 
     owners = np.array(list(asked), np.int64)
-    ways, questions = zip(*asked.values())
-    middles, shares, fineness = np.array(questions).T
-    given, fineness = np.array([way.load_at(share) for way, share in zip(ways, shares.tolist())]), fineness.astype(int)
+    middles, _, fineness = np.array([question for _, question in asked.values()]).T
+    given = np.array([way.load_at(question.share) for way, question in asked.values()])
     answers = {}
     for kind, some in kinds:
-        for fine in range(len(PIECES)):
+        measure = by_middle.measure_lanes if len(kind) == 1 else by_middle.measure_physical
+        for fine in np.unique(fineness).astype(int).tolist():
             rows = np.flatnonzero(some[owners] & (fineness == fine))
             if not len(rows):
                 continue
             values, bounds = np.empty((2, len(rows), columns))
-            told = np.empty((len(rows), by_middle.COUNT))
-            measure = by_middle.measure_lanes if len(kind) == 1 else by_middle.measure_physical
-            own = problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, told
+            numbers = np.empty((len(rows), by_middle.COUNT))
+            own = problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, numbers
             run(measure, 0, soon, *own)
-            scales = np.column_stack([told[:, by_middle.SCALES : by_middle.FLOORS], np.ones(len(rows))])
-            floors = np.column_stack([told[:, by_middle.FLOORS :], np.zeros(len(rows))])
-            for n, k in enumerate(owners[rows].tolist()):
-                miss, doubt, slack = told[n, : by_middle.SCALES].tolist()
-                answers[k] = Answer(miss, doubt, values[n], bounds[n], scales[n], floors[n], int(slack), fine)
+            scales, floors = np.ones((len(rows), by_middle.SCALED + 1)), np.zeros((len(rows), by_middle.SCALED + 1))
+            scales[:, :-1], floors[:, :-1] = numbers[:, by_middle.SCALES : by_middle.FLOORS], numbers[:, by_middle.FLOORS :]
+            told = Told(values, bounds, scales, floors, numbers[:, by_middle.SLACK])
+            for n, (k, miss, doubt) in enumerate(zip(owners[rows].tolist(), *numbers[:, : by_middle.SLACK].T.tolist())):
+                answers[k] = Answer(miss, doubt, fine, told, n)
     return answers
 
 
@@ -204,6 +203,6 @@ def write(share, near, far, i, rows, accuracy):
     found = yield from state_at(share, near, far, accuracy)
     if found is None:
         return
-    answer, bounds, largest = found
-    rows.values[i], rows.bounds[i], rows.slack[i] = answer.values, bounds, answer.slack
+    told, bounds, largest = found
+    rows.values[i], rows.bounds[i], rows.slack[i] = told.values, bounds, int(told.slack)
     rows.status[i] = OK if largest <= accuracy else INACCURATE

@@ -32,20 +32,33 @@ class Question(NamedTuple):
     fineness: int
 
 
-class Answer(NamedTuple):
-    """By how much a question misses being a state (NaN: no tube at all), and what may be missing of that, both times
-    the strain; outputs, what may be missing of them, by what they are measured, and how much of that is rounding;
-    families that are slack; and how fine it is.
+class Told(NamedTuple):
+    """What is told of tubes whose questions were answered together: outputs (n, k), what may be missing of them, by what
+    they are measured, and how much of that is rounding; families that are slack (n,).
     """
 
-    miss: float
-    doubt: float
     values: np.ndarray
     bounds: np.ndarray
     scales: np.ndarray
     floors: np.ndarray
-    slack: int
+    slack: np.ndarray
+
+
+class Answer(NamedTuple):
+    """By how much a question misses being a state (NaN: no tube at all), and what may be missing of that, both times
+    the strain; how fine it is; and the ``row`` of what is ``told`` of it.
+    """
+
+    miss: float
+    doubt: float
     fineness: int
+    told: Told
+    row: int
+
+    @property
+    def outputs(self):
+        """What is told of this tube alone."""
+        return Told(*(array[self.row] for array in self.told))
 
 
 def ask(middle, share, tries=ALONG):
@@ -68,25 +81,31 @@ def crossing(place, low, high, width=0.0, tries=ALONG):
 
     By the regula falsi of Illinois; a bracket that it does not halve is halved.
     """
-    weights, wide = [1.0, 1.0], abs(high[0] - low[0])
+    weights, wide, replaced = [1.0, 1.0], abs(high[0] - low[0]), None
     finer = max(low[1].fineness, high[1].fineness, tries[0].start)  # what a neighbour needs is not tried in vain
     tries = range(min(finer, tries[0].stop - 1), tries[0].stop), tries[1]
     for trial in range(MOST_HALVINGS):
+        left, right = min(low[0], high[0]), max(low[0], high[0])
         below, above = weights[0] * low[1].miss, weights[1] * high[1].miss
         t = (low[0] * above - high[0] * below) / (above - below)
         if trial % 3 == 2:
-            if abs(high[0] - low[0]) > 0.5 * wide or not min(low[0], high[0]) < t < max(low[0], high[0]):
-                t = 0.5 * (low[0] + high[0])
-            wide = abs(high[0] - low[0])
+            if right - left > 0.5 * wide or not left < t < right:
+                t = 0.5 * (left + right)
+            wide = right - left
+        enough = max(width, ROUNDING * (1.0 + abs(t)))
+        t = min(max(t, left + 0.5 * enough), right - 0.5 * enough)  # nearer it would not end the search
         answer = yield from ask(*place(t), tries)
         if isnan(answer.miss):
             return None
-        if answer.miss * low[1].miss > 0.0:
-            low, other, weights = (t, answer), high, [1.0, 0.5 * weights[1]]
+        side = 0 if answer.miss * low[1].miss > 0.0 else 1  # which end is replaced; of one that stays again half counts
+        weights[side], weights[1 - side] = 1.0, 0.5 * weights[1 - side] if side == replaced else 1.0
+        replaced = side
+        if side == 0:
+            low, other = (t, answer), high
         else:
-            high, other, weights = (t, answer), low, [0.5 * weights[0], 1.0]
+            high, other = (t, answer), low
         none = max(CLOSE * abs(place(t)[0] - 1.0), FAINT * answer.doubt)
-        if abs(answer.miss) <= none or abs(high[0] - low[0]) <= max(width, ROUNDING * (1.0 + abs(t))):
+        if abs(answer.miss) <= none or abs(high[0] - low[0]) <= enough:
             break
     return t, answer, other
 

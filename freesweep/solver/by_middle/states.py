@@ -51,9 +51,9 @@ def met_at(share, near, far, first, tries, aside=None):
 
 
 def state_at(share, near, far, accuracy):
-    """``(answer, bounds, largest of the bounds by which accuracy counts)`` of the state at a ``share`` of the way, between
-    two points of the branch; None where it is not met, as at a jump of the miss. What no try tells to the ``accuracy`` is
-    told by the last that tells it at all.
+    """``(what is told, bounds, largest of the bounds by which accuracy counts)`` of the state at a ``share`` of the way,
+    between two points of the branch; None where it is not met, as at a jump of the miss. What no try tells to the
+    ``accuracy`` is told by the last that tells it at all.
     """
     first, stays, aside = near.middle + part_of(share, near, far) * (far.middle - near.middle), None, None
     for fineness in range(MOST_TRIES):
@@ -62,24 +62,22 @@ def state_at(share, near, far, accuracy):
         if met is None:
             return stays
         middle, answer, other = met
-        slope = slope_of(middle, answer, other)
+        told, slope = answer.outputs, slope_of(middle, answer, other)
         if abs(middle - 1.0) < CLOSE_BY and abs(other[0] - 1.0) < CLOSE_BY:  # on both sides of no strain
-            bounds = answer.bounds + np.abs(other[1].values - answer.values)
+            bounds = told.bounds + np.abs(other[1].outputs.values - told.values)
         elif not abs(answer.miss) <= ROUGH * abs(middle - 1.0):
             continue
         else:
             moved = min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle))
             beside = yield from ask(middle + max(moved, LEAST_ASIDE), share, tries)
-            change = np.abs(beside.values - answer.values) / max(abs(beside.miss - answer.miss), 1e-300)
-            bounds = answer.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
-        finer = min(
-            fineness + 1, MOST_TRIES - 1
-        )  # where a meridian stands upright a rule may be surer than it is right
+            change = np.abs(beside.outputs.values - told.values) / max(abs(beside.miss - answer.miss), 1e-300)
+            bounds = told.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
+        finer = min(fineness + 1, MOST_TRIES - 1)  # a rule may be surer than it is right where a meridian stands upright
         finer = yield from ask(middle, share, (range(finer, finer + 1), np.inf))
-        bounds = np.maximum(bounds, np.abs(finer.values - answer.values))
-        largest = np.max((bounds[: len(answer.scales)] - answer.floors) / answer.scales)
+        bounds = np.maximum(bounds, np.abs(finer.outputs.values - told.values))
+        largest = np.max((bounds[: len(told.scales)] - told.floors) / told.scales)
         if largest <= ROUGH:
-            stays = answer, bounds, largest
+            stays = told, bounds, largest
         if largest <= accuracy:
             break
         first, aside = middle, max(FAINT * answer.doubt / slope, LEAST_ASIDE)

@@ -17,7 +17,7 @@ SHORTER = 0.3
 SPREAD = 0.01  # the first angle at which the change of sign is looked for
 KEPT = 5  # points, of which the last may tell that the first lay farther
 SMALL = 0.1  # of the step before: a step for which a point has to be known to rounding
-SHARP = 1e-3  # angle, and share of a first load, up to which a branch need be known along it
+SHARP, EXACT = 1e-3, 1e-8  # of a step: how well a point, or a first load, need be known along a branch; where it counts
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
 BENT = 0.2  # from one step to the next [radian], from which on a snap may hide in it
@@ -157,10 +157,11 @@ def leaves(here, place, widest):
 def around_top(points, sense):
     """The three of the ``points``, made exact, of which the middle one has the largest share in this ``sense``."""
     exact = []
-    for point in points:
+    for point in reversed(points):
         exact.append((yield from sharpened(point)))
-    top = max(range(1, len(exact) - 1), key=lambda k: sense * exact[k].share)
-    return exact[top - 1 : top + 2]
+        if len(exact) > 2 and sense * exact[-2].share > sense * exact[-1].share:
+            break
+    return exact[:-4:-1]
 
 
 def goes_on(points, sense):
@@ -211,7 +212,7 @@ def climb_beside(middle, share, there):
 
 
 def sharpened(here):
-    """The same point, to rounding."""
+    """The same point, all but to rounding."""
 
     def place(t):
         return here.middle * exp(-t * sin(here.chord)), here.share + t * cos(here.chord)
@@ -220,5 +221,5 @@ def sharpened(here):
     low, high = (-far, (yield from ask(*place(-far), SHARPLY))), (far, (yield from ask(*place(far), SHARPLY)))
     if not low[1].miss * high[1].miss < 0.0:
         return here
-    met = yield from crossing(place, low, high, tries=SHARPLY)
+    met = yield from crossing(place, low, high, EXACT * here.step, SHARPLY)
     return here if met is None else here._replace(middle=place(met[0])[0], share=place(met[0])[1])

@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from ..problem import AREA, FORCE, GAMMA, TORQUE
 
 REST = 0.0, 0.0, 0.0, 1.0, 1.0  # pressure, force, torque, fiber extension, weight of the wall's energy
@@ -14,16 +12,14 @@ class Way(NamedTuple):
     change by on it. A way of pressure has none at its begin and no end: it comes to its ``unit`` half way.
     """
 
-    origin: np.ndarray
-    change: np.ndarray
+    origin: tuple
+    change: tuple
     unit: float
 
     def load_at(self, share):
         """The load at a share of the way."""
-        load = self.origin + share * self.change
-        if self.unit:
-            load[0] = self.unit * share / (1.0 - share)
-        return load
+        first, *others = [start + share * change for start, change in zip(self.origin, self.change)]
+        return self.unit * share / (1.0 - share) if self.unit else first, *others
 
     def share_of(self, pressure):
         """Where a way of pressure meets a ``pressure``."""
@@ -36,11 +32,11 @@ class Way(NamedTuple):
 
 def ways_of(problem, settled):
     """``(way of the loads, way of the pressure)`` of a problem whose loads have settled at that pressure."""
-    f, m, gamma = problem[FORCE], problem[TORQUE], problem[GAMMA]
-    rise = Way(np.array(REST), np.array([settled, f, m, gamma - 1.0, 0.0]), 0.0)
-    return rise, Way(np.array([0.0, f, m, gamma, 1.0]), np.zeros(5), max(settled, problem[AREA]))
+    f, m, gamma, area = (float(problem[k]) for k in (FORCE, TORQUE, GAMMA, AREA))
+    rise = Way(REST, (float(settled), f, m, gamma - 1.0, 0.0), 0.0)
+    return rise, Way((0.0, f, m, gamma, 1.0), (0.0, 0.0, 0.0, 0.0, 0.0), max(float(settled), area))
 
 
 def fading(problem):
     """The way to a locked shape: the wall fades."""
-    return Way(np.array(REST), np.array([1.0, 0.0, 0.0, problem[GAMMA] - 1.0, -1.0]), 0.0)
+    return Way(REST, (1.0, 0.0, 0.0, float(problem[GAMMA]) - 1.0, -1.0), 0.0)

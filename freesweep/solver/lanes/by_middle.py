@@ -20,8 +20,10 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
 # what is told beside outputs: three numbers, then by what four of them are measured, and what is rounding of their bounds
-MISS, DOUBT, SLACK, SCALES, FLOORS = 0, 1, 2, 3, 7
-COUNT = FLOORS + 4
+SCALED = 4
+MISS, DOUBT, SLACK, SCALES = range(4)
+FLOORS = SCALES + SCALED
+COUNT = FLOORS + SCALED
 ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middle
 
 
