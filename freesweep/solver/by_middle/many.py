@@ -80,7 +80,10 @@ def answered(problems, kinds, asked, columns, soon=False):
             own = problems, owners[rows], given[rows], middles[rows], *kind, PIECES[fine], values, bounds, numbers
             run(measure, 0, soon, *own)
             scales, floors = np.ones((len(rows), by_middle.SCALED + 1)), np.zeros((len(rows), by_middle.SCALED + 1))
-            scales[:, :-1], floors[:, :-1] = numbers[:, by_middle.SCALES : by_middle.FLOORS], numbers[:, by_middle.FLOORS :]
+            scales[:, :-1], floors[:, :-1] = (
+                numbers[:, by_middle.SCALES : by_middle.FLOORS],
+                numbers[:, by_middle.FLOORS :],
+            )
             told = Told(values, bounds, scales, floors, numbers[:, by_middle.SLACK])
             for n, (k, miss, doubt) in enumerate(zip(owners[rows].tolist(), *numbers[:, : by_middle.SLACK].T.tolist())):
                 answers[k] = Answer(miss, doubt, fine, told, n)

@@ -125,7 +125,7 @@ def nearest(place, reach, tries, first=1.0):
         for t in (first * distance, -first * distance):
             answer = yield from ask(*place(t), tries)
             if answer.miss * here[1].miss < 0.0:
-                return (yield from crossing(place, here, (t, answer), tries=tries))
+                return (yield from crossing(place, here, (t, answer), LEAST_DOUBT, tries))
         distance *= WIDER
     return None
 

@@ -72,7 +72,9 @@ def state_at(share, near, far, accuracy):
             beside = yield from ask(middle + max(moved, LEAST_ASIDE), share, tries)
             change = np.abs(beside.outputs.values - told.values) / max(abs(beside.miss - answer.miss), 1e-300)
             bounds = told.bounds + CAUTION * change * (abs(answer.miss) + answer.doubt)
-        finer = min(fineness + 1, MOST_TRIES - 1)  # a rule may be surer than it is right where a meridian stands upright
+        finer = min(
+            fineness + 1, MOST_TRIES - 1
+        )  # a rule may be surer than it is right where a meridian stands upright
         finer = yield from ask(middle, share, (range(finer, finer + 1), np.inf))
         bounds = np.maximum(bounds, np.abs(finer.outputs.values - told.values))
         largest = np.max((bounds[: len(told.scales)] - told.floors) / told.scales)
