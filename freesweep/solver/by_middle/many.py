@@ -137,9 +137,10 @@ def settle(way):
     if point is None:
         return PENDING, np.nan
     what, points = yield from follow(point, 1.0, 1.0, nothing)
-    if what != ARRIVED:
+    around = yield from around_end(what, points)
+    if around is None:
         return BEYOND_LIMIT if what == TURNED else lost(way, points[-1]), np.nan
-    middle = yield from middle_at(1.0, *points[-2:])
+    middle = yield from middle_at(1.0, *around)
     return (PENDING, np.nan) if middle is None else (OK, middle)
 
 
@@ -148,10 +149,21 @@ def lock(asked, rows, accuracy):
     point = yield from begin()
     if point is None:
         return
-    what, points = yield from follow(point, 1.0, 1.0, nothing)
-    if what == ARRIVED:
+    around = yield from around_end(*(yield from follow(point, 1.0, 1.0, nothing)))
+    if around is not None:
         for i in asked:
-            yield from write(1.0, *points[-2:], i, rows, accuracy)
+            yield from write(1.0, *around, i, rows, accuracy)
+
+
+def around_end(what, points):
+    """Two points of a branch between which its way ends; None where it does not come to that end."""
+    if what == ARRIVED:
+        return points[-2:]
+    if what == TURNED and points[-2].share > 1.0 - LARGEST_STEP:  # does it turn behind the end?
+        share, bound, top = yield from turning_point(points, 1.0)
+        if share - bound > 1.0:
+            return before_top(1.0, points, top, 1.0), top
+    return None
 
 
 def lost(way, point):
@@ -197,8 +209,14 @@ def end_at(way, points, sense, shares, rows, accuracy):
         if sense * own >= sense * share - bound:
             rows.status[i] = BEYOND_LIMIT
         else:
-            near = points[-2] if sense * own > sense * points[-2].share else points[-3]
-            yield from write(own, near, top, i, rows, accuracy)
+            yield from write(own, before_top(own, points, top, sense), top, i, rows, accuracy)
+
+
+def before_top(share, points, top, sense):
+    """Of three points round the ``top`` of a branch the last one before it, and before a ``share``."""
+    first, second, _ = points
+    passed = (second.middle - top.middle) * (first.middle - top.middle) <= 0.0
+    return first if passed or sense * second.share > sense * share else second
 
 
 def write(share, near, far, i, rows, accuracy):

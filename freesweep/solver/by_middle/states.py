@@ -40,7 +40,11 @@ def met_at(share, near, far, first, tries, aside=None):
     answer = yield from ask(*place(0.0), tries)
     before = 0.0, answer
     below = answer.miss * near.left * rising > 0.0  # to the left of what rises stretches are smaller
+    edge = max(near.middle, far.middle) - first if below else first - min(near.middle, far.middle)
     while distance < 2.0 * reach:
+        distance = (
+            edge if abs(before[0]) < edge < distance else distance
+        )  # beside a top there is another state behind it
         t = distance if below else -distance
         answer = yield from ask(*place(t), tries)
         if (answer.miss * near.left * rising > 0.0) != below:
@@ -59,8 +63,8 @@ def state_at(share, near, far, accuracy):
     for fineness in range(MOST_TRIES):
         tries = range(fineness, fineness + 1), np.inf
         met = yield from met_at(share, near, far, first, tries, aside)
-        if met is None:
-            return stays
+        if met is None:  # just before a turning point a coarse rule has none
+            continue
         middle, answer, other = met
         told, slope = answer.outputs, slope_of(middle, answer, other)
         if abs(middle - 1.0) < CLOSE_BY and abs(other[0] - 1.0) < CLOSE_BY:  # on both sides of no strain
