@@ -115,26 +115,37 @@ def slope_of(t, answer, other):
     return abs((answer.miss - other[1].miss) / (t - other[0])) if answer.miss != other[1].miss else np.inf
 
 
-def nearest(place, reach, tries, first=1.0):
-    """:func:`crossing` along ``place(t)`` nearest to t = 0, not farther than ``reach``; of two as near that on the ``first``
-    side. None where there is none.
+def beside(place, left, distances, width=0.0, tries=ALONG):
+    """:func:`crossing` of a branch along ``place(t)``, which leads to its left as t grows, where the miss has the sign
+    ``left``; it is looked for at these ``distances`` from t = 0, one farther than the other. None where it is not met.
     """
-    here = 0.0, (yield from ask(*place(0.0), tries))
-    distance = FAINT**3 * reach
-    while distance < 4.0 * reach and not isnan(here[1].miss):
-        for t in (first * distance, -first * distance):
-            answer = yield from ask(*place(t), tries)
-            if answer.miss * here[1].miss < 0.0:
-                return (yield from crossing(place, here, (t, answer), LEAST_DOUBT, tries))
-        distance *= WIDER
+    before = 0.0, (yield from ask(*place(0.0), tries))
+    is_left = before[1].miss * left > 0.0
+    for distance in distances:
+        if isnan(before[1].miss):
+            return None
+        t = -distance if is_left else distance
+        answer = yield from ask(*place(t), tries)
+        if not isnan(answer.miss) and (answer.miss * left > 0.0) != is_left:
+            return (yield from crossing(place, before, (t, answer), width, tries))
+        before = t, answer
     return None
 
 
-def across(middle, share, sense, reach):
-    """``(share, doubt, whether the miss jumps there)`` of the state whose middle has that stretch, nearest to a ``share``,
-    not farther than ``reach``.
+def widening(first, widest):
+    """Distances from the ``first`` to the ``widest``."""
+    while first < widest:
+        yield first
+        first *= WIDER
+    yield widest
+
+
+def across(middle, share, left, reach):
+    """``(share, doubt, whether the miss jumps there)`` of the state whose middle has that stretch, beside a ``share``, not
+    farther than ``reach``, on a branch above which the miss has the sign ``left``.
     """
-    met = yield from nearest(lambda t: (middle, share + t), reach, FINEST, -sense)
+    distances = widening(FAINT**3 * reach, 4.0 * reach)
+    met = yield from beside(lambda t: (middle, share + t), left, distances, LEAST_DOUBT, FINEST)
     if met is None:
         return None
     t, found, _ = met

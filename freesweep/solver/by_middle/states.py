@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .question import ALONG, FAINT, MOST_TRIES, ROUGH, STILL, WIDER, across, ask, crossing, slope_of
+from .question import ALONG, FAINT, MOST_TRIES, ROUGH, STILL, across, ask, beside, slope_of, widening
 
 CAUTION, STANDS_OUT = 2.0, 4.0  # times what a miss changes, and by what a turning point stands out from its neighbours
 CLOSE_BY = 4.0 * STILL
@@ -31,27 +31,11 @@ def met_at(share, near, far, first, tries, aside=None):
     :func:`crossing`; it is looked for ``aside`` first.
     """
     reach = abs(far.middle - near.middle) + abs(far.share - near.share)
-    distance = NEAR * reach if aside is None else aside
-    rising = 1.0 if far.share > near.share else -1.0
-
-    def place(t):
-        return first + t, share
-
-    answer = yield from ask(*place(0.0), tries)
-    before = 0.0, answer
-    below = answer.miss * near.left * rising > 0.0  # to the left of what rises stretches are smaller
-    edge = max(near.middle, far.middle) - first if below else first - min(near.middle, far.middle)
-    while distance < 2.0 * reach:
-        distance = (
-            edge if abs(before[0]) < edge < distance else distance
-        )  # beside a top there is another state behind it
-        t = distance if below else -distance
-        answer = yield from ask(*place(t), tries)
-        if (answer.miss * near.left * rising > 0.0) != below:
-            met = yield from crossing(place, before, (t, answer), tries=tries)
-            return None if met is None else (first + met[0], met[1], (first + met[2][0], met[2][1]))
-        before, distance = (t, answer), WIDER * distance
-    return None
+    left = -near.left if far.share > near.share else near.left  # to the left of what rises stretches are smaller
+    ends = abs(near.middle - first), abs(far.middle - first)  # beside a top there is another state behind it
+    distances = sorted([*ends, *widening(NEAR * reach if aside is None else aside, 2.0 * reach)])
+    met = yield from beside(lambda t: (first + t, share), left, distances, tries=tries)
+    return None if met is None else (first + met[0], met[1], (first + met[2][0], met[2][1]))
 
 
 def state_at(share, near, far, accuracy):
@@ -97,11 +81,12 @@ def turning_point(points, sense):
     At a turning point the branch runs across the way: to each stretch between the outer points belongs one share.
     """
     a, b, c = (point.middle for point in points)
+    above = points[1].left if c > a else -points[1].left  # to the left of what runs to larger stretches
     fa, fb, fc = (sense * point.share for point in points)
     reach = max(abs(fb - fa), abs(fb - fc)) + FLAT
     known, doubts, jumps = [], {}, False
     for t, f in ((a, fa), (b, fb), (c, fc)):
-        met = yield from across(t, sense * f, sense, reach)
+        met = yield from across(t, sense * f, above, reach)
         share, doubts[t], jumped = met if met is not None else (sense * f, reach, False)
         jumps = jumps or jumped
         known.append(sense * share)
@@ -111,7 +96,7 @@ def turning_point(points, sense):
         t = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right) if left != right else b
         if not min(a, c) < t < max(a, c) or abs(t - b) < FLAT or trial % 3 == 2:
             t = b + GOLDEN * ((c - b) if abs(c - b) > abs(b - a) else (a - b))
-        t, met = yield from clear(t, sense * fb, sense, reach, NUDGE * (c - a))
+        t, met = yield from clear(t, sense * fb, above, reach, NUDGE * (c - a))
         if met is None:
             break
         share, doubts[t], jumped = met
@@ -130,13 +115,13 @@ def turning_point(points, sense):
     return sense * fb, bound, points[1]._replace(middle=b, share=sense * fb)
 
 
-def clear(middle, share, sense, reach, nudge):
+def clear(middle, share, above, reach, nudge):
     """A stretch near that of the ``middle``, and what :func:`across` tells of it: some places are in more doubt than
     others, as fibers go slack now here, now there between those that are summed.
     """
     best = middle, None
     for k in range(NUDGES):
-        met = yield from across(middle + k * nudge, share, sense, reach)
+        met = yield from across(middle + k * nudge, share, above, reach)
         if met is not None and (best[1] is None or met[1] < best[1][1]):
             best = middle + k * nudge, met
         if met is None or met[1] < FLAT:

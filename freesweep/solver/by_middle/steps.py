@@ -5,10 +5,11 @@ the sign changes on a circle: round a corner, where fibers go slack, or a fold a
 it is smooth, and never to another branch beside it, which has its signs the other way round.
 """
 
-from math import atan2, cos, exp, hypot, isnan, log, pi, sin
+from itertools import pairwise
+from math import atan2, cos, exp, hypot, log, pi, sin
 from typing import NamedTuple
 
-from .question import SHARPLY, TRIES, WIDER, ask, crossing
+from .question import SHARPLY, WIDER, ask, beside, crossing, widening
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
 SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
@@ -21,9 +22,9 @@ SHARP, EXACT = 1e-3, 1e-8  # of a step: how well a point, or a first load, need 
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
 BENT = 0.2  # from one step to the next [radian], from which on a snap may hide in it
-LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; places that are looked at
-UNEVEN = 4.0  # times as steep as at a dip between is a step that is looked at again in shorter ones
-ASIDE, CLEAR = 0.02, 0.01  # of a step: how far beside a place its miss is compared; of that: a doubt that says nothing
+LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; parts that are looked at
+UNEVEN = 4.0  # times what the share changes on another part
+NOTHING_LESS = 1e-8  # of a step: by how much a branch need fall back to turn
 BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed
 LEAST_SHARE, EARLY = 1e-9, 0.05  # of the way, where it is looked for, and up to where it has hardly begun
 ARRIVED, TURNED, LOST = range(3)
@@ -32,7 +33,7 @@ ARRIVED, TURNED, LOST = range(3)
 class Point(NamedTuple):
     """A state of a branch: stretch in the middle, share of the way; direction [radian] and length of the step that led
     there, how fast the direction turns, and the sign of the miss to the left. A first point has no step; its direction
-    is one from which that of the branch is less than a right angle away.
+    is one from which that of the branch is less than a right angle away. An ``exact`` one is known all but to rounding.
     """
 
     middle: float
@@ -41,6 +42,7 @@ class Point(NamedTuple):
     step: float
     turn: float
     left: float
+    exact: bool = False
 
 
 def begin():
@@ -90,9 +92,11 @@ def follow(point, sense, far, answer):
             return LOST, points
         points = [*points[1 - KEPT :], ahead]
         if (yield from goes_on(points, sense)):
-            shorter = SHORTER * ahead.step
-            if may_hide(points) and shorter > SMALLEST_STEP and (yield from hides_a_snap(points, sense)):
-                points, step = points[:-1], shorter
+            inner = yield from looked_between(points)
+            if (turned := turns_between([*points[:-2][-1:], *inner], sense)) is not None:
+                return TURNED, turned
+            if is_uneven(inner) and SHORTER * ahead.step > SMALLEST_STEP:
+                points, step = points[:-1], SHORTER * ahead.step
                 continue
             yield from answer(*points[-2:])
             step = longer
@@ -117,8 +121,10 @@ def advance(here, step):
         def place(angle, here=here, step=step, toward=toward):
             return here.middle * exp(step * cos(toward + angle)), here.share + step * sin(toward + angle)
 
-        angle = yield from leaves(here, place, pi if step <= SHORT_STEP else 0.5 * pi if fresh else STRAY)
-        if angle is not None:
+        widest = pi if step <= SHORT_STEP else 0.5 * pi if fresh else STRAY
+        met = yield from beside(place, here.left, widening(SPREAD, widest), SHARP)
+        if met is not None:
+            angle = met[0]
             smooth = abs(angle) < STRAY and not fresh
             turn = (toward + angle - here.chord) / (0.5 * (here.step + step)) if smooth else 0.0
             point = Point(*place(angle), toward + angle, step, turn, here.left)
@@ -128,30 +134,6 @@ def advance(here, step):
         step *= SHORTER if step > SHORT_STEP / SHORTER or step <= SHORT_STEP else SHORT_STEP / step
         if not sharp and not fresh and step < SMALL * here.step:
             here, sharp = (yield from sharpened(here)), True
-
-
-def leaves(here, place, widest):
-    """The angle, not wider than the ``widest``, at which a branch leaves a circle round ``here``; None where it is not
-    met.
-    """
-    answer = yield from ask(*place(0.0))
-    if isnan(answer.miss):
-        return None
-    rightward = answer.miss * here.left > 0.0  # the branch lies to the right
-    angle, before = SPREAD, (0.0, answer)
-    while True:
-        angle = min(angle, widest)
-        t = -angle if rightward else angle
-        answer = yield from ask(*place(t))
-        if isnan(answer.miss):
-            return None
-        if (answer.miss * here.left > 0.0) != rightward:
-            break
-        if angle == widest:
-            return None
-        before, angle = (t, answer), WIDER * angle
-    met = yield from crossing(place, before, (t, answer), SHARP)
-    return None if met is None else met[0]
 
 
 def around_top(points, sense):
@@ -172,54 +154,58 @@ def goes_on(points, sense):
     return sense * points[-1].share > sense * points[-2].share
 
 
-def may_hide(points):
-    """Whether the last step of a branch hardly leads on, or bends: only there a snap may hide in it."""
-    here, there = points[-2:]
-    return abs(there.share - here.share) <= LEVEL * there.step or abs(there.chord - here.chord) > BENT
-
-
-def hides_a_snap(points, sense):
-    """Whether the branch falls back somewhere on the last step, or all but does, as far as looks at even places tell."""
-    here, there = points[-2:]
-    wide, high = log(there.middle / here.middle), there.share - here.share
-    climbs = []
-    for k in range(LOOKS):
-        part = (k + 0.5) / LOOKS
-        bulge = 0.5 * there.turn * part * (1.0 - part) * there.step  # of a branch that turns evenly, beside its chord
-        place = here.middle * exp(part * wide + bulge * high), here.share + part * high - bulge * wide
-        climb = yield from climb_beside(*place, there)
-        if climb is None:
-            return False
-        climbs.append(sense * climb)
-    low = min(climbs)
-    dips = 0 < climbs.index(low) < LOOKS - 1
-    return low < 0.0 or (dips and max(climbs) > UNEVEN * low)
-
-
-def climb_beside(middle, share, there):
-    """The sine of the angle at which the share rises along the branch, where it passes beside a place on the step that led
-    ``there``; None where it does not, or there is no tube. The gradient of the miss is normal to the branch.
+def looked_between(points):
+    """The last step of a branch that hardly leads on, or bends, as points of the branch beside even ones of its chord,
+    in which a small snap would show; else its two ends; one end alone where the branch does not run beside the chord.
     """
-    far = ASIDE * there.step
-    tries, doubt = range(TRIES), CLEAR * far
-    here = yield from ask(middle, share, (tries, doubt))
-    tries = tries[min(here.fineness, TRIES - 1) :], doubt
-    right, above = (yield from ask(middle * exp(far), share, tries)), (yield from ask(middle, share + far, tries))
-    across, along = (right.miss - here.miss) / far, (above.miss - here.miss) / far
-    size = hypot(across, along)
-    beside = size > 0.0 and abs(here.miss) < size * there.step
-    return -there.left * across / size if beside else None
+    here, there = points[-2:]
+    if abs(there.share - here.share) > LEVEL * there.step and not abs(there.chord - here.chord) > BENT:
+        return points[-2:]
+    points[-2], points[-1] = here, there = (yield from sharpened(here)), (yield from sharpened(there))
+    wide, high = log(there.middle / here.middle), there.share - here.share
+    inner, length = [here], hypot(wide, high)
+    for k in range(1, LOOKS):
+        part = k / LOOKS
+        bulge = 0.5 * there.turn * part * (1.0 - part) * length**2  # of an even turn, to the right of the chord
+
+        def place(t, part=part, bulge=bulge):
+            off = (t - bulge) / length
+            return here.middle * exp(part * wide - off * high), here.share + part * high + off * wide
+
+        distances = widening(SHARP * length, STRAY * length)
+        met = yield from beside(place, there.left, distances, EXACT * length, SHARPLY)
+        if met is None:
+            return [there]
+        middle, share = place(met[0])
+        inner.append(there._replace(middle=middle, share=share))
+    return [*inner, there]
+
+
+def turns_between(inner, sense):
+    """Three points, of which the middle one is the first that no one behind it passes; None where each one passes the
+    one before it.
+    """
+    for k in range(1, len(inner) - 1):
+        if sense * inner[k + 1].share < sense * inner[k].share - NOTHING_LESS * inner[k + 1].step:
+            return inner[k - 1 : k + 2]
+    return None
+
+
+def is_uneven(inner):
+    """Whether the share hardly changes on a part of a step, beside others, or nothing is known of the parts."""
+    changes = [abs(there.share - here.share) for here, there in pairwise(inner)]
+    return len(inner) < 2 or max(changes) > UNEVEN * min(changes)
 
 
 def sharpened(here):
     """The same point, all but to rounding."""
+    if here.exact:
+        return here
 
     def place(t):
         return here.middle * exp(-t * sin(here.chord)), here.share + t * cos(here.chord)
 
     far = 2.0 * SHARP * here.step
-    low, high = (-far, (yield from ask(*place(-far), SHARPLY))), (far, (yield from ask(*place(far), SHARPLY)))
-    if not low[1].miss * high[1].miss < 0.0:
-        return here
-    met = yield from crossing(place, low, high, EXACT * here.step, SHARPLY)
-    return here if met is None else here._replace(middle=place(met[0])[0], share=place(met[0])[1])
+    met = yield from beside(place, here.left, (far, 2.0 * far), EXACT * here.step, SHARPLY)
+    middle, share = place(0.0 if met is None else met[0])
+    return here._replace(middle=middle, share=share, exact=True)
