@@ -192,9 +192,13 @@ def turns_between(inner, sense):
 
 
 def is_uneven(inner):
-    """Whether the share hardly changes on a part of a step, beside others, or nothing is known of the parts."""
-    changes = [abs(there.share - here.share) for here, there in pairwise(inner)]
-    return len(inner) < 2 or max(changes) > UNEVEN * min(changes)
+    """Whether a step hardly leads on in a part of it, beside others, or bends there; or nothing is known of its parts."""
+    if len(inner) < 2:
+        return True
+    steps = [(there.middle - here.middle, there.share - here.share) for here, there in pairwise(inner)]
+    bends = [abs(atan2(a * d - b * c, a * c + b * d)) for (a, b), (c, d) in pairwise(steps)]
+    rises = [abs(rise) for _, rise in steps]
+    return max(rises) > UNEVEN * min(rises) or (max(bends, default=0.0) > STRAY and inner[-1].step > SHORT_STEP)
 
 
 def sharpened(here):

@@ -55,7 +55,7 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     doubt = select(deep, 0.0, unmet(mid, zero, get(numbers[1], WITHIN)) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)))
     doubt = select(fine, doubt, np.inf)
     put(told, DOUBT, select(driven & valid, doubt, 0.0))
-    rest = select(deep, miss, 0.0)
+    rest = max(miss, 0.0)  # of a tube that is all but deep, too
     finish(
         mid, rest, zero, zero, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
     )  # fmt: skip
