@@ -7,7 +7,7 @@ state on this way is stable under its loads, all the more with C held, and C ris
 with this C, and it is the one :mod:`..held.held_state` goes. Whatever else may be is left to that.
 
 Where the wall of that cylinder would have to be pushed, or its fibers would, or where it does not stand, the search begins
-at the tube with nothing held.
+at the tube with nothing held, or under a strong pull.
 """
 
 from math import pi, sqrt
@@ -24,11 +24,12 @@ from ..problem import FORCE, PHYSICAL, SOURCE, TORQUE
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, OK
 from . import first_guess
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads
-from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
+from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
 LONGER = 1e-9  # relative: more than rounding
+STRONG = 4.0  # pull, to pressure and torque
 # of a beginning: stretch and multiplier, length or rotation C of half the tube (NaN: not known yet), dC/dmu of a cylinder,
 # the longest half tube that the fibers allow, and whether the way from rest with C held is gone
 STRETCH, MULTIPLIER, HELD, RISE, LONGEST, LOST = range(6)
@@ -86,8 +87,22 @@ def loose_turn(load, length_held):
 
 
 @kernel
-def free_start(cell, load, half, asked):
-    """The uniform stretch with nothing held, carried from rest; where there is one."""
+def free_start(cell, load, half, length_held, asked):
+    """The uniform stretch of the free tube, carried from rest, where there is one, and the pull under which: with nothing
+    held, or, where it would snap then and a pull shall hold it, under a strong one.
+    """
+    zero = spread(0.0)
+    u, came = carried_from_rest(cell, load, half, asked)
+    if not length_held or not some(asked & isnt(came)):
+        return u, came, zero
+    pull = STRONG * max(load.p, abs(load.m))
+    other, pulled = carried_from_rest(cell, holding(load, length_held, pull), half, asked & isnt(came))
+    return select(came, u, other), came | pulled, select(came, zero, pull)
+
+
+@kernel
+def carried_from_rest(cell, load, half, asked):
+    """The uniform stretch under a load, and where it is come to from rest."""
     one, zero = spread(1.0), spread(0.0)
     rest = Load(one, load.rubber, load.wall, zero, zero, zero, one)
     u, came = first_guess.follow(one, cell, rest, load, half, asked)
@@ -152,8 +167,8 @@ def start(
         straight = stands & (target == first)
         lost = upheld & gone & (first == (half if length_held else 0.0)) & isnt(target == first)
         stands = stands & isnt(lost)
-        u, came = free_start(cell, load, half, todo & isnt(stands))
-        put(found, MULTIPLIER, select(stands, mu, 0.0))
+        u, came, pull = free_start(cell, load, half, length_held, todo & isnt(stands))
+        put(found, MULTIPLIER, select(stands, mu, pull))
         put(found, HELD, first)
         put(found, RISE, rise_of(c_y, cell, now, half))
         put(found, LONGEST, most)
