@@ -11,7 +11,7 @@ from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
 from ..problem import FORCE, GAMMA, PHYSICAL, SOURCE, TORQUE
 from . import slack_ends
-from .meridian import DEEPEST, middle_at
+from .meridian import ALMOST, DEEPEST, middle_at
 from .outputs import DX, FLOOR, WITHIN, finish, unmet
 from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
 from .quadrature import between_ends, find_ends, scan
@@ -55,9 +55,9 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     doubt = select(deep, 0.0, unmet(mid, zero, get(numbers[1], WITHIN)) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)))
     doubt = select(fine, doubt, np.inf)
     put(told, DOUBT, select(driven & valid, doubt, 0.0))
-    rest = max(miss, 0.0)  # of a tube that is all but deep, too
+    rest = select(mid.depth >= ALMOST * DEEPEST, max(miss, 0.0), 0.0)  # uniform; a state may lie where that begins
     finish(
-        mid, rest, zero, zero, zero, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
+        mid, rest, zero, zero, rest, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
     )  # fmt: skip
     outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
     scale, rounding = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)

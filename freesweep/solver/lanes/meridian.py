@@ -133,9 +133,16 @@ def middle_at(y, cell, load, half, scratch):
     rate = sqrt(fall * s / -L_vv)
     far = min(max(rate * half, 1.0), DEEPEST)
     least = fall * reach * 2.0 / (1.0 / fallen(far, scratch) - 2.0)
+    u = y - gap
+    _, G_u, psi_u, energy_u = lagrangian.level_of(u, cell, load, near)
+    s_u, deep = sqrt(max(1.0 + G_u, 0.0)), depth >= ALMOST * DEEPEST  # of others u is but a number
     return Middle(
-        y - gap, select(driven, 1.0 / select(driven, per_depth, 1.0), rate), depth, q, whole, y, level, per_depth, rise,
-        -(L_yy + rise * near[7] / s) / s, s, psi, energy, (zero, zero, zero, zero),
+        u, select(driven, 1.0 / select(driven, per_depth, 1.0), rate), depth, q, whole, y, level, per_depth, rise,
+        -(L_yy + rise * near[7] / s) / s, s, psi, energy,
+        (
+            select(deep, s_u - s, 0.0), select(deep, u * u * s_u - y * y * s, 0.0), select(deep, psi_u - psi, 0.0),
+            select(deep, energy_u - energy, 0.0),
+        ),
     ), driven, rise / least - 1.0  # fmt: skip
 
 
