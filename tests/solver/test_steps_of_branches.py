@@ -1,0 +1,85 @@
+"""What hid between the steps of branches in two numbers, or beside their ends: found by comparing censuses of two versions.
+Right values are those of meshes, which follow branches in another way.
+"""
+
+import numpy as np
+import pytest
+from proportional import judged_near
+
+from freesweep.census.designs import BLOCK, COLUMNS, draw, with_pressures
+from freesweep.description.tube_model import MODELS
+from freesweep.solver import batch, hold_batch
+from freesweep.solver.held.sought import HELD_LENGTH
+from freesweep.solver.problem import FORCE, LENGTH
+from freesweep.status import BEYOND_LIMIT, INACCURATE, OK
+
+ACCURACY = 1e-6
+
+
+def of_census(seed, number, model="source"):
+    """``(problems, pressures)`` of one design of a census."""
+    drawn = draw(BLOCK, seed, number // BLOCK, MODELS[model])
+    row = slice(number % BLOCK, number % BLOCK + 1)
+    return drawn.problems(MODELS[model])[row], drawn.pressures[row].ravel()
+
+
+def walked(problems, pressures):
+    return batch.walk_all(problems, np.array([0, len(pressures)]), pressures, batch.uniform(24), ACCURACY)
+
+
+def test_branch_whose_meridians_end_is_not_left_for_another():
+    """It turns back at .7111 of its loads, where meridians stand upright; another branch goes on at .75."""
+    assert walked(*of_census(5, 109)).status.tolist() == [BEYOND_LIMIT] * 4
+
+
+def test_snap_that_bends_between_two_looks_is_seen():
+    """At .245 of its loads the branch falls back by 7e-5 of them, within one step of .05."""
+    assert walked(*of_census(1002, 1478)).status.tolist() == [BEYOND_LIMIT] * 4
+
+
+@pytest.mark.parametrize(("seed", "number", "model", "middles"), [
+    (1001, 2053, "source", [0.96855554, 0.9687558, 0.98251802, 0.98532672]),
+    (1002, 593, "physical", [0.88149921, 0.88203437, 0.93061381, 2.26576074]),
+])  # fmt: skip
+def test_loads_that_come_to_rest_just_before_a_turning_point_do_come(seed, number, model, middles):
+    walks = walked(*of_census(seed, number, model))
+    assert walks.status.tolist() == [OK] * 4
+    assert walks.values[:, batch.MIDDLE] == pytest.approx(middles, abs=2e-8)
+
+
+@pytest.mark.parametrize("number", [231, 442, 763, 2309, 3424])
+def test_states_just_below_a_limit_are_found_and_none_beyond_it(number):
+    problems, pressures = of_census(1001, number)
+    limit, bound = walked(problems, pressures).limits[0]
+    near = limit * (1.0 - np.array([1e-3, 1e-4, 1e-5]))
+    walks = walked(problems, np.array([*near, limit - 2.0 * bound, limit + 2.0 * bound]))
+    assert walks.status[:3].tolist() == [OK] * 3
+    assert walks.status[3] in (OK, INACCURATE)
+    assert walks.status[4] == BEYOND_LIMIT
+    moves = np.diff(walks.values[:4, batch.MIDDLE])
+    assert np.all(moves > 0.0) or np.all(moves < 0.0)
+    assert abs(moves[0]) > 2.0 * abs(moves[1]) > 2.0 * abs(moves[2])  # as the root of what is left to the limit
+
+
+def test_tube_that_is_slack_all_along_is_told_so_where_its_uniform_part_begins():
+    """A tube whose middle is all but uniform: what is left of it counts as its middle."""
+    problems, pressures = of_census(5, 185, "physical")
+    walks = walked(problems, pressures)
+    assert walks.status[0] == OK
+    assert walks.values[0, batch.OUTPUTS : batch.OUTPUTS + 2] == pytest.approx([1.0, 1.0], abs=1e-6)
+
+
+def test_held_length_that_stands_under_a_pull_alone_is_found():
+    """Free of a pull the tube would snap, and so it would on the way there with its length held."""
+    problems, pressures = of_census(3001, 396)
+    problems[:, FORCE] = 0.0
+    held = hold_batch.hold_all(
+        problems, problems[:, LENGTH].copy(), HELD_LENGTH, np.array([0, 1]), pressures[-1:], batch.uniform(24), ACCURACY
+    )
+    assert held.status.tolist() == [OK]
+    drawn = draw(BLOCK, 3001, 396 // BLOCK, MODELS["source"]).designs[396 % BLOCK]
+    design = with_pressures(drawn[None], pressures[None, -1:])[0]
+    design[0, COLUMNS.index("force")] = held.loads[0]
+    (exact,), (error,) = judged_near(design, held.states.values[:, batch.MIDDLE])
+    assert 2.0 * exact[0] == pytest.approx(problems[0, LENGTH], rel=1e-9)
+    assert np.all(np.abs(held.states.values[0] - exact) <= held.states.bounds[0] + error)
