@@ -61,8 +61,11 @@ def design(
     Returns a Dataset along ``candidate``: parameters by name, ``goal_value``, ``goal_error`` (bound), ``goal_met``,
     ``limit_value``, ``limit_kept``, ``misfit`` (root of the sum of squares, in tolerances), ``slope`` (change of each
     goal's output by what is free), ``status``, ``stable``, ``met``, ``python`` (the line that makes it);
-    ``attrs["summary"]`` says in a sentence whether it can be done and, if not, what stands against it. A candidate in which
-    some state is unstable is given only where no other does it. Raises :class:`ActuatorError` for invalid input.
+    ``attrs["summary"]`` says in a sentence whether it can be done and, if not, what stands against it. Their order: those
+    that meet everything first, of these those without a family that is slack or would push (``slack_fiber``); the others by
+    ``misfit``. With one thing to minimize: the least first; with two: along their front. A candidate in which some state is
+    unstable is given only where no other does it. Raises :class:`ActuatorError` for invalid input, and warns of numbers that
+    look like slips of units.
     """
     return find(template, free, goals, limits, minimize, count, atlas, seed, tolerances).data
 
