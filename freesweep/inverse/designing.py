@@ -11,6 +11,7 @@ from ..description.faults import ActuatorError
 from ..description.given import described
 from ..description.options import read_count
 from ..description.quantities import Names
+from ..description.unit_warnings import warn_of
 from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import read_tolerances
@@ -18,6 +19,7 @@ from .least import beaten, front, least, multipliers
 from .look import look, spread, with_dear
 from .misfit import make
 from .polish import polish
+from .unit_doubts import doubts_of
 from .wishes import Goal, Limit
 from .words import NONE, prices
 
@@ -94,6 +96,7 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
             )
     if faults:
         raise ActuatorError(faults)
+    warn_of(doubts_of(space, [*asked, *kept]), stacklevel=3)
     misfit = make(space, asked, kept)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
     made = _searched(first, objectives, count, seed, atlas, allowed)

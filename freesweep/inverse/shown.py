@@ -83,11 +83,17 @@ def _curve(wishes, tubes, loads):
     return Curve(output, UNITS.get(output, ""), along, grid, np.array(values), marks)
 
 
+def _tells_little(wish):
+    """A held tube that is as long as undeformed, or not turned, often is the cylinder that it was; a free one is not."""
+    held = dict(wish.conditions)
+    return wish.kind != "free", held.get("deformed_length", math.inf), -abs(held.get("rotation", 0.0))
+
+
 def _shapes(wishes, tubes, loads):
-    """In the first state that is wished for at a pressure: in one that is free, if any is, else held as it says."""
+    """In that state wished for at a pressure which tells most, free, or held as it says."""
     asked = [wish for own in wishes for wish in own if wish.kind in STATES]
     asked = [wish for wish in asked if math.isfinite(dict(wish.conditions).get("pressure", 0.0))]
-    asked.sort(key=lambda wish: wish.kind != "free")  # a held one often is the cylinder that it was
+    asked.sort(key=_tells_little)
     kind, conditions = (asked[0].kind, dict(asked[0].conditions)) if asked else ("free", {})
     rest = tuple(item for item in conditions.items() if item[0] != "pressure")
     held = "" if kind == "free" else kind

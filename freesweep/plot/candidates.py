@@ -85,7 +85,8 @@ def _draw_curve(ax, curve):
         ends = [end for end in (low, high) if np.isfinite(end)]  # of one alone: an arrow to where it shall be
         mark = "D" if len(ends) == 2 else "^" if np.isfinite(low) else "v"
         ax.errorbar(across * at, up * np.mean(ends), yerr=0.5 * up * np.ptp(ends), fmt=mark, color=style.INK,
-                    markersize=4 if mark == "D" else 6, markerfacecolor=style.PAPER, capsize=3, zorder=5)  # fmt: skip
+                    markersize=4 if mark == "D" else 6, markerfacecolor=style.PAPER,
+                    capsize=3 if mark == "D" else 0, zorder=5)  # fmt: skip
     label = f"{curve.output.replace('_', ' ')} [{unit}]".removesuffix(" [1]")
     ax.set(xlabel=axis_label(curve.along), ylabel=label)
 
