@@ -12,6 +12,14 @@ SHOWN = {
     "N": ("N", 1.0),
     "N m": ("N m", 1.0),
 }
+FAMILIES = "", "alpha", "beta", "alpha, beta"  # by the flags of slack_fiber
+THREADS = {  # what families without a pull do: loose ones go slack, bonded ones are asked to push
+    "loose": ("slack", "a fiber family hangs loose somewhere, and carries nothing there"),
+    "bonded": (
+        "would push",
+        "the state relies on a fiber family that would have to push somewhere; fibers cannot",
+    ),
+}
 
 
 def shown_in(asked) -> dict:
@@ -55,11 +63,7 @@ def table(dataset, shown=SHOWN) -> str:
     if "limit_found" in dataset and bool(dataset["limit_found"]):
         lines.append(f"limit pressure: {dataset['limit_pressure'].item() * press:.6g} {pascal}")
     if bool((dataset["slack_fiber"] > 0).any()):
-        sentences = {
-            "slack": "a fiber family hangs loose somewhere, and carries nothing there",
-            "would push": "the state relies on a fiber family that would have to push somewhere; fibers cannot",
-        }
-        lines.append(f"{(word := _word_of(dataset))}: {sentences[word]}")
+        lines.append(": ".join(_words_of(dataset)))
     if any("unstable" in row[-1] for row in rows):
         lines.append("unstable: an equilibrium that the smallest disturbance makes the tube leave")
     if not all(int(value) in VALUED for value in dataset["status"].values.ravel()):
@@ -79,14 +83,13 @@ def number(value, error):
     return f"{value:.7g}"
 
 
-def _word_of(results):
-    """What families without a pull do: loose ones go slack, bonded ones are asked to push."""
-    return "slack" if results.attrs.get("fibers") == "loose" else "would push"
+def _words_of(results):
+    return THREADS["loose" if results.attrs.get("fibers") == "loose" else "bonded"]
 
 
 def _flags(state):
     """Slack fibers and instability, in words."""
-    which, word = ("", "alpha ", "beta ", "")[flag := int(state["slack_fiber"])], _word_of(state)
+    which, (word, _) = ("", "alpha ", "beta ", "")[flag := int(state["slack_fiber"])], _words_of(state)
     slack = f", {which}fibers {word}" if flag else ""
     return slack + (", unstable" if int(state["status"]) in VALUED and not int(state["stable"]) else "")
 

@@ -23,6 +23,7 @@ def _run(options):
     from ..inverse import wish_file
     from ..inverse.designing import find
     from ..inverse.report import csv, lines, table
+    from ..report import shown_in
 
     if options.out and Path(options.out).suffix not in (".csv", ".nc"):
         raise ValueError(f"--out: found {options.out!r}; candidates are kept as .csv or .nc")
@@ -33,7 +34,7 @@ def _run(options):
 
         print(of_candidates(found))
     else:
-        print(table(found))
+        print(table(found, shown_in(wish_file.units_asked(options.wishes))))
         print(found.attrs["summary"])
         if found.attrs.get("prices"):
             print(found.attrs["prices"])
@@ -47,5 +48,5 @@ def _run(options):
         from ..plot.candidates import draw
         from ..plot.style import save
 
-        save(draw(found, *shown(found, tubes, asked["goals"])), options.picture)
+        save(draw(found, *shown(found, tubes, asked["goals"], asked["limits"])), options.picture)
         print(options.picture)

@@ -104,6 +104,11 @@ def _pick(first, other, which):
     return Dual(value, None if all(np.ndim(part) == 0 for part in parts) else np.where(which, *parts))
 
 
+def select(which, first, other):
+    """``first`` where ``which`` is true, in each cell."""
+    return _pick(first, other, which)
+
+
 def sqrt(x):
     """Square root."""
     if not isinstance(x, Dual):

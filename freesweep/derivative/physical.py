@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..description.families import followed
-from .dual import Dual, maximum, sqrt
+from .dual import Dual, maximum, select, sqrt, value_of
 from .equilibrium import NotFound
 from .physics import Physics
 from .twins import twin
@@ -42,8 +42,13 @@ def walls():
         thickest = np.argmax(both[1] / both[0])
         return counted(*(float(one[thickest]) for one in both))
 
+    def lies_inside(wall):
+        """Of each cell: a body's own radius rounds what is no wall inside to next to none, here and there."""
+        return (value_of(wall[1]) > 0.0) & (value_of(wall[1]) < 1.0)
+
     changes = twin(body.as_tube), twin(body.of_partials), twin(body.of_integrals)
-    return twin(wall.energy, points=points), twin(wall.narrowest), twin(physical.place), changes
+    narrowest = twin(wall.narrowest, lies_inside=lies_inside, select=select)
+    return twin(wall.energy, points=points), narrowest, twin(physical.place), changes
 
 
 class Settled(NamedTuple):
@@ -137,6 +142,9 @@ class PhysicalTube(Physics):
         for _ in range(CHANGES):
             four[2] *= alpha
             four[3] *= beta
+            if self.is_locked:  # threads bear it all: where one is slack, only the other's pull tells the twist
+                pull = 0.5 * T / np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
+                four[2], four[3] = np.where(alpha & ~beta, pull, four[2]), np.where(beta & ~alpha, pull, four[3])
             four = self._newton(plain, v, low, four, alpha, beta, weighed, rubber, wall)
             if not self.tube.is_loose:
                 break

@@ -28,8 +28,8 @@ class Found(NamedTuple):
 
 def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=0) -> Found:
     """The candidates at points u (n, p), ``near`` which that was predicted, in the order given, but without objectives those
-    first that do it; without those in which some state is unstable, if others do it. ``tolerances`` of manufacture, if any,
-    spread what they do.
+    first that do it, and of these those in which no family is slack, or would push; without those in which some state is
+    unstable, if others do it. ``tolerances`` of manufacture, if any, spread what they do.
     """
     import xarray as xr
 
@@ -40,7 +40,7 @@ def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=
     done = np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)
     stands = ~np.any(found.falls, axis=1)
     if np.any(done):
-        order = np.arange(len(u)) if objectives else np.argsort(~done, kind="stable")
+        order = np.arange(len(u)) if objectives else np.lexsort((done & (found.slack > 0), ~done))
         if np.any(done & stands):  # what the smallest disturbance ends is no answer where another one is
             order = order[(stands | ~done)[order]]
         u, choice, slopes, found = u[order], choice[order], slopes[order], found.part(order)
@@ -109,6 +109,7 @@ def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=
     result.attrs = {
         "title": f"designs from {space.template!r}",
         "summary": sentence(misfit, result, residuals[0], u, slopes),
+        "fibers": "loose" if space.template.is_loose else "bonded",
     }
     return Found(result, tubes)
 

@@ -11,6 +11,7 @@ from ..description.faults import ActuatorError
 from ..description.given import described
 from ..description.options import read_count
 from ..description.quantities import Names
+from ..description.unit_warnings import warn_of
 from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import read_tolerances
@@ -18,6 +19,7 @@ from .least import beaten, front, least, multipliers
 from .look import look, spread, with_dear
 from .misfit import make
 from .polish import polish
+from .unit_doubts import doubts_of
 from .wishes import Goal, Limit
 from .words import NONE, prices
 
@@ -61,8 +63,11 @@ def design(
     Returns a Dataset along ``candidate``: parameters by name, ``goal_value``, ``goal_error`` (bound), ``goal_met``,
     ``limit_value``, ``limit_kept``, ``misfit`` (root of the sum of squares, in tolerances), ``slope`` (change of each
     goal's output by what is free), ``status``, ``stable``, ``met``, ``python`` (the line that makes it);
-    ``attrs["summary"]`` says in a sentence whether it can be done and, if not, what stands against it. A candidate in which
-    some state is unstable is given only where no other does it. Raises :class:`ActuatorError` for invalid input.
+    ``attrs["summary"]`` says in a sentence whether it can be done and, if not, what stands against it. Their order: those
+    that meet everything first, of these those without a family that is slack or would push (``slack_fiber``); the others by
+    ``misfit``. With one thing to minimize: the least first; with two: along their front. A candidate in which some state is
+    unstable is given only where no other does it. Raises :class:`ActuatorError` for invalid input, and warns of numbers that
+    look like slips of units.
     """
     return find(template, free, goals, limits, minimize, count, atlas, seed, tolerances).data
 
@@ -91,6 +96,7 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
             )
     if faults:
         raise ActuatorError(faults)
+    warn_of(doubts_of(space, [*asked, *kept]), stacklevel=3)
     misfit = make(space, asked, kept)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
     made = _searched(first, objectives, count, seed, atlas, allowed)

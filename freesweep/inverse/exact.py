@@ -18,16 +18,15 @@ from .predict import state_of
 from .vectors import STRAIGHT, Kind, points_of
 from .wishes import HELD
 
-ACCURACY = 1e-6  # of the slopes, in the unit box
-ROUGH = 1e-4  # of those that are told from a middle: in a long tube its last digits decide where the layer lies
+ACCURACY = 1e-4  # of the slopes, in the unit box: nearly all are told a thousand times as closely
 STEP = 1e-4  # of the unit box, of central differences
 SAME = 1e-4  # relative: by how much a value may differ from the one that was predicted
 
 
 def exact_slopes(space, wishes, u, choice, values, middles=None):
     """Derivatives (n, wishes, p) of the ``values`` (n, wishes) along points u (n, p), NaN where there are none here: no
-    state, a limit pressure, a tube that varies, or one of which vectors find no derivative, or another state; ``middles``:
-    radii of the middle [m] of physical tubes, if they are known.
+    state, a limit pressure, a tube that varies, or one of which vectors find no derivative, or another state; ``middles``
+    (n, wishes): radii of the middle [m], if they are known; else states are those that a way from rest leads to.
     """
     count, free = u.shape
     slopes = np.full((count, len(wishes), free), np.nan)
@@ -81,16 +80,8 @@ def _state(space, state, outputs, columns, values, middles, some, free):
         design[state.kind] = Dual(values[:, 0], load)
     tube, sizes = space.template, _sizes(design, state, len(some), free)
 
-    def slopes_of(design, sizes, accuracy, middles):
-        known = None if middles is None else (middles, np.ones(len(middles), bool))
-        return differentiated(design, tube.energy, sizes, SHAPE, accuracy, tube.is_thick, tube.threads, known)[0]
-
-    rows = slopes_of(design, sizes, ACCURACY, None if space.is_source else middles)
-    if space.is_source and middles is not None:  # to some states no quick way leads, but from their own middles
-        lost = np.flatnonzero(np.any(np.isnan(rows), axis=(0, 1)) & np.isfinite(middles))
-        if len(lost):
-            own = {name: number.take(lost) for name, number in design.items()}
-            rows[..., lost] = slopes_of(own, sizes[:, lost], ROUGH, middles[lost])
+    known = None if middles is None else (middles, np.ones(len(middles), bool))
+    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads, known)
     if held is not None:
         rows = _straight(tube, design, rows, free + 1) if space.is_source else rows
         target = (

@@ -3,7 +3,11 @@
 import csv as files
 import io
 
+from ..report import FAMILIES, SHOWN, THREADS, aligned
+from .words import unit_of
+
 NAMES = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "pressure", "force", "torque")
+MISSED = "!"
 
 
 def columns_of(found):
@@ -36,30 +40,59 @@ def csv(found) -> str:
     return stream.getvalue()
 
 
-def table(found) -> str:
-    """What is free and what the goals came to, a row for each candidate."""
+def table(found, shown=SHOWN) -> str:
+    """What is free and what the goals came to, a row for each candidate, in units such as
+    :func:`freesweep.report.shown_in` finds; then what its marks mean.
+    """
     free = {name.partition("[")[0] for name in found["parameter"].values.tolist()}
     tied = {name for name in NAMES if name in found and len(set(found[name].values.ravel().tolist())) > 1}
     columns = [("", [str(k) for k in found["candidate"].values])]
     for name in NAMES:
-        if name in found and name in free | tied and found[name].dims == ("candidate",):
-            unit = found[name].attrs["units"]
-            columns.append((f"{name} [{unit}]", [f"{value:.6g}" for value in found[name].values]))
-    for group in ("goal", "limit"):
-        done = found[f"{group}_met" if group == "goal" else f"{group}_kept"] if found.sizes.get(group) else None
+        if name in found and name in free | tied - {"fiber_radius"} and found[name].dims == ("candidate",):
+            unit, scale = _shown(found[name].attrs["units"], shown)
+            columns.append((_headed(name, unit), [f"{value * scale:.6g}" for value in found[name].values]))
+    for group, fine in (("goal", "goal_met"), ("limit", "limit_kept")):
         for k in range(found.sizes.get(group, 0)):
-            marks = ["" if fine else " !" for fine in done.values[:, k]]
-            values = found[f"{group}_value"].values[:, k]
+            heading, scale = _title(found[group].values[k], shown)
+            marks = ["" if one else f" {MISSED}" for one in found[fine].values[:, k]]
+            values = scale * found[f"{group}_value"].values[:, k]
             spreads = [""] * len(values)
             if f"{group}_spread" in found:
-                spreads = [f" +- {spread:.2g}" for spread in found[f"{group}_spread"].values[:, k]]
+                spreads = [f" +- {scale * spread:.2g}" for spread in found[f"{group}_spread"].values[:, k]]
             texts = [f"{value:.6g}{spread}{mark}" for value, spread, mark in zip(values, spreads, marks)]
-            columns.append((found[group].values[k], texts))
+            columns.append((heading, texts))
     for k in range(found.sizes.get("minimized", 0)):
-        columns.append((f"least {found['minimized'].values[k]}", [f"{v:.6g}" for v in found["objective"].values[:, k]]))
-    widths = [max(len(heading), *map(len, values)) for heading, values in columns]
-    rows = [[heading for heading, _ in columns], *zip(*(values for _, values in columns))]
-    return "\n".join("  ".join(text.rjust(width) for text, width in zip(row, widths)) for row in rows)
+        heading, scale = _title(found["minimized"].values[k], shown)
+        columns.append((f"least {heading}", [f"{scale * value:.6g}" for value in found["objective"].values[:, k]]))
+    families = [FAMILIES[flag] for flag in found["slack_fiber"].values.tolist()]
+    word, meaning = THREADS[found.attrs["fibers"]]
+    if any(families):
+        columns.append((word, [which or "-" for which in families]))
+    rows = aligned([[heading for heading, _ in columns], *zip(*(values for _, values in columns))])
+    if any(MISSED in text for _, values in columns for text in values):
+        rows.append(f"{MISSED} misses its goal, or breaks its limit")
+    return "\n".join([*rows, f"{word}: {meaning}"] if any(families) else rows)
+
+
+def _shown(unit, shown):
+    """``(unit, scale)`` in which what is kept in a unit is shown."""
+    return shown.get(unit, (unit, 1.0))
+
+
+def _headed(name, unit):
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
+def _title(title, shown):
+    """``(heading, scale)`` of a wish's title, ``output at name value unit, ...``, with its units as they are shown."""
+    output, _, state = title.partition(" at ")
+    unit, scale = _shown(unit_of(output), shown)
+    said = []
+    for name, value, kept in (part.split(" ", 2) for part in state.split(", ") if part):
+        own, factor = _shown(kept, shown)
+        said.append(f"{name} {factor * float(value):.6g} {own}")
+    heading = _headed(output, unit)
+    return f"{heading} at {', '.join(said)}" if said else heading, scale
 
 
 def lines(found) -> str:

@@ -30,15 +30,17 @@ seed = 0
 from dataclasses import fields
 from pathlib import Path
 
+from ..atlas.schema import PARAMETERS
 from ..description.actuator import Actuator
 from ..description.elastomer import rubber_of
 from ..description.faults import ActuatorError
 from ..description.given import numbers
 from ..description.material_library import material
+from ..report import SHOWN
 from ..sweep import toml_guard
 from .curve_file import is_path
 from .freedom import CONSTANTS, Profile
-from .wishes import Goal, Limit, _Asked
+from .wishes import CONDITIONS, UNITS, Goal, Limit, _Asked
 
 PLACES = {"alpha": 40.0, "beta": -20.0, "length": 0.1, "radius": 5e-3, "wall": 1e-3}  # of what is free, until it is not
 KINDS = {"actuator": dict, "free": dict, "goals": list, "limits": list, "tolerances": dict, "search": dict}
@@ -78,6 +80,25 @@ def read(path) -> dict:
     more = {key: search[key] for key in ("count", "seed") if key in search}
     more |= {"tolerances": tables["tolerances"]} if tables["tolerances"] else {}
     return {"template": tube, "free": free, "goals": goals, "limits": limits, "minimize": minimize} | more
+
+
+def units_asked(path) -> list:
+    """Pairs of a text and the unit in which its kind is kept, of what a file of wishes gives with units: of the actuator
+    first, then of what is free, goals and limits.
+    """
+    document = toml_guard.load(toml_guard.read_text(path), str(path))
+    given = [*document.get("actuator", {}).items(), *document.get("free", {}).items()]
+    given = [(name, value) for name, value in given if name not in CONSTANTS]  # a rubber's: no pressures of a table
+    kept = {name: parameter.units for name, parameter in PARAMETERS.items()} | CONDITIONS
+    for one in (*document.get("goals", []), *document.get("limits", [])):
+        unit = UNITS.get(one["output"], kept.get(one["output"]))
+        given += [(name, one[name]) for name in CONDITIONS if name in one]
+        given += [(unit, one[name]) for name in ("value", "at_least", "at_most", "between", "tolerance") if name in one]
+    pairs = []
+    for name, value in given:
+        ends = value.values() if isinstance(value, dict) else value if isinstance(value, list) else [value]
+        pairs += [(text, kept.get(name, name)) for text in ends if isinstance(text, str)]
+    return [(text, unit) for text, unit in pairs if unit in SHOWN and not is_path(text)]
 
 
 def _free(value, where, faults):

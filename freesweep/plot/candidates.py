@@ -5,12 +5,14 @@ import textwrap
 import numpy as np
 from matplotlib.figure import Figure
 
+from ..report import FAMILIES, SHOWN, THREADS
 from . import style
-from .display import axis_label
+from .display import axis_label, shown_units
 
 SIZE = (style.PAGE, 120.0)  # [mm]
 MOST = 5  # candidates that have a colour of their own
 WIDTH = 100  # letters of a line
+HELD = {"": "free", "force": "held in length", "torque": "held from turning"}
 
 
 def draw(found, curves, shapes) -> Figure:
@@ -24,7 +26,7 @@ def draw(found, curves, shapes) -> Figure:
         _draw_angles(axes["angles"], found)
         for name, curve in zip(names, curves):
             _draw_curve(axes[name], curve)
-        _draw_shapes(axes["shapes"], shapes)
+        _draw_shapes(axes["shapes"], shapes, found)
         figure.suptitle(
             "\n".join(textwrap.wrap(found.attrs["summary"], WIDTH)), fontsize=style.points(style.NORMAL + 1)
         )
@@ -35,10 +37,19 @@ def _colour(k):
     return style.SERIES[k % len(style.SERIES)] if k < MOST else style.QUIET
 
 
+def _threads(found, k):
+    """Which families are slack in a candidate, or would push: a word, "" for none."""
+    flag = int(found["slack_fiber"].values[k])
+    return f"{FAMILIES[flag]} {THREADS[found.attrs['fibers']][0]}".lstrip() if flag else ""
+
+
 def _draw_angles(ax, found):
     """Both angles of each candidate as a point; over the tube, where they vary along it."""
     met = found["met"].values
-    ax.set_title("filled: meets all" if met.any() else "none meets all", fontsize=style.points(style.NORMAL))
+    said = ["filled: meets all" if met.any() else "none meets all"]
+    if (found["slack_fiber"].values > 0).any():
+        said.append(f"square: threads {THREADS[found.attrs['fibers']][0]}")
+    ax.set_title("; ".join(said), fontsize=style.points(style.NORMAL))
     if "knot" in found.dims:
         for k in range(min(len(met), MOST)):
             for name, line in (("alpha", "-"), ("beta", "--")):
@@ -48,8 +59,8 @@ def _draw_angles(ax, found):
         return
     alpha, beta = found["alpha"].values, found["beta"].values
     for k, fine in enumerate(met):
-        colour = _colour(k)
-        ax.plot(alpha[k], beta[k], "o", color=colour, markerfacecolor=colour if fine else style.PAPER, markersize=5)
+        colour, mark = _colour(k), "s" if found["slack_fiber"].values[k] else "o"
+        ax.plot(alpha[k], beta[k], mark, color=colour, markerfacecolor=colour if fine else style.PAPER, markersize=5)
         ax.annotate(str(k), (alpha[k], beta[k]), (4, 3), textcoords="offset points", color=colour)
     ax.set(xlabel=axis_label("alpha"), ylabel=axis_label("beta"))
     ax.set_xlim(min(0.0, alpha.min() - 5), max(alpha.max() + 8, 20))
@@ -65,16 +76,22 @@ def _draw_along(ax, found, name, k, **how):
 
 
 def _draw_curve(ax, curve):
-    """A goal's output over the pressure, of each candidate, and what was asked for."""
+    """An output over the pressure, or what is held, of each candidate, and what was asked for."""
+    _, across = shown_units(curve.along)
+    unit, up = SHOWN.get(curve.unit, (curve.unit, 1.0))
     for k, values in enumerate(curve.values):
-        ax.plot(curve.pressure / 1e3, values, color=_colour(k), linewidth=style.THICK)
-    for p, low, high in curve.asked:
-        ax.errorbar(p / 1e3, 0.5 * (low + high), yerr=0.5 * (high - low), fmt="D", color=style.INK, markersize=4,
-                    markerfacecolor=style.PAPER, capsize=3, zorder=5)  # fmt: skip
-    ax.set(xlabel="pressure [kPa]", ylabel=f"{curve.output.replace('_', ' ')} [{curve.unit}]")
+        ax.plot(across * curve.at, up * values, color=_colour(k), linewidth=style.THICK)
+    for at, low, high in curve.asked:
+        ends = [end for end in (low, high) if np.isfinite(end)]  # of one alone: an arrow to where it shall be
+        mark = "D" if len(ends) == 2 else "^" if np.isfinite(low) else "v"
+        ax.errorbar(across * at, up * np.mean(ends), yerr=0.5 * up * np.ptp(ends), fmt=mark, color=style.INK,
+                    markersize=4 if mark == "D" else 6, markerfacecolor=style.PAPER,
+                    capsize=3 if mark == "D" else 0, zorder=5)  # fmt: skip
+    label = f"{curve.output.replace('_', ' ')} [{unit}]".removesuffix(" [1]")
+    ax.set(xlabel=axis_label(curve.along), ylabel=label)
 
 
-def _draw_shapes(ax, shapes):
+def _draw_shapes(ax, shapes, found):
     """Each candidate from the side, at rest in grey and under pressure."""
     step = 0.0
     for k, shape in enumerate(shapes):
@@ -85,12 +102,13 @@ def _draw_shapes(ax, shapes):
             ax.plot([0.0, shape.rest[0] * 1e3], [side * shape.rest[1] * 1e3 - step] * 2, color=style.BLANK, linewidth=2)
         ax.fill_between(x, -step - r, -step + r, color=_colour(k), alpha=0.55, linewidth=0)
         end = np.nanmax(np.append(x, shape.rest[0] * 1e3))
-        ax.annotate(
-            f"{k}: {shape.rotation:.0f}\u00b0", (end, -step), (6, -3), textcoords="offset points", color=_colour(k)
-        )
+        said = f"{k}: {shape.rotation:.0f}\u00b0".replace(": -0\u00b0", ": 0\u00b0")
+        said = ", ".join(filter(None, (said, _threads(found, k))))
+        ax.annotate(said, (end, -step), (6, -3), textcoords="offset points", color=_colour(k))
         step += half
-    state = f"colour: at {shapes[0].pressure / 1e3:g} kPa" if shapes else ""
-    ax.set(xlabel=f"axial position [mm] (grey: at rest; {state})", yticks=[], aspect="equal")
+    held = HELD[shapes[0].held] if shapes else ""
+    state = f"; colour: {held} at {shapes[0].pressure / 1e3:g} kPa" if shapes else ""
+    ax.set(xlabel=f"axial position [mm] (grey: at rest{state})", yticks=[], aspect="equal")
     ax.margins(x=0.08)
     for side in ("left", "right", "top"):
         ax.spines[side].set_visible(False)

@@ -342,7 +342,8 @@ def test_a_single_limit_needs_no_list():
 
 def test_what_no_design_has_a_state_for_is_refused():
     wish = fs.Goal("force", 10, pressure=1.0, deformed_length=1e-4)
-    with pytest.raises(fs.ActuatorError, match="none of the designs that were looked at has all the states"):
+    none = pytest.raises(fs.ActuatorError, match="none of the designs that were looked at has all the states")
+    with none, pytest.warns(UserWarning, match="a held length of 0.0001 m|no pressure exceeds 1 Pa"):
         fs.design(tube(), bounds("alpha"), wish, count=1)
 
 
@@ -462,6 +463,18 @@ def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, cap
     rows = list(csv.reader(out.read_text(encoding="utf-8").splitlines()))
     assert {"alpha [degree]", "radius [m]", "rotation at pressure 100000 Pa", "python"} <= set(rows[0])
     assert len({len(row) for row in rows}) == 1
+    # those that do it first, of these those in which no thread would push, which the table marks; in units of the wish
+    found = [dict(zip(rows[0], row)) for row in rows[1:]]
+    order = [(one["met"] != "True", one["met"] == "True" and one["slack_fiber"] != "0") for one in found]
+    assert order == sorted(order)
+    assert (False, True) in order
+    heading, *table = said.splitlines()
+    assert re.split("  +", heading.strip())[2:] == [
+        "radius [mm]", "rotation [deg] at pressure 100 kPa", "length_change [mm] at pressure 100 kPa", "would push"
+    ]  # fmt: skip
+    for line, one in zip(table, found):
+        assert float(line.split()[3]) == pytest.approx(1e3 * float(one["radius [m]"]), rel=1e-5)
+        assert line.split()[-1] == ("-", "alpha", "beta")[int(one["slack_fiber"])]
     assert picture.stat().st_size > 20_000
 
 
@@ -476,6 +489,30 @@ def test_shapes_are_shown_in_the_state_that_is_asked_for():
         _, (shape,) = shown(loads, [template], [goal])
         assert length is None or shape.position[-1] == pytest.approx(length, rel=1e-6)
         assert rotation is None or shape.rotation == pytest.approx(rotation, rel=1e-4)
+
+
+def test_pictures_show_what_tells_most():
+    """A limit's curve and the free state in which it counts, beside a held cylinder; forces over the lengths held, and the
+    shortest of these.
+    """
+    template = tube(20.0, -20.0)
+    goal, limit = fs.Goal("force", at_least=1, pressure=5e4), fs.Limit("stroke", at_least=0.01, pressure=5e4)
+    curves, (shape,) = shown({}, [template], [goal], [limit])
+    assert [(curve.output, curve.along, curve.unit) for curve in curves] == [
+        ("force", "pressure", "N"), ("stroke", "pressure", "1")
+    ]  # fmt: skip
+    assert curves[1].asked == [(5e4, 0.01, np.inf)]
+    assert shape.held == ""
+    free = fs.inflate(template, 5e4, x=0.0)["deformed_length"].item()
+    assert shape.position[-1] == pytest.approx(free, rel=1e-4)
+    assert curves[1].values[0][curves[1].at == 5e4] == pytest.approx(1.0 - free / 0.15, abs=1e-5)
+    along = fs.Goal("force", [3.0, 2.0], pressure=5e4, deformed_length=[0.15, 0.147])
+    (curve,), (shape,) = shown({}, [template], [along])
+    assert curve.along == "deformed_length"
+    assert (curve.at[0], curve.at[-1]) == (0.147, 0.15)
+    ends = fs.blocked_force(template, 5e4, [0.147, 0.15], x=0.0)["force"].values
+    assert curve.values[0][[0, -1]] == pytest.approx(ends, rel=1e-5)
+    assert (shape.held, shape.position[-1]) == ("force", pytest.approx(0.147, rel=1e-6))
 
 
 def test_a_wish_file_lists_every_fault(tmp_path, capsys):

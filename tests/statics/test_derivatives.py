@@ -170,6 +170,25 @@ def test_derivatives_of_many_states_cost_little_more_than_the_states():
     assert took[1] < 3.0 * took[0] + 1.5
 
 
+def test_what_two_families_cancel_is_none_within_its_bound():
+    """Machine code of steep fibers: what both turn a tube by is large, and its sum rounding."""
+    tube = tube_of(
+        {
+            "alpha": 74.72,
+            "beta": -74.72,
+            "length": 0.1365,
+            "radius": 3.33e-3,
+            "wall": 5.3e-4,
+            "material": fs.Yeoh(1.1e5, 2.6e4, 900.0),
+        }
+    )
+    found = fs.inflate(tube, np.linspace(5e3, 2e4, attach.MANY), x=[0.0], derivatives=["fiber_extension", "wall"])
+    for name in ("fiber_extension", "wall"):
+        turned, bound = (found[f"d_rotation_d_{name}{end}"].values for end in ("", "_error"))
+        assert np.all(np.abs(turned) <= bound)
+        assert np.all(bound < 1e-10 * SIZES["rotation"] / SIZES[name])
+
+
 def test_loads_work_on_each_other_s_displacements_alike():
     """Maxwell's symmetries of volume, length and rotation, conjugate to pressure, force and torque."""
     d = fs.inflate(fs.Actuator(**TUBE), **LOADS, derivatives=["pressure", "force", "torque"])
