@@ -17,7 +17,7 @@ from .description.loads import STATIONS
 from .description.strain import largest_principal
 
 FAMILIES = ("alpha", "beta")
-NEAR = np.geomspace(1e-6, 1.0 / (STATIONS - 1), 40)[:-1]  # of the length: places in layers, which are thin at low pressures
+NEAR = np.geomspace(1e-6, 0.8 / (STATIONS - 1), 40)  # of the length: places in layers, thin at low pressures
 CURVED = 1.0 / 8.0  # of a second difference: by how much a smooth curve passes the largest of its samples
 
 
