@@ -9,7 +9,7 @@ from .atlas.schema import PROFILES, attributes
 from .description.families import told, told_slack
 from .description.revolution import wall_volume_inside as wall_volume_of_body
 from .description.strain import warn_beyond_range
-from .scaling import ALONG, OF_MEMBRANES, OUTPUTS, output_scales, wall_volume_inside
+from .scaling import ALONG, OF_MEMBRANES, OUTPUTS, SLACK, output_scales, wall_volume_inside
 from .worst_places import strained_layers, with_own, worst_places
 
 
@@ -42,6 +42,8 @@ def dataset(tube, axes, stations, found, without=()):
         for name in ALONG if tube.is_thick else OF_MEMBRANES:
             k = len(OUTPUTS) + ALONG.index(name)
             worst[name], worst[f"{name}_error"] = (found[of][..., k] * scale[name] for of in ("values", "bounds"))
+        for name in SLACK:
+            worst[name] = np.clip(worst[name], 0.0, 1.0)  # sums of lengths are rounded
     worst, along = told(tube, worst), told(tube, along)
     data["slack_fiber"] = (names, told_slack(tube, found["slack_fiber"]).astype(np.int8))
     data |= {name: (names, array) for name, array in worst.items()}

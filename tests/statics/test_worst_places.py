@@ -87,6 +87,20 @@ def test_a_least_tension_in_a_layer_thinner_than_the_stations_are_apart_is_seen(
     assert error <= 0.5 * right
 
 
+def test_no_more_than_all_of_a_tube_is_slack():
+    """Cells' lengths had added up to a little more than one."""
+    own = {name: [(0.0, a), (0.69096, a), (0.69096, b), (1.0, b)] for name, a, b in (
+        ("alpha", 10.654784312, 18.086305407), ("beta", -35.735639152, -40.038848751),
+    )}  # fmt: skip
+    tube = fs.Actuator(
+        **own, length=0.01942895222817203, radius=5e-3, wall=2.511728956e-3, fibers="loose", fiber_extension=1.01376846,
+        material=fs.MooneyRivlin(150e3, 66487.736),
+    )  # fmt: skip
+    held = fs.blocked_force(tube, 1258.194585, 0.01942896851174648, -5.4432685e-5, x=0.0)
+    assert float(held.slack_alpha) == 1.0
+    assert float(held.slack_beta) == 1.0
+
+
 def test_where_there_is_no_state_there_is_no_number():
     state = fs.inflate(fs.Actuator(alpha=30, beta=-30, length=0.1, **SECTION), 1e4, force=-1000.0)
     assert int(state.status) != 0
