@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .derivative.request import asked_of
-from .description.loads import read_load, read_stations, warn_of_loads
+from .description.loads import each_once, read_load, read_stations, warn_of_loads
 from .description.profiles import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
@@ -47,13 +47,14 @@ def hold(tube, given, x, accuracy, buckled=False, derivatives=None, tied=False):
     names = asked_of(tube, derivatives, faults, ("pressure", load_name), held_name)
     stations, accuracy = read_stations(tube, x, accuracy, faults)
     warn_of_loads(tube, **{name: axes[name] for name in axes if name != "rotation"}, stacklevel=4)
+    axes, at = each_once(axes)
     held = Held(held_name, axes, stations, bool(buckled))
     result = _solve(tube, held, accuracy)
-    if not names:
-        return result
-    from .derivative.attach import attach
+    if names:
+        from .derivative.attach import attach
 
-    return attach(result, *_differentiable(tube, held, result, names, accuracy, tied))
+        result = attach(result, *_differentiable(tube, held, result, names, accuracy, tied))
+    return result.isel(at)
 
 
 def _differentiable(tube, held, result, names, accuracy, tied):

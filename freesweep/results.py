@@ -9,7 +9,7 @@ from .atlas.schema import PROFILES, attributes
 from .description.families import told, told_slack
 from .description.revolution import wall_volume_inside as wall_volume_of_body
 from .description.strain import warn_beyond_range
-from .scaling import ALONG, OUTPUTS, SLACK, output_scales, wall_volume_inside
+from .scaling import ALONG, OF_MEMBRANES, OUTPUTS, SLACK, output_scales, wall_volume_inside
 from .worst_places import strained_layers, with_own, worst_places
 
 
@@ -39,9 +39,11 @@ def dataset(tube, axes, stations, found, without=()):
     along = profiles(tube, found["fields"], found["values"], found["bounds"], every)
     layers, worst = strained_layers(tube, along, every), worst_places(tube, along, every, found["slack_fiber"])
     if found["values"].shape[-1] > len(OUTPUTS):  # the kernels looked at every cell
-        for name in (*SLACK, *(("outer_radius",) if tube.is_thick else ())):
+        for name in ALONG if tube.is_thick else OF_MEMBRANES:
             k = len(OUTPUTS) + ALONG.index(name)
             worst[name], worst[f"{name}_error"] = (found[of][..., k] * scale[name] for of in ("values", "bounds"))
+        for name in SLACK:
+            worst[name] = np.clip(worst[name], 0.0, 1.0)  # sums of lengths are rounded
     worst, along = told(tube, worst), told(tube, along)
     data["slack_fiber"] = (names, told_slack(tube, found["slack_fiber"]).astype(np.int8))
     data |= {name: (names, array) for name, array in worst.items()}

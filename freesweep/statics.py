@@ -9,7 +9,7 @@ from .derivative.request import asked_of
 from .description import profiles
 from .description.actuator import Actuator
 from .description.faults import ActuatorError
-from .description.loads import read_load, read_stations, warn_of_loads
+from .description.loads import each_once, read_load, read_stations, warn_of_loads
 from .description.profiles import SENSITIVITY, widened
 from .description.quantities import Names, Quantities
 from .results import dataset, near_stations
@@ -78,8 +78,8 @@ def inflate(
     Parameters
     ----------
     tube : the actuator
-    pressure, force, torque : number or 1-D array [Pa, N, N m]; an array makes a dimension of that name. Force is positive
-        in tension, torque toward growing rotation
+    pressure, force, torque : number or 1-D array [Pa, N, N m]; an array makes a dimension of that name, in its order (what
+        stands there twice is solved once). Force is positive in tension, torque toward growing rotation
     x, accuracy, derivatives : as in :func:`lock`; of the loads, too: ``pressure``, ``force``, ``torque``
 
     Returns a Dataset. What physics forbids is NaN with a ``status``: beyond ``limit_pressure`` the branch that starts at
@@ -96,7 +96,8 @@ def inflate(
     names = asked_of(tube, derivatives, faults, LOADS)
     stations, accuracy = read_stations(tube, x, accuracy, faults)
     warn_of_loads(tube, **loads)
-    return _differentiated(_solve(tube, loads, stations, accuracy), tube, names, loads, accuracy)
+    loads, at = each_once(loads)
+    return _differentiated(_solve(tube, loads, stations, accuracy), tube, names, loads, accuracy).isel(at)
 
 
 def _differentiated(result, tube, names, loads, accuracy):

@@ -12,23 +12,44 @@ undeformed length, and how hard they would push.
 
 import numpy as np
 
+from .description.families import given_by
 from .description.loads import STATIONS
 from .description.strain import largest_principal
 
 FAMILIES = ("alpha", "beta")
+NEAR = np.geomspace(1e-6, 0.8 / (STATIONS - 1), 40)  # of the length: places in layers, thin at low pressures
 CURVED = 1.0 / 8.0  # of a second difference: by how much a smooth curve passes the largest of its samples
 
 
 def with_own(tube, stations):
-    """The stations that are asked for [m], and evenly spaced ones, ascending, each once."""
-    return np.union1d(stations, np.linspace(0.0, tube.length, STATIONS))
+    """The stations that are asked for [m], and those at which the worst is looked for, ascending, each once."""
+    return np.union1d(stations, _own(tube))
+
+
+def _own(tube):
+    """Evenly spaced stations, and ever closer ones toward the places from which layers begin: clamped ends, of a tube that
+    is the same all along the near one, and where profiles jump. Of physical tubes kernels find the worst.
+    """
+    even = np.linspace(0.0, tube.length, STATIONS)
+    if tube.is_thick or tube.threads > 0.0:
+        return even
+    begins = np.concatenate([[0.0], *_jumps(tube), [1.0]]) if tube.varies else np.zeros(1)
+    near = np.concatenate([begins[:, None] - NEAR, begins[:, None] + NEAR], axis=1).ravel()
+    return np.union1d(even, tube.length * near[(near > 0.0) & (near < 1.0)])
+
+
+def _jumps(tube):
+    """Places x/l where the profile of angles or wall jumps, of each an array."""
+    # what has no pairs, a callable, has no jumps
+    pairs = [getattr(tube.profile(name), "x", np.zeros(1)) for name in (*given_by(tube), "wall")]
+    return [x[1:][np.diff(x) == 0.0] for x in pairs]
 
 
 def worst_places(tube, profiles, stations, slack_fiber) -> dict:
     """``outer_radius`` [m], ``largest_stretch``, ``slack_alpha``, ``slack_beta`` (0..1), ``least_tension_alpha`` and
     ``least_tension_beta`` [N] with their ``_error``, from ``profiles`` (name -> array over loads and ``stations``).
     """
-    own = np.searchsorted(stations, np.linspace(0.0, tube.length, STATIONS))
+    own = np.searchsorted(stations, _own(tube))
     x = stations[own]
     part = {name: array[..., own] for name, array in profiles.items()}
     found = {}

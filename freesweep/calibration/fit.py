@@ -307,7 +307,7 @@ def _result(problem, theta, home, sigma, rows, unknown, notes):
         widening = judged.widening * np.sqrt(np.nan_to_num(np.diag(whole) / np.diag(scaled), nan=1.0))
     quantiles = student.ppf(0.975, each)
     half = quantiles * np.sqrt(np.diag(covariance)) * judged.widening
-    intervals = np.column_stack([values - half, values + half])
+    intervals = parameters.within(np.column_stack([values - half, values + half]))
     profiled = profile_intervals(problem, theta, sigma, rows, scaled, widening, quantiles)
     shown_there = np.where(rows & there, model, np.nan)
     cuts = np.cumsum([len(m) * len(m.measured) for m in problem.measurements])[:-1]
@@ -327,7 +327,7 @@ def _result(problem, theta, home, sigma, rows, unknown, notes):
         },
         "condition": condition,
         "chi_square": chi_square,
-        "profile_intervals": parameters.offset[:, None] + parameters.unit[:, None] * profiled,
+        "profile_intervals": parameters.within(parameters.offset[:, None] + parameters.unit[:, None] * profiled),
         "fits": judged.fits,
         "widening": judged.widening,
         "leave_one_out": judged.leave_one_out,

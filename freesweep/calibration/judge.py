@@ -16,6 +16,7 @@ LEVEL = 0.01  # chance of calling a fitting model wrong, of each of two tests
 DEGREE = 2  # of polynomials along a curve
 FEW = 4  # noise degrees of freedom below which Fisher's test is not made
 LEAST_FREEDOM = 3  # of intervals that were widened
+MUCH = 0.05  # of the largest number: by how much a bench may scatter where nothing tells its noise
 NO_NOISE = 1e-5  # of the largest number: residuals below it are the solver's
 
 
@@ -117,16 +118,21 @@ def _reasons(problem, residuals, sigma, curve, along, active, unknown, chi_squar
         own = active & (problem.quantity == name)
         share = parameters * own.sum() / max(active.sum(), 1)
         ratio, chance = _bent(residuals, curve, along, own, share)
+        other_noise = _other_noise(problem, name)
         if chance < LEVEL:
             reasons.append(
                 f"along its curves the residuals of {name} bend {np.sqrt(ratio):.2g} times as much as they scatter"
             )
             continue
-        for what, (variance, count) in _other_noise(problem, name).items():
+        for what, (variance, count) in other_noise.items():
             spread = np.sum(residuals[own] ** 2) / max(own.sum() - share, 1.0)
             if count >= FEW and variance > 0.0 and f.sf(spread / variance, own.sum() - share, count) < LEVEL:
                 reasons.append(f"{name} is missed by {np.sqrt(spread / variance):.2g} times the noise that {what} show")
                 break
+        told = np.isfinite(chance) or any(count >= FEW for _, count in other_noise.values())
+        missed = np.sqrt(np.mean(residuals[own] ** 2)) / np.max(np.abs(problem.measured[own])) if own.any() else 0.0
+        if name in unknown and not told and missed > MUCH:
+            reasons.append(f"{name} is missed by {missed:.0%} of its largest, and too few values tell of any noise")
         z = _runs(residuals, curve, along, own)
         if norm.sf(z) < LEVEL:
             reasons.append(f"the residuals of {name} keep their sign along the curves, in too few runs")
@@ -139,13 +145,15 @@ def _reasons(problem, residuals, sigma, curve, along, active, unknown, chi_squar
 
 
 def _bent(residuals, curve, along, own, parameters):
-    """How much more residuals bend than scatter, as a ratio of variances, and the chance of that in mere noise."""
+    """How much more residuals bend than scatter, as a ratio of variances, and the chance of that in mere noise; infinite
+    where too few values tell.
+    """
     from scipy.stats import f
 
     bends, bend_freedom, noise, noise_freedom = _bends(residuals, curve, along, own)
     bend_freedom -= parameters
     if bend_freedom < 1.0 or noise_freedom < FEW or noise <= 0.0:
-        return 1.0, 1.0
+        return 1.0, np.inf
     ratio = bends / bend_freedom / (noise / noise_freedom)
     return ratio, f.sf(ratio, bend_freedom, noise_freedom)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..description.actuator import Actuator
+from ..description.actuator import LARGEST_ANGLE, Actuator
 from ..description.faults import ActuatorError
 from ..description.given import described, numbers
 from ..inverse.freedom import TIE
@@ -44,6 +44,7 @@ class Parameter(NamedTuple):
     mean: float
     sigma: float
     owners: np.ndarray
+    possible: tuple  # least and largest value that is any, whatever is searched
 
 
 class Setup(NamedTuple):
@@ -106,7 +107,17 @@ class Parameters:
             start = (given[first] - offset) / unit
             made.append(
                 Parameter(
-                    name, label, start, low, high, unit, offset, (mean - offset) / unit, sigma / unit, which == first
+                    name,
+                    label,
+                    start,
+                    low,
+                    high,
+                    unit,
+                    offset,
+                    (mean - offset) / unit,
+                    sigma / unit,
+                    which == first,
+                    _possible(name, self.measurements[first].tube),
                 )
             )
         return made
@@ -142,6 +153,11 @@ class Parameters:
             return 0.1 * most, 0.0, 0.0, 5.0
         return given, 0.0, *SHARES[name]
 
+    def within(self, intervals):
+        """Intervals (p, 2), less what no parameter can be: no constant of a rubber is negative, nor is a thickness."""
+        least, most = np.array([one.possible for one in self.all]).T
+        return np.clip(intervals, least[:, None], most[:, None])
+
     def values(self, theta):
         """Values in SI units and degrees (p,)."""
         return self.offset + self.unit * theta
@@ -176,6 +192,17 @@ class Parameters:
         if constants:
             rubber = replace(rubber, largest_stretch=None, source="", **constants)
         return Setup(replace(tube, material=rubber, **own), length, dead, threshold)
+
+
+def _possible(name, tube):
+    """Least and largest value that is any, in SI units and degrees."""
+    if name in ("c2", "c3"):
+        return -np.inf, np.inf
+    if name in ("alpha", "beta"):
+        return -LARGEST_ANGLE, LARGEST_ANGLE
+    if name == "fiber_radius":
+        return tube.radius, tube.radius + float(np.max(tube.profile("wall").samples()))
+    return (1.0 if name == EXTENSION else 0.0), np.inf
 
 
 def _bare(tube):

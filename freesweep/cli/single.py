@@ -15,7 +15,7 @@ def add_single(commands):
     add_loads(inflate, required=True)
     _keep(inflate)
     block = add_actuator(commands, "block", "the force or torque that holds the length or the rotation", _run_block)
-    block.add_argument("--pressure", required=True, nargs="+", metavar="P", help='"0.1 MPa", or several')
+    _add_pressures(block, required=True)
     block.add_argument("--hold", choices=("length", "rotation"), required=True, help="what is held; the other is free")
     block.add_argument("--at", metavar="VALUE", help="held length or rotation (default: the undeformed one)")
     block.add_argument("--force", default=0.0, metavar="F", help="axial force while the rotation is held (default 0)")
@@ -26,12 +26,16 @@ def add_single(commands):
 
 def add_loads(command, required):
     """Options for pressure, force and torque."""
+    _add_pressures(command, required)
+    command.add_argument("--force", default=0.0, metavar="F", help="axial force, positive in tension (default 0)")
+    command.add_argument("--torque", default=0.0, metavar="M", help="torque toward growing rotation (default 0)")
+
+
+def _add_pressures(command, required):
     command.add_argument(
         "--pressure", required=required, nargs="+", metavar="P", help='"0.1 MPa", several, or START STOP --steps N'
     )
     command.add_argument("--steps", type=int, metavar="N", help="that many pressures from the first to the last given")
-    command.add_argument("--force", default=0.0, metavar="F", help="axial force, positive in tension (default 0)")
-    command.add_argument("--torque", default=0.0, metavar="M", help="torque toward growing rotation (default 0)")
 
 
 def add_actuator(commands, name, text, run, rubber=True):
@@ -201,26 +205,27 @@ def _run_inflate(options):
 
 def inflated(options):
     """The Dataset of :func:`freesweep.inflate` that the options of ``add_actuator`` and ``add_loads`` ask for."""
-    import numpy as np
-
     from ..statics import inflate
 
     tube = tube_of(options)
     loads = quantities(
         [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m")
     )
-    pressure = np.array(loads["pressure"])
-    if options.steps is not None:
-        if len(pressure) != 2 or not 2 <= options.steps <= 100_000:
+    return inflate(tube, _pressures(loads["pressure"], options.steps), loads["force"][0], loads["torque"][0])
+
+
+def _pressures(given, steps):
+    """A number or an array [Pa]: those that are given, or ``steps`` from the first to the last of two."""
+    import numpy as np
+
+    if steps is not None:
+        if len(given) != 2 or not 2 <= steps <= 100_000:
             raise ValueError("--steps: give two pressures, first and last, and 2 to 100000 steps between them")
-        pressure = np.linspace(*pressure, options.steps)
-    pressure = pressure[0] if len(pressure) == 1 else pressure
-    return inflate(tube, pressure, loads["force"][0], loads["torque"][0])
+        return np.linspace(*given, steps)
+    return given[0] if len(given) == 1 else np.array(given)
 
 
 def _run_block(options):
-    import numpy as np
-
     from ..holding import blocked_force, blocked_torque
 
     tube = tube_of(options)
@@ -237,7 +242,7 @@ def _run_block(options):
         [], pressure=(options.pressure, "Pa"), force=([options.force], "N"), torque=([options.torque], "N m"),
         at=([options.at] if options.at is not None else [], "m" if length else "degree"),
     )  # fmt: skip
-    pressure = given["pressure"][0] if len(given["pressure"]) == 1 else np.array(given["pressure"])
+    pressure = _pressures(given["pressure"], options.steps)
     at = given.get("at", [None if length else 0.0])[0]
     if length:
         _show(blocked_force(tube, pressure, at, given["torque"][0]), options)

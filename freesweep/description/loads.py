@@ -14,12 +14,17 @@ STATIONS = 201
 def read_load(name, value, unit, faults, **domain):
     """The load as a float or a 1-D float array; None after noting what is wrong; ``domain`` as of ``read_column``."""
     array = read_column(name, value, unit, faults, **domain)
-    if array is None or array.ndim == 0:
-        return None if array is None else array.item()
-    if len(np.unique(array)) != array.size:
-        faults.append(f"{name}: a value is given twice; give each once")
-        return None
-    return array
+    return array.item() if array is not None and array.ndim == 0 else array
+
+
+def each_once(axes):
+    """``(axes, at)`` of numbers and arrays by name: each value once, and of arrays that repeat one, which is where."""
+    once, at = dict(axes), {}
+    for name in (name for name, value in axes.items() if np.ndim(value) == 1):
+        values, index = np.unique(axes[name], return_inverse=True)
+        if len(values) < len(index):
+            once[name], at[name] = values, index
+    return once, at
 
 
 def read_stations(tube, x, accuracy, faults):

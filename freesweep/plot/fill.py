@@ -37,6 +37,9 @@ HATCH = {
 }
 
 
+ONE_ANGLE = "degenerate: fibers of one angle"
+
+
 class Shades(NamedTuple):
     """Boundaries of the colours, the colours, and on which sides values lie beyond them."""
 
@@ -206,6 +209,8 @@ def cell(x, y):
 
 
 def _meaning(reason, variable, dataset):
+    if reason == status.DEGENERATE:
+        return ONE_ANGLE
     if reason != NO_VALUE:
         return status.STATUSES[reason].meaning.replace("_", " ")
     if variable != "limit_pressure":

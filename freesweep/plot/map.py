@@ -70,7 +70,7 @@ def design_map(
                 for name, colour in zip((r"\alpha", r"\beta"), style.FAMILIES)
             ]
         if slack:
-            handles += draw_slack(ax, dataset, variable, sheet, read_selection(select))
+            handles += draw_slack(ax, dataset, variable, sheet, read_selection(select)).values()
         handles += draw_failures(ax, sheet, variable, dataset).values()
         _dress(ax, sheet, variable, handles)
     return ax

@@ -13,7 +13,7 @@ from ..description.actuator import Actuator
 from ..status import VALUED
 from . import style
 from .shape import draw_outline, draw_shape, project, shape_of
-from .tubes import MARGIN
+from .tubes import DASHED, MARGIN
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,13 +57,16 @@ def frames(tube: Actuator, states):
             ax.set_xlabel("axial position [mm], radii to the same scale")
             ax.yaxis.set_visible(False)
             ax.spines[["left", "top", "right"]].set_visible(False)
-            ax.set_title(_words(states.isel(pressure=k), shape), loc="left", fontsize=style.points(style.NORMAL + 1.0))
+            ax.set_title(
+                _words(tube, states.isel(pressure=k), shape), loc="left", fontsize=style.points(style.NORMAL + 1.0)
+            )
         yield ax
 
 
-def _words(state, shape):
+def _words(tube, state, shape):
     turned = f"{np.degrees(shape.twist[-1]):.0f}°".replace("-", "\N{MINUS SIGN}")
-    return f"{float(state['pressure']) * 1e-3:.1f} kPa    {shape.position[-1]:.1f} mm long    turned by {turned}"
+    slack = f"    dashed: {DASHED[tube.is_loose]}" if np.any(shape.slack) else ""
+    return f"{float(state['pressure']) * 1e-3:.1f} kPa    {shape.position[-1]:.1f} mm long    turned by {turned}{slack}"
 
 
 def save_motion(

@@ -108,13 +108,16 @@ def _plane(names, x, y, values, status, variable, point):
 
 
 def _parts(names, x, y, variable, point):
-    """Masks (m, n): DF is degenerate where fibers may push, a blocked torque has a pole on AF: no contour may cross them."""
+    """Masks (m, n) between which no contour may run: DF is degenerate where fibers may push, or are locked, and a blocked
+    torque has a pole on AF.
+    """
     grid = dict(zip(names, np.meshgrid(x, y)))
     whole = np.ones((y.size, x.size), bool)
     alpha, beta = (grid.get(name, point.get(name)) for name in ("alpha", "beta"))
     if alpha is None or beta is None:
         return [whole]
-    crossed = point.model.is_loose and variable not in schema.EXCHANGED  # what the families exchange there jumps
+    # what the families exchange there jumps, and no locked shape is there
+    crossed = point.model.is_loose and variable not in schema.EXCHANGED and not variable.startswith("locked_")
     parts = [whole] if crossed else [whole & (alpha > beta), whole & (alpha < beta)]
     if variable in POLE_ON_AF:
         parts = [part & half for part in parts for half in (alpha > -beta, alpha < -beta)]

@@ -12,10 +12,11 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from .. import closed_form
 from ..description.quantities import Quantity
 from . import style
-from .choice import check_name, dimensions
+from .choice import check_name, dimensions, read_selection
 from .display import axis_label, describe, display, shown_units, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, section
+from .slack import draw_slack
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,19 +35,20 @@ def section_map(
     x: str = "alpha",
     y: str = "beta",
     ax: Axes | None = None,
+    slack: bool = True,
     **select: Quantity,
 ) -> Axes:
     """Draws ``variable`` of an atlas over the axes ``x`` and ``y``, and returns the Axes.
 
-    Everything else is as in :func:`freesweep.plot.map.design_map`, which draws more over both fiber angles. Raises
-    ValueError for unknown names, and axes that the variable does not have.
+    Everything else, ``slack`` too, is as in :func:`freesweep.plot.map.design_map`, which draws more over both fiber angles.
+    Raises ValueError for unknown names, and axes that the variable does not have.
     """
     sheet = section(dataset, variable, x, y, select)
     with style.context():
         ax = style.new_axes(*SIZE) if ax is None else ax
         values = shown_values(sheet, variable)
         shade = shades(values.compressed(), display(variable).centre)
-        keys = _draw(ax, sheet, values, shade, variable, dataset)
+        keys = _draw(ax, sheet, values, shade, variable, dataset, select if slack else None)
         draw_bar(ax.figure, shade, display(variable).axis_label, cax=ax.inset_axes([1.04, 0.0, 0.035, 1.0]))
         ax.set(xlabel=axis_label(x), ylabel=axis_label(y))
         head(ax.figure, ax, title(variable), sheet.point, 6.0)
@@ -61,6 +63,7 @@ def multiples(
     y: str = "beta",
     over: str | Sequence[str] = ("pressure",),
     figure: Figure | None = None,
+    slack: bool = True,
     **select: Quantity,
 ) -> Figure:
     """Small maps of ``variable`` over ``x`` and ``y``, one for each node of one or two axes ``over``; returns the figure.
@@ -94,7 +97,8 @@ def multiples(
         keys = {}
         for (i, k), ax in np.ndenumerate(axes):
             sheet = sheets[i][k]
-            keys |= _draw(ax, sheet, values[i][k], shade, variable, dataset)
+            here = dict(zip(over, (nodes[0][k], rows[i])))
+            keys |= _draw(ax, sheet, values[i][k], shade, variable, dataset, select | here if slack else None)
             if i == 0:
                 ax.set_title(describe(over[0], nodes[0][k]), loc="left", fontsize=style.points(style.NORMAL))
             if i == len(rows) - 1:
@@ -122,12 +126,13 @@ def scaled(sheet: Plane) -> Plane:
     return sheet._replace(x=x, y=y)
 
 
-def _draw(ax, sheet, values, shade, variable, dataset):
-    """Values and failures of one map; returns the keys of the failures."""
+def _draw(ax, sheet, values, shade, variable, dataset, select):
+    """Values, failures, and at what was ``select``-ed slack fibers of one map (None: without); returns their keys."""
     sheet = scaled(sheet)
     draw_values(ax, sheet, values, shade, min(sheet.x.size, sheet.y.size) >= SMOOTH)
     window(ax, sheet)
-    return draw_failures(ax, sheet, variable, dataset)
+    keys = {} if select is None else draw_slack(ax, dataset, variable, sheet, read_selection(select))
+    return keys | draw_failures(ax, sheet, variable, dataset)
 
 
 def window(ax, sheet: Plane) -> None:

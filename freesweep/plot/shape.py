@@ -1,4 +1,5 @@
-"""Shapes of actuators in space: wall and both fiber families, undeformed in blue, deformed in red (Figures 2-2, 2-3).
+"""Shapes of actuators in space: wall and both fiber families, undeformed in blue, deformed in red (Figures 2-2, 2-3). Where
+a family hangs loose, or would have to push, its fibers are dashed.
 
 The drawing is a parallel projection along a slant: what lies in the plane through the axis keeps its true length, so axial
 positions and radii can be read from the axes; circles around the axis look as ellipses. With the axis along z, u = z - SLANT
@@ -15,7 +16,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from ..description.actuator import Actuator
-from ..description.families import FAMILIES
+from ..description.families import BITS, FAMILIES
 from . import style
 
 SLANT = 0.34  # half width of an ellipse over its half height
@@ -25,6 +26,8 @@ FINE = 1201  # stations of a fiber
 FIBERS = 14  # of a family of long pitch; steeper ones have fewer, in proportion to the cosine
 MM = 1e3
 END = "#d8d5ce"
+TAUT = {"gid": "fibers", "linewidths": 0.8}
+DASHED = {"gid": "slack", "linewidths": 0.5, "linestyles": [(0, (2.5, 3.0))]}
 LIGHT = np.array([0.55, 0.75, 0.25]) / np.linalg.norm([0.55, 0.75, 0.25])  # from where it comes: depth, up, along
 
 
@@ -38,6 +41,7 @@ class Shape(NamedTuple):
     twist: np.ndarray
     fibers: tuple
     counts: tuple  # fibers of each family that are drawn
+    slack: tuple  # where each family does not pull
 
 
 def shape_of(tube: Actuator, state=None) -> Shape:
@@ -57,8 +61,9 @@ def shape_of(tube: Actuator, state=None) -> Shape:
         for family, angles in zip(FAMILIES, drawn)
     )
     if state is None:
+        taut = (np.zeros(FINE, bool),) * len(FAMILIES)
         return Shape(
-            np.broadcast_to(surface * MM, FINE), share * tube.length * MM, np.zeros(FINE), tuple(turns), counts
+            np.broadcast_to(surface * MM, FINE), share * tube.length * MM, np.zeros(FINE), tuple(turns), counts, taut
         )
     free = [name for name in state["deformed_radius"].dims if name != "x"]
     if free:
@@ -72,7 +77,12 @@ def shape_of(tube: Actuator, state=None) -> Shape:
     if not np.all(np.isfinite(radius)):
         raise ValueError(f"this state has no result (status {int(state['status'])}): there is no shape to draw")
     twist = np.radians(twist)
-    return Shape(radius * MM, position * MM, twist, tuple(turn + twist for turn in turns), counts)
+    slack = tuple(
+        np.full(FINE, (int(state["slack_fiber"]) & bit) > 0)
+        & (np.interp(share, x, state[f"fiber_tension_{family}"].values) <= 0.0)
+        for family, bit in BITS.items()
+    )
+    return Shape(radius * MM, position * MM, twist, tuple(turn + twist for turn in turns), counts, slack)
 
 
 def project(shape: Shape, theta):
@@ -97,12 +107,13 @@ def _slope(shape):
 
 
 def draw_shape(ax: Axes, shape: Shape, colours=style.AFTER, lift: float = 0.0) -> list[LineCollection]:
-    """Draws a shape, its axis at the height ``lift`` [mm]; returns the lines of the alpha and the beta family."""
+    """Draws a shape, its axis at the height ``lift`` [mm]; returns the lines of the alpha and the beta family that pull."""
     _draw_wall(ax, shape, colours, lift)
-    lines = [
-        _draw_family(ax, shape, turn, count, colour, lift)
-        for turn, count, colour in zip(shape.fibers, shape.counts, colours)
-    ]
+    lines = []
+    for turn, count, colour, slack in zip(shape.fibers, shape.counts, colours, shape.slack):
+        lines.append(_draw_family(ax, shape, turn, count, colour, lift, ~slack, TAUT))
+        if slack.any():
+            _draw_family(ax, shape, turn, count, colour, lift, slack, DASHED)
     _draw_end(ax, shape, lift)
     return lines
 
@@ -142,16 +153,16 @@ def _mixed(colour, white):
     return tuple(white + (1.0 - white) * rgb)
 
 
-def _draw_family(ax, shape, turn, count, colour, lift):
-    """What is seen of the fibers of one family, evenly around the tube."""
+def _draw_family(ax, shape, turn, count, colour, lift, there, how):
+    """What is seen of the fibers of one family, evenly around the tube, at the stations that are ``there``."""
     pieces = []
     for start in 2.0 * np.pi * (np.arange(count) + 0.5) / count:
         u, v = project(shape, turn + start)
-        front = seen(shape, turn + start)
+        front = seen(shape, turn + start) & there
         for piece in np.split(np.arange(u.size), np.flatnonzero(np.diff(front)) + 1):
             if front[piece[0]] and piece.size > 1:
                 pieces.append(np.stack([u[piece], v[piece] + lift], axis=1))
-    lines = LineCollection(pieces, colors=colour, linewidths=0.8, capstyle="butt", zorder=2.5, gid="fibers")
+    lines = LineCollection(pieces, colors=colour, capstyle="butt", zorder=2.5, **how)
     return ax.add_collection(lines, autolim=False)
 
 

@@ -33,16 +33,16 @@ def hatch(ax, sheet, where, pattern, gid, colour=style.QUIET):
                                hatch=pattern, gid=gid, zorder=2.5))  # fmt: skip
 
 
-def draw_slack(ax, dataset, variable, sheet, select) -> list:
-    """Hatch, on a map of both angles, the free states in which a family is slack; returns what the legend says of it."""
+def draw_slack(ax, dataset, variable, sheet, select) -> dict:
+    """Hatch, on a map over any two axes, the free states in which a family is slack; returns what a legend says of it."""
     free = "slack_fiber" in dataset and status_of(variable) == "status"
     if not free or set(dataset[variable].dims) != set(dataset["slack_fiber"].dims):  # held, or at no pressure
-        return []
-    dataset = between(dataset, variable, select, ("alpha", "beta"))
-    where = ~np.ma.getmaskarray(sheet.values) & (flag(dataset, variable, "slack_fiber", "alpha", "beta", select) > 0)
+        return {}
+    dataset = between(dataset, variable, select, sheet.names)
+    where = ~np.ma.getmaskarray(sheet.values) & (flag(dataset, variable, "slack_fiber", *sheet.names, select) > 0)
     if not where.any():
-        return []
+        return {}
     colour = (*to_rgb(style.QUIET), FAINT)
     hatch(ax, sheet, where, SLACK, "slack", colour)
     words = WORDS[dataset.attrs.get("fibers", "bonded")]
-    return [Patch(fill=False, edgecolor=colour, linewidth=0.4, hatch=SLACK, label=words)]
+    return {words: Patch(fill=False, edgecolor=colour, linewidth=0.4, hatch=SLACK, label=words)}

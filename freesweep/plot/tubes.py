@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 WIDTH = style.PAGE  # of a figure of its own [mm]
 MARGIN = 0.02  # beside a shape, over its length
+DASHED = {True: "slack threads", False: "fibers that would push"}  # whether they are loose
 
 
 class _Layout(NamedTuple):
@@ -61,7 +62,8 @@ def shape_plot(tube: Actuator, *states: "xr.Dataset", titles: Sequence[str] = ()
         ax = style.new_axes(*size_of(tube, *states)) if ax is None else ax
         for k, (shape, lift, name) in enumerate(zip(shapes, layout.lifts, names)):
             draw_shape(ax, shape, style.AFTER if k else style.BEFORE, lift)
-            _name(ax, shape, name, layout.left, lift + shape.radius.max() + 0.25 * layout.words, k)
+            slack = f", dashed: {DASHED[tube.is_loose]}" if np.any(shape.slack) else ""
+            _name(ax, shape, name, layout.left, lift + shape.radius.max() + 0.25 * layout.words, k, slack)
         _name_families(ax, tube, layout.right, layout.lifts[0] + shapes[0].radius.max() + 0.25 * layout.words)
         margin = MARGIN * (layout.right - layout.left)
         ax.set(xlim=(layout.left - margin, layout.right + margin), ylim=(layout.bottom, 0.0), aspect="equal")
@@ -71,10 +73,11 @@ def shape_plot(tube: Actuator, *states: "xr.Dataset", titles: Sequence[str] = ()
     return ax
 
 
-def _name(ax, shape, name, left, height, deformed):
+def _name(ax, shape, name, left, height, deformed, more):
     turned = np.degrees(shape.twist[-1])
     size = f": {shape.position[-1] - shape.position[0]:.1f} mm long, {2.0 * shape.radius.max():.1f} mm across"
     size += f", turned by {turned:.0f}°".replace("-", "\N{MINUS SIGN}") if abs(turned) >= 0.5 else ""
+    size += more
     colour = (style.AFTER if deformed else style.BEFORE)[0]
     head = ax.text(left, height, name, color=colour, fontweight="bold", gid="name")
     ax.annotate(size, (1.0, 0.0), xycoords=head, color=colour, va="bottom", annotation_clip=False, gid="size")

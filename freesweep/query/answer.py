@@ -10,6 +10,7 @@ from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED, SLACK_FLAGS, TOLD, TOLD_FROM
 from .locate import place
 from .missing_nodes import MIXED
+from .similar import at_similar
 from .slack import UNKNOWN
 
 CUBIC, LINEAR = "cubic", "linear"
@@ -44,9 +45,18 @@ class Inquiry:
         if table.is_untold:
             self.status[self.valued & ~self.exact] = NOT_INTERPOLABLE
         self.ranks = table.knots[np.arange(d), self.pieces, spline.RANK].astype(np.int64)
-        self.order, self._told = np.arange(self.size), None
+        self.order, self._told, self._similar = np.arange(self.size), None, None
         if self.size > SORTED:
             spline.by_cell(self.pieces, table.strides, int(np.prod(table.shape[:-1])), self.order)
+
+    def of(self, name):
+        """The inquiry that a variable is interpolated by: this one, or that at similar tubes."""
+        if TOLD_FROM.get(name, name) not in self.table.similar:
+            return self
+        if self._similar is None:
+            self._similar = at_similar(self)
+            self._similar._similar = self._similar
+        return self._similar
 
     @property
     def valued(self):
@@ -96,6 +106,8 @@ class Inquiry:
         """End effects of one variable (n,), what is known of the cells that they lie in (n, ROUGH + d), and how far they
         may be off for what was put into holes (n,).
         """
+        if (at := self.of(name)) is not self:
+            return at.interpolated(name)
         name = TOLD_FROM.get(name, name)
         known = self.known(name)
         return self.effects(name, self.orders()), known, self.doubts(name, known)
@@ -105,6 +117,8 @@ class Inquiry:
         how it lies to holes, as :mod:`calibration` has it; ``scales`` (d, RANKS) of the estimate. What was ``interpolated``
         is taken if it is given.
         """
+        if (at := self.of(name)) is not self:
+            return at.estimate(name, scales, interpolated)
         if name in TOLD_FROM:
             if self._told is None:  # one calculation tells all of them
                 *told, beside = self.estimate(TOLD_FROM[name], scales, interpolated)
@@ -161,7 +175,7 @@ class Inquiry:
     def _as_stored(self, name, factors):
         """The same by the order of the families in the table."""
         value, estimate, bound, beside = self.estimate(name, factors.scales)
-        error = errors.stated(factors, estimate, bound, self.natural_size(name, value), beside, self.cell)
+        error = errors.stated(factors, estimate, bound, self.natural_size(name, value), beside, self.of(name).cell)
         if self.exact.any():
             at = self.node[self.exact]
             value[self.exact], error[self.exact] = self.table.stored(name)[at], self.table.errors(name)[at]
@@ -196,6 +210,8 @@ class Inquiry:
 
     def blame(self, name, refused, scales, coarse):
         """Add to the list ``coarse``: axes, and at how many of the ``refused`` (n,) the estimate is largest along them."""
+        if (at := self.of(name)) is not self:
+            return at.blame(name, refused, scales, coarse)
         places = np.flatnonzero(refused)
         if not len(places):
             return

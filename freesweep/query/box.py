@@ -18,10 +18,11 @@ WHOLE = 30_000_000  # nodes of the largest grid that many questions in parts lea
 class Parts:
     """The tables of one family: parts of the grid while few points were asked, then the whole one."""
 
-    def __init__(self, make, frame, names):
-        """``make(box)`` makes a table; ``names`` are the axes that the family varies in."""
-        self.make, self.frame, self.names = make, frame, names
+    def __init__(self, make, frame, names, whole=()):
+        """``make(box)`` makes a table; ``names`` are the axes that the family varies in, some of them read ``whole``."""
+        self.make, self.frame, self.names = make, frame, [name for name in names if name not in whole]
         self.size = math.prod(len(frame.values[name]) for name in names)
+        self.rest = math.prod(len(frame.values[name]) for name in whole)
         self.whole, self.last, self.read = None, None, 0
 
     def table(self, values=None):
@@ -31,7 +32,7 @@ class Parts:
         box = self._box(values) if values is not None and self.size > SMALL else None
         if box is not None and self.last is not None and _lies_in(box, self.last.box):
             return self.last
-        nodes = math.prod(b - a for a, b in box.values()) if box is not None else self.size
+        nodes = self.rest * math.prod(b - a for a, b in box.values()) if box is not None else self.size
         self.read += nodes
         if SPARE * nodes > self.size or (self.read > self.size and self.size <= WHOLE):
             self.whole, self.last = self.make(None), None

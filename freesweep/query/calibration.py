@@ -14,7 +14,7 @@ import numpy as np
 
 ATTRIBUTE = "interpolation_measured"
 TOLERANCE = "interpolation_tolerance"
-ESTIMATES = 7  # which estimates were measured: of others, factors say nothing
+ESTIMATES = 8  # which estimates were measured: of others, factors say nothing
 DEFAULT_TOLERANCE = 1e-4
 DECADES = np.arange(-11, -2)  # edges of the classes, log10 of estimate over value
 CLASSES = len(DECADES) + 1

@@ -17,6 +17,7 @@ from .axis import LABEL
 from .family import FAMILY_OF, MIRRORED, TOLD, TOLD_FROM
 from .faults import QueryError
 from .query import check_names
+from .similar import SIZES
 
 if TYPE_CHECKING:
     from ..atlas.store import Atlas
@@ -108,7 +109,8 @@ class Interpolator:
     def _gradient(self, inquiry, name):
         """Derivatives (axes, n) of one variable by the axes as they were asked."""
         table, family = inquiry.table, inquiry.table.family
-        effects = inquiry.effects(name, inquiry.orders())
+        at = inquiry.of(name)
+        effects = at.effects(name, inquiry.orders())
         value = np.empty((3, inquiry.size))
         _restore(table, name, inquiry.points, inquiry.states, effects, value)
         slopes = np.zeros((len(self.axes), inquiry.size))
@@ -119,8 +121,7 @@ class Interpolator:
             column = reference.COLUMNS.index(own if own in reference.COLUMNS else "held")
             steps = STEP * (np.abs(inquiry.points[:, column]) + (1.0 if own in SHAPE else STEP))
             # the closed form moves with the point, the end effect along its own cubic
-            a = table.names.index(own)
-            rate = inquiry.effects(name, inquiry.orders(a)) * axis.rate(inquiry.points[:, column])
+            rate = self._rate(at, name, axis, own, column)
             ends = []
             for sign in (-1.0, 1.0):
                 points = inquiry.points.copy()
@@ -143,6 +144,17 @@ class Interpolator:
             if other in self.axes:
                 slopes[self.axes.index(other), exchanged] += slope[exchanged]
         return slopes
+
+    def _rate(self, at, name, axis, own, column):
+        """By how much end effects change with one axis (n,)."""
+        table, points = at.table, at.points
+        if name not in table.similar or own not in SIZES:
+            return at.effects(name, at.orders(table.names.index(own))) * axis.rate(points[:, column])
+        # of similar tubes the length over the radius counts: both change its logarithm, and that axis is in logarithms
+        by_length = at.effects(name, at.orders(table.names.index("length")))
+        if own == "length":
+            return by_length / points[:, reference.LENGTH]
+        return -by_length / points[:, reference.FIBERS]
 
 
 def _restore(table, name, points, states, effects, out):

@@ -79,20 +79,23 @@ def _of_kind(reader, families, count):
 
 
 def _solved(reader, key, inquiry, known):
-    """Exact states (n,) by name where numbers are given: those ``known`` by the axes that they vary in, or found for it."""
+    """Exact states (n,) by name where numbers are given: those ``known`` by the axes that they vary in, and which of them,
+    with those that are found for it: of other families fewer may have been given.
+    """
     inquiry.flags()
-    axes = tuple(inquiry.table.names)
-    if axes not in known:
-        known[axes] = _solve(reader, key, inquiry)
-    return known[axes]
+    found, done = known.setdefault(tuple(inquiry.table.names), ({}, np.zeros(inquiry.size, bool)))
+    left = inquiry.valued & ~inquiry.exact & ~done
+    if left.any() or not found:
+        _solve(reader, key, inquiry, np.flatnonzero(left), found)
+        done |= left
+    return found
 
 
-def _solve(reader, key, inquiry):
-    """Exact states (n,) by name where numbers are given: what vectors do not find is not solved, but for held physical
-    tubes, of which they know nothing.
+def _solve(reader, key, inquiry, left, found):
+    """Put exact states at the places ``left`` (k,) into what is ``found``, (n,) by name: what vectors do not find is not
+    solved, but for held physical tubes, of which they know nothing.
     """
     thorough = reader.frame.model.is_physical and key.startswith("blocked")
-    found, left = {}, np.flatnonzero(inquiry.valued & ~inquiry.exact)
     for sharper in SHARPER:
         accuracy = max(sharper * reader.frame.accuracy, ACCURACIES[0])
         states = solved_states(reader, key, inquiry.points[left], accuracy, thorough)
@@ -102,7 +105,6 @@ def _solve(reader, key, inquiry):
             )
             found[name][left] = array
         left = left[states["status"] == NOT_CONVERGED]
-    return found
 
 
 def _draw(reader, table, count):
@@ -166,6 +168,7 @@ def _compare(inquiry, name, places, exact, open_of_exact, solved, interpolated, 
     Where the ``exact`` number itself leaves much open of what is allowed, as of tensions at clamped ends, that is no error
     of the atlas.
     """
+    inquiry = inquiry.of(name)
     scales = piece_scales(inquiry, name, interpolated, places, np.where(solved, exact, np.nan))
     value, estimate, bound, beside = inquiry.estimate(name, scales, interpolated)
     size = inquiry.natural_size(name, value)[places]

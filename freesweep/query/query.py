@@ -22,6 +22,7 @@ from .faults import QueryError, unknown
 from .grid_axes import Frame
 from .ideal import ideal_answer
 from .question import read_question
+from .similar import SIZES, similar_names
 from .table import Table
 
 STATUSES_OF_ANSWERS = {  # that no atlas holds
@@ -52,7 +53,8 @@ class Reader:
         key = TABLE_OF.get(key, key)
         if key not in self._tables:
             names = self.frame.axes_of(FAMILIES[key].variables)
-            self._tables[key] = Parts(lambda box: Table(self.data, self.frame, key, box), self.frame, names)
+            whole = SIZES if similar_names(self.frame, FAMILIES[key]) else ()
+            self._tables[key] = Parts(lambda box: Table(self.data, self.frame, key, box), self.frame, names, whole)
         return self._tables[key].table(values)
 
     def factors(self, name) -> calibration.Factors:

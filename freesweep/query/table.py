@@ -20,6 +20,7 @@ from .locate import CLOSEST
 from .missing_nodes import cell_codes, fill, weights_beyond
 from .predictor import Predictor
 from .reference import COLUMNS
+from .similar import similar_names
 from .slopes import tabulate
 from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
 
@@ -50,6 +51,7 @@ class Table:
         self.family = family_of(key, frame.bodies is not None)
         self.predictor = Predictor(frame.model, frame.energy, frame.bodies, frame.families)
         self.names = frame.axes_of(self.family.variables)
+        self.similar = similar_names(frame, self.family)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
         whole = self._whole_axes()
         self.ranks = [ranks(len(axis.nodes))[slice(*self.box[axis.name])] for axis in whole]

@@ -208,6 +208,33 @@ def test_a_wrong_angle_is_called_wrong_and_halves_agree():
     assert np.all(np.abs(right.values - values(truth)) < 4.0 * right.standard_errors)
 
 
+def three_forces(by):
+    """Of a muscle held at its length, with the share by which each is off."""
+    pressure = np.array([1e5, 2e5, 3e5])
+    made = Measurement(GUESS, pressure, contraction=np.zeros(3), force=np.ones(3), measured="force")
+    (force,) = exact([made], replace(TRUTH, alpha=GUESS.alpha, beta=GUESS.beta))
+    return Measurement(GUESS, pressure, contraction=np.zeros(3), force=force * (1.0 + by), measured="force")
+
+
+def test_three_forces_that_are_missed_by_much_are_not_called_met():
+    """They are too few for any test of noise: what is a tenth off was said to fit."""
+    wrong, right = (
+        calibrate(three_forces(share * np.array([1.0, -1.0, 1.0])), ["c10", "fiber_extension"], ties=TIES)
+        for share in (0.2, 0.01)
+    )
+    assert not wrong.fits
+    assert "too few values tell of any noise" in wrong.notes[0]
+    assert right.fits
+
+
+def test_no_interval_reaches_beyond_what_can_be():
+    """Three forces hardly tell a rubber from extended fibers: the formula alone would go below nothing."""
+    found = calibrate(three_forces(np.array([0.03, -0.03, 0.02])), ["c10", "fiber_extension"], ties=TIES)
+    assert found.intervals[:, 0].tolist() == [0.0, 1.0]
+    assert np.all(found.profile_intervals[:, 0] >= [0.0, 1.0])
+    assert np.all(np.minimum(found.intervals[:, 1], found.profile_intervals[:, 1]) > found.values)
+
+
 def test_leaving_out_a_curve_foretells_a_fit_without_it():
     rng = np.random.default_rng(8)
     truth, guess = muscle(rng)

@@ -51,6 +51,13 @@ def test_a_line_for_each_pressure_with_the_force_that_holds(capsys):
         assert kept["deformed_length"].item() == 0.131
 
 
+def test_pressures_in_steps_as_of_inflate(capsys):
+    assert run(*MIXED, *LENGTH, "--pressure", "20 kPa", "50 kPa", "--steps", "4") == DONE
+    _, rows = columns(capsys.readouterr().out)
+    assert [row[0] for row in rows] == ["20", "30", "40", "50"]
+    assert "--steps: give two pressures" in refused(capsys, *MIXED, *LENGTH, "--pressure", "1bar", "--steps", "4")
+
+
 def test_the_torque_that_holds_another_rotation_under_a_force(capsys):
     assert run(*MIXED, *ROTATION, "--pressure", "30 kPa", "--at", "-4 deg", "--force", "1.5 N") == DONE
     heads, [row] = columns(capsys.readouterr().out)

@@ -88,6 +88,23 @@ def test_failures_are_hatched_in_shown_units(data):
     assert not patches(ax, f"reason {status.DEGENERATE}")
 
 
+def test_slack_fibers_are_hatched_over_any_two_axes(data):
+    """The alpha family where alpha is the larger in size, the beta family where it is the smaller; at 20 degrees neither."""
+    ax = section_map(data, "rotation", "pressure", "alpha", beta=-20.0, length=0.2)
+    (patch,) = patches(ax, "slack")
+    inside = [patch.get_path().contains_point((50.0, alpha)) for alpha in (2.0, 20.0, 39.0, 78.0)]
+    assert inside == [True, False, True, True]
+    assert "fibers would have to push" in [text.get_text() for text in ax.figure.legends[0].get_texts()]
+    assert not patches(section_map(data, "rotation", "pressure", "alpha", beta=-20.0, slack=False), "slack")
+    figure = multiples(data, "rotation", over="pressure")
+    assert sum(len(patches(ax, "slack")) for ax in figure.axes) == 4
+
+
+def test_degenerate_designs_say_why(data):
+    ax = section_map(data, "rotation", pressure=0.0, length=0.2)
+    assert "degenerate: fibers of one angle" in [text.get_text() for text in ax.figure.legends[0].get_texts()]
+
+
 def test_small_multiples_share_colours(data):
     figure = multiples(data, "rotation", over=("pressure", "length"))
     axes = [ax for ax in figure.axes if any(isinstance(artist, QuadMesh) for artist in ax.collections)]

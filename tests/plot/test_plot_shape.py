@@ -116,6 +116,31 @@ def test_blue_before_red_after_and_every_fiber_on_the_surface(tube, states):
     assert ax.get_aspect() == 1.0
 
 
+def lengths_of(ax, gid, colour):
+    """Length along the axis of the drawn fibers of one colour [mm]."""
+    lines = [artist for artist in ax.collections if isinstance(artist, LineCollection) and artist.get_gid() == gid]
+    own = [line for line in lines if tuple(line.get_colors()[0]) == to_rgba(colour)]
+    return sum(np.abs(np.diff(piece[:, 0])).sum() for line in own for piece in line.get_segments())
+
+
+@pytest.mark.parametrize(("fibers", "words"), [("loose", "slack threads"), ("bonded", "fibers that would push")])
+def test_what_does_not_pull_is_dashed(fibers, words):
+    """Prototype B of the source at a low pressure: of the straight family all but the ends."""
+    rubber = fs.MooneyRivlin(0.17e6, 0.08e6)
+    b = fs.Actuator(alpha=0, beta=30, length=0.131, radius=4.76e-3, wall=1.59e-3, material=rubber, fibers=fibers)
+    state = fs.inflate(b, 30e3)
+    ax = shape_plot(b, state)
+    straight, wound = style.AFTER
+    dashed, drawn = lengths_of(ax, "slack", straight), lengths_of(ax, "fibers", straight)
+    assert dashed / (dashed + drawn) == pytest.approx(float(state.slack_alpha), abs=0.02)
+    assert lengths_of(ax, "slack", wound) < 0.02 * lengths_of(ax, "fibers", wound)
+    assert [words in text.get_text() for text in ax.texts if text.get_gid() == "size"] == [False, True]
+    (frame,) = frames(b, fs.inflate(b, [30e3]))
+    assert frame.get_title("left").endswith(f"dashed: {words}")
+    taut = shape_plot(b, fs.inflate(b, 4e5 if fibers == "bonded" else 1e6))
+    assert lengths_of(taut, "slack", straight) == 0.0
+
+
 def test_projection_keeps_lengths_along_and_across(tube):
     shape = shape_of(tube)
     u, v = project(shape, 0.5 * np.pi)

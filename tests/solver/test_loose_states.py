@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from loose_tubes import Tube
 
-from freesweep import Actuator, MooneyRivlin, blocked_torque, interpret
+from freesweep import Actuator, MooneyRivlin, Yeoh, blocked_torque, interpret
 from freesweep.solver import batch
 
 RADIUS, WALL, LENGTH, C10, C01 = 4.76e-3, 1.59e-3, 0.131, 0.17e6, 0.08e6  # prototype B
@@ -110,3 +110,24 @@ def test_many_held_states_are_those_of_machine_code():
     assert np.all(held["status"] == 0)
     for p, (_, _, _, length) in KNOWN.items():
         assert float(held["deformed_length"].sel(pressure=p)) == pytest.approx(length * 1e-3, abs=1e-7)
+
+
+def test_a_tube_that_varies_is_held_straight_by_fibers_that_all_pull():
+    """From rest: the way began at a cylinder with slack fibers, and ended there as if beyond a limit pressure. The number is
+    that of 1600 midpoint cells of our own; taut fibers are bonded ones, too.
+    """
+    steps = {"alpha": (-26.809196, -18.206791), "beta": (-74.768682, -81.364281)}
+    own = {name: [(0.0, a), (0.627381853, a), (0.627381853, b), (1.0, b)] for name, (a, b) in steps.items()}
+    rubber = Yeoh(150e3, 9331.0, 4569.76)
+    loose, bonded = (
+        blocked_torque(
+            Actuator(
+                **own, length=0.101999572, radius=5e-3, wall=0.7317396e-3, material=rubber, model="physical", fibers=fibers
+            ),
+            3543.00388, x=0.0,
+        )
+        for fibers in ("loose", "bonded")
+    )  # fmt: skip
+    assert (int(loose.status), int(loose.stable), int(loose.slack_fiber), int(loose.held_path)) == (0, 1, 0, 0)
+    assert float(loose.torque) == pytest.approx(-1.615526e-3, rel=2e-5)
+    assert float(loose.torque) == pytest.approx(float(bonded.torque), rel=1e-9)

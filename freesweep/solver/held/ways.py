@@ -19,7 +19,7 @@ from ..numerics.path import NOTHING, Held, Path, Track, load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
 from ..physics import lagrangian
-from ..physics.wall import may_go_slack
+from ..physics.wall import may_go_slack, taut
 from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
@@ -92,6 +92,12 @@ def falling(start, load, what):
 def cylinder_multiplier(cell, load, direction):
     """The multiplier that makes y = 1 an equilibrium of a tube that is ``cell`` all along."""
     return -lagrangian.density(1.0, 0.0, cell, load)[1] / lagrangian.conjugate(1.0, 0.0, cell, load, direction)[1]
+
+
+@kernel
+def with_taut_fibers(load):
+    """The load on the same tube whose two families cannot go slack."""
+    return Load(load.gamma, load.rubber, taut(load.wall), load.p, load.f, load.m, load.e)
 
 
 @kernel
@@ -173,19 +179,22 @@ def go(room, tube, path):
 @kernel
 def from_rest(room, tube, cell, load, what):
     """The state at ``load`` on the branch that begins without load while ``what`` is held stays. It begins at a share of the
-    load so small that the wall's stiffness prevails: there it has one state only.
+    load so small that the wall's stiffness prevails: there it has one state only. Of loose fibers it is looked for from the
+    cylinder that taut ones hold straight, too: in another one a family may be slack, far from what is held.
     """
     track, path, share = room.track, rising(load, what), 1.0
     for _ in range(HALVINGS):
         share *= 0.5
         now = loaded(path.origin, path.direction, share)
-        make_straight(track, tube, cylinder_multiplier(cell, now, what.unit))
-        status, negative, tangent_mu = stand(track, tube, path, share, 1.0, 0, room.space.work)
-        n, largest = len(track.x) - 1, 0.0
-        for i in range(n + 1):
-            largest = max(largest, abs(track.y[i] - 1.0))
-        if status == FOLLOWED and negative == 0 and largest < SMALL_STRAIN and is_stiff(tube, path, share):
-            return follow(room, tube, path, share, tangent_mu, 1.0)
+        for guess in range(2 if may_go_slack(load.wall) else 1):
+            multiplier = cylinder_multiplier(cell, with_taut_fibers(now) if guess == 0 else now, what.unit)
+            make_straight(track, tube, multiplier)
+            status, negative, tangent_mu = stand(track, tube, path, share, 1.0, 0, room.space.work)
+            n, largest = len(track.x) - 1, 0.0
+            for i in range(n + 1):
+                largest = max(largest, abs(track.y[i] - 1.0))
+            if status == FOLLOWED and negative == 0 and largest < SMALL_STRAIN and is_stiff(tube, path, share):
+                return follow(room, tube, path, share, tangent_mu, 1.0)
     return stopped(NOT_CONVERGED, path, 0.0, 1.0)
 
 

@@ -67,6 +67,14 @@ def may_go_slack(wall):
 
 
 @kernel
+def taut(wall):
+    """The wall with two families that may push, where it has loose ones."""
+    if len(wall) == 1:
+        return wall
+    return wall[0], wall[1], BONDED if wall[2] == LOOSE else wall[2]
+
+
+@kernel
 def points(inner, area):
     """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs."""
     z = (2.0 * inner + area) / area
