@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from proportional import judged_near
 
-from freesweep.census.designs import BLOCK, COLUMNS, draw, with_pressures
+from freesweep.census.designs import BLOCK, COLUMNS, Drawn, draw, with_pressures
 from freesweep.description.tube_model import MODELS
 from freesweep.solver import batch, hold_batch
 from freesweep.solver.held.sought import HELD_LENGTH
@@ -59,6 +59,17 @@ def test_states_just_below_a_limit_are_found_and_none_beyond_it(number):
     moves = np.diff(walks.values[:4, batch.MIDDLE])
     assert np.all(moves > 0.0) or np.all(moves < 0.0)
     assert abs(moves[0]) > 2.0 * abs(moves[1]) > 2.0 * abs(moves[2])  # as the root of what is left to the limit
+
+
+def test_long_tube_that_is_all_but_unstrained_is_met_as_far_as_its_middle_tells():
+    """The strain of its middle has four digits, and the length of half of it hangs on all of them."""
+    design = [-5.317899980449575, 4.51754848898938, 62.295061518100276, 0.12064316165333397, 1.0134814859182115,
+              1.7863240625295373, 2.686293332225546, -0.8369012114982275, 1.0]  # fmt: skip
+    pressures = np.array([0.03493084719235909])
+    walks = walked(Drawn(np.array([design]), None).problems(), pressures)
+    assert walks.status.tolist() == [OK]
+    exact, errors = judged_near(with_pressures(np.array([design]), pressures[None])[0], walks.values[:, batch.MIDDLE])
+    assert np.all(np.abs(walks.values - exact) <= walks.bounds + 3 * errors)
 
 
 def test_tube_that_is_slack_all_along_is_told_so_where_its_uniform_part_begins():

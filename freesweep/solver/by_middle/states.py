@@ -53,7 +53,7 @@ def state_at(share, near, far, accuracy):
         told, slope = answer.outputs, slope_of(middle, answer, other)
         if abs(middle - 1.0) < CLOSE_BY and abs(other[0] - 1.0) < CLOSE_BY:  # on both sides of no strain
             bounds = told.bounds + np.abs(other[1].outputs.values - told.values)
-        elif not abs(answer.miss) <= ROUGH * abs(middle - 1.0):
+        elif not abs(answer.miss) <= max(ROUGH * abs(middle - 1.0), FAINT * answer.doubt):
             continue
         else:
             moved = min(SLIGHT * abs(middle - 1.0) / slope, SLIGHT * abs(far.middle - near.middle))
