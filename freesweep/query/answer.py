@@ -37,7 +37,7 @@ class Inquiry:
         )  # fmt: skip
         self.states = table.predictor.states(table.family.kind, self.points)
         self.sides = table.side_of(self.states) if len(table.sides) > 1 else None
-        self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3]
+        self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3].copy()
         self.node = self.marks[:, 4]
         self.exact = self.node >= 0
         if table.predictor.model.is_loose and table.family.kind != reference.LOCKED:  # one family holds the wall
