@@ -16,10 +16,10 @@ import numpy as np
 from ..interpret import run
 from .batch import OUTPUTS, PIECES, kinds_of
 from .lanes import held
-from .lanes.held import BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH
+from .lanes.held import AT_CYLINDER, BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH, TRIALS
 from .physics.lagrangian import ROUNDING
 from .physics.wall import LOOSE
-from .problem import AREA, FORCE, PHYSICAL, THREADS, TORQUE, wall_columns
+from .problem import AREA, FORCE, LENGTH, PHYSICAL, THREADS, TORQUE, wall_columns
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 30  # solutions of one state, at most; some six do nearly always
@@ -67,18 +67,22 @@ class Search:
         self.fine = self.rough.copy()
         self.columns = OUTPUTS + (6 if wall_columns(problems) == PHYSICAL else 0)
 
-    def begin(self, found):
-        """Write what needs no search to ``found``; returns where others begin."""
-        beginnings, some = np.full((len(self.problems), BEGINNING), np.nan), self.pressures > 0.0
+    def begin(self, found, trial):
+        """Write what needs no search to ``found``; returns where others begin, in one of the :data:`.lanes.held.TRIALS`."""
+        beginnings, asked = np.full((len(self.problems), BEGINNING), np.nan), self.pressures > 0.0
+        beginnings[:, LOST] = trial
+        if trial != AT_CYLINDER:  # what was never held otherwise has its one way from rest
+            natural = 0.5 * self.problems[:, LENGTH] if self.unknown == FORCE else 0.0
+            asked &= (found.status == PENDING) & (self.targets != natural)
         if wall_columns(self.problems) == PHYSICAL:
-            some &= self.problems[:, THREADS] <= LOOSE  # of a single family the cylinder leaves the load open
-        every = np.flatnonzero(some)
+            asked &= self.problems[:, THREADS] <= LOOSE  # of a single family the cylinder leaves the load open
+        every = np.flatnonzero(asked)
         for _, kind, some in self.kinds:
             start, rows = held.start_lanes if len(kind) == 1 else held.start_physical, every[some[every]]
             given = self.problems, self.pressures, self.targets, rows, self.unknown == FORCE, *kind
             if len(rows):
                 run(start, len(rows), self.soon, *given, *found[:4], beginnings)
-        known = np.flatnonzero(found.status == OK)
+        known = every[found.status[every] == OK]
         self.solve(known, found.loads[known], np.ones(len(known)), found.states, self.rough)
         found.status[known] = found.states.status[known]
         return beginnings
@@ -115,15 +119,12 @@ def hold_by_load(problems, pressures, targets, unknown, accuracy, found, soon=Fa
     """Write the held states that are found by free ones to ``found`` (:class:`.hold_batch.Holds`); others stay PENDING."""
     search = Search(problems, pressures, targets, unknown, accuracy, soon)
     with np.errstate(all="ignore"):
-        beginnings = search.begin(found)
-        rows = np.flatnonzero((found.status == PENDING) & np.isfinite(beginnings[:, STRETCH]))
-        found.paths[rows] = beginnings[rows, LOST] != 0.0
-        way = Way(search, rows, beginnings)
-        for _ in range(TURNS):
-            if not len(way.rows):
-                break
-            way.step(found)
-        way.end(found)
+        for trial in TRIALS:
+            beginnings = search.begin(found, trial)
+            rows = np.flatnonzero((found.status == PENDING) & np.isfinite(beginnings[:, STRETCH]))
+            if len(rows):
+                found.paths[rows] = (beginnings[rows, LOST] != 0.0) | (trial != AT_CYLINDER)
+                Way(search, rows, beginnings).go(found)
 
 
 class Way:
@@ -147,6 +148,14 @@ class Way:
         self.keep(known, self.first[known])
         size = FIRST * self.size(known)
         self.mu[known] = self.allowed(known, self.at[known] + np.clip(aim / rise, -size, size))
+
+    def go(self, found):
+        """Search until each row has its state, or is given up."""
+        for _ in range(TURNS):
+            if not len(self.rows):
+                break
+            self.step(found)
+        self.end(found)
 
     def size(self, rows):
         """By what a multiplier is measured."""

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from proportional import judged_near
 
+import freesweep as fs
 from freesweep.census.designs import BLOCK, COLUMNS, Drawn, draw, with_pressures
 from freesweep.description.tube_model import MODELS
 from freesweep.solver import batch, hold_batch
 from freesweep.solver.held.sought import HELD_LENGTH
 from freesweep.solver.problem import FORCE, LENGTH
-from freesweep.status import BEYOND_LIMIT, INACCURATE, OK
+from freesweep.status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, OK
 
 ACCURACY = 1e-6
 
@@ -94,3 +95,27 @@ def test_held_length_that_stands_under_a_pull_alone_is_found():
     (exact,), (error,) = judged_near(design, held.states.values[:, batch.MIDDLE])
     assert 2.0 * exact[0] == pytest.approx(problems[0, LENGTH], rel=1e-9)
     assert np.all(np.abs(held.states.values[0] - exact) <= held.states.bounds[0] + error)
+
+
+def test_held_rotation_behind_a_snap_is_found_from_a_strong_torque():
+    """A free tube turns by 591 degrees under this torque; neither from the cylinder nor from rest leads a way there."""
+    tube = fs.Actuator(
+        alpha=65.64556561289325, beta=-11.051712103875174, length=0.05511720363501679, radius=5e-3,
+        wall=5.743529811445565e-4, material=fs.MooneyRivlin(1e5, 30926.911548883596),
+        fiber_extension=1.0023090317030987, model="source",
+    )  # fmt: skip
+    pressure, torque = 283043.3624134087, 0.09925517957995209
+    held = fs.blocked_torque(tube, pressure, fs.inflate(tube, pressure, torque=torque)["rotation"].item(), x=0.0)
+    assert (held["status"], held["stable"], held["held_path"]) == (OK, 1, 1)
+    assert held["torque"].item() == pytest.approx(torque, rel=1e-6)
+
+
+def test_length_that_a_pull_only_nears_is_impossible():
+    """The longest that a pull makes of it is 1.1499 of its length, which the clamped ends keep it from."""
+    problems, pressures = of_census(3002, 20)
+    problems[:, FORCE] = 0.0
+    target = 1.15022 * problems[:, LENGTH]
+    held = hold_batch.hold_all(
+        problems, target, HELD_LENGTH, np.array([0, 1]), pressures[-1:], batch.uniform(24), ACCURACY
+    )
+    assert held.status.tolist() == [HELD_IMPOSSIBLE]

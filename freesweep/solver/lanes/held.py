@@ -33,6 +33,7 @@ STRONG = 4.0  # pull, to pressure and torque
 # of a beginning: stretch and multiplier, length or rotation C of half the tube (NaN: not known yet), dC/dmu of a cylinder,
 # the longest half tube that the fibers allow, and whether the way from rest with C held is gone
 STRETCH, MULTIPLIER, HELD, RISE, LONGEST, LOST = range(6)
+AT_CYLINDER, AT_FREE, AT_STRONG = TRIALS = range(3)  # where to begin, at first
 BEGINNING = LOST + 1
 
 
@@ -87,15 +88,15 @@ def loose_turn(load, length_held):
 
 
 @kernel
-def free_start(cell, load, half, length_held, asked):
-    """The uniform stretch of the free tube, carried from rest, where there is one, and the pull under which: with nothing
-    held, or, where it would snap then and a pull shall hold it, under a strong one.
+def free_start(cell, load, half, length_held, toward, trial, asked):
+    """The uniform stretch of the free tube, carried from rest, where there is one, and the multiplier under which: none, or,
+    where it would snap then or that was tried, a strong pull, or a strong torque ``toward`` what is held.
     """
     zero = spread(0.0)
-    u, came = carried_from_rest(cell, load, half, asked)
-    if not length_held or not some(asked & isnt(came)):
+    u, came = carried_from_rest(cell, load, half, asked & isnt(trial > AT_FREE))
+    if not some(asked & isnt(came)):
         return u, came, zero
-    pull = STRONG * max(load.p, abs(load.m))
+    pull = STRONG * max(load.p, abs(load.m)) if length_held else STRONG * toward * max(load.p, abs(load.f))
     other, pulled = carried_from_rest(cell, holding(load, length_held, pull), half, asked & isnt(came))
     return select(came, u, other), came | pulled, select(came, zero, pull)
 
@@ -134,8 +135,8 @@ def start(
 ):  # fmt: skip
     """Beginnings (n, BEGINNING) of the search for the held states of the rows in the given ``order``, WIDTH at a time: row i
     is a problem of its own under its pressure, half of whose length or rotation is ``targets[i]``; their stretch is NaN
-    where there is none. What needs no search, straight cylinders and what nothing holds, is written to ``multipliers``,
-    ``bounds``, ``status`` and ``stable``.
+    where there is none. In place of LOST they tell which of the TRIALS it is. What needs no search, straight cylinders
+    and what nothing holds, is written to ``multipliers``, ``bounds``, ``status`` and ``stable``.
     """
     columns, found = aligned(1, COLUMNS)[0], aligned(1, BEGINNING + 1)[0]
     unknown = FORCE if length_held else TORQUE
@@ -145,7 +146,7 @@ def start(
             row = order[group + min(lane, count - 1)]
             enter(lane, problems[row], columns)
             columns[PRESSURE, lane], columns[unknown, lane] = pressures[row], 0.0
-            found[HELD, lane] = targets[row]
+            found[HELD, lane], found[LOST, lane] = targets[row], beginnings[row, LOST]
             if lane < count and is_clamped(problems[row]):
                 valid |= 1 << lane
         cell, _, load = loads(columns, constants, walls, layers)
@@ -164,10 +165,12 @@ def start(
         pulled = lagrangian.density(spread(1.0), 0.0, cell, bonded(now))[0] > 0.0
         stands = todo & upheld & pulled & both_pull(cell, now)
         firm, gone = cylinder_stability(cell, now, half)
+        trial, toward = get(found, LOST), select(target < first, -1.0, spread(1.0))
+        stands = stands & isnt(trial > AT_CYLINDER)
         straight = stands & (target == first)
         lost = upheld & gone & (first == (half if length_held else 0.0)) & isnt(target == first)
         stands = stands & isnt(lost)
-        u, came, pull = free_start(cell, load, half, length_held, todo & isnt(stands))
+        u, came, pull = free_start(cell, load, half, length_held, toward, trial, todo & isnt(stands))
         put(found, MULTIPLIER, select(stands, mu, pull))
         put(found, HELD, first)
         put(found, RISE, rise_of(c_y, cell, now, half))
