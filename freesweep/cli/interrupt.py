@@ -13,7 +13,7 @@ import threading
 PATIENCE = 3.5  # [s] for a command to end by itself, of the five that it may take
 INTERRUPTED = 130  # exit code
 ENDS = [number for name in ("SIGINT", "SIGTERM", "SIGHUP") if (number := getattr(signal, name, None))]
-SENTENCE = "interrupted; what was finished is kept, the same command goes on from there"
+SENTENCE = "interrupted; files are whole or not there, and a sweep that is started again goes on from where it was"
 
 
 @contextlib.contextmanager

@@ -115,6 +115,9 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
 def _searched(misfit, objectives, count, seed, atlas, allowed):
     """Candidates, None where no design has all the states in which goals and limits count."""
     u, choice = look(misfit, STARTS * count, seed, atlas)
+    # not all that lists name goes together
+    real = [misfit.space.actuator_or_none(one, k) is not None for one, k in zip(u, choice)]
+    u, choice = u[real], choice[real]
     if len(u) == 0:
         return None
     misfit = with_dear(misfit, u, choice)

@@ -42,6 +42,10 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
         state = "no state was found" if result["status"].values[0] == NOT_CONVERGED else "there is no state"
         return f"{NONE} does it; of the nearest one {state} in which {wish.title} counts"
     if np.all(np.abs(slopes[0][worst]) < NOTHING * max(missed[worst], 1.0)):
+        if not misfit.space.names:
+            return (
+                f"{said}; lists name what can be bought, and nothing between: ranges are (low, high), or start and stop"
+            )
         return f"{said}: nothing that is free changes it"
     pulls = np.nan_to_num(slopes[0]) * np.sign(np.nan_to_num(residuals))[:, None]
     for other in np.argsort(-missed):

@@ -119,9 +119,11 @@ def hold_by_load(problems, pressures, targets, unknown, accuracy, found, soon=Fa
     """Write the held states that are found by free ones to ``found`` (:class:`.hold_batch.Holds`); others stay PENDING."""
     search = Search(problems, pressures, targets, unknown, accuracy, soon)
     with np.errstate(all="ignore"):
+        begun = np.nan
         for trial in TRIALS:
             beginnings = search.begin(found, trial)
-            rows = np.flatnonzero((found.status == PENDING) & np.isfinite(beginnings[:, STRETCH]))
+            fresh = np.isfinite(beginnings[:, STRETCH]) & (beginnings[:, MULTIPLIER] != begun)
+            rows, begun = np.flatnonzero((found.status == PENDING) & fresh), beginnings[:, MULTIPLIER]
             if len(rows):
                 found.paths[rows] = (beginnings[rows, LOST] != 0.0) | (trial != AT_CYLINDER)
                 Way(search, rows, beginnings).go(found)

@@ -193,4 +193,6 @@ def test_an_interruption_has_its_own_exit_code(specification, capsys, monkeypatc
         raise KeyboardInterrupt
 
     monkeypatch.setattr("freesweep.sweep.run.run", interrupt)
-    assert "the same command goes on from there" in refused(capsys, "sweep", specification, code=INTERRUPTED)
+    assert "a sweep that is started again goes on from where it was" in refused(
+        capsys, "sweep", specification, code=INTERRUPTED
+    )

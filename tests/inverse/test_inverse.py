@@ -130,6 +130,23 @@ def test_a_straight_muscle_that_shall_rotate_says_why_not():
     assert found.attrs["summary"].endswith("instead of 90 degree: nothing that is free changes it")
 
 
+def test_lists_that_were_meant_as_ranges_are_told_to_be_none():
+    goal = fs.Goal("rotation", 120, pressure=1e5, tolerance=1)
+    template = fs.Actuator(
+        alpha=30,
+        beta=-60,
+        length=0.12,
+        radius=6e-3,
+        wall=1.5e-3,
+        material=fs.MooneyRivlin(0.11e6, 0.06e6),
+        model="source",
+    )
+    found = fs.design(template, {"alpha": [0, 80], "beta": [-80, 0]}, [goal])
+    assert not found["met"].any()
+    assert found.sizes["candidate"] == 3  # no tube has both families at 0 degree
+    assert "nothing between: ranges are (low, high)" in found.attrs["summary"]
+
+
 def test_goals_that_fight_are_named():
     wish = [
         fs.Goal("stroke", at_least=0.2, pressure=2e5, tolerance=0.001),

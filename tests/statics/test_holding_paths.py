@@ -133,6 +133,16 @@ def round_trips(count, seed):
             yield tube, pressure, by_force, load, free
 
 
+def is_held(tube, pressure, load, free, by_force):
+    """Whether another load than it was inflated under leads to the same length or rotation, as far as that is known: fibers
+    that all but lock leave the load open.
+    """
+    name, what = ("force", "deformed_length") if by_force else ("torque", "rotation")
+    other = fs.inflate(tube, pressure, **{name: load}, x=0.0)
+    known = other[f"{what}_error"].item() + free[f"{what}_error"].item()
+    return other["status"] == OK and abs(other[what].item() - free[what].item()) <= 2.0 * known
+
+
 @pytest.mark.parametrize("count", [40, pytest.param(2000, marks=pytest.mark.long)])
 def test_what_inflates_to_a_length_or_rotation_holds_it(count):
     lost = []
@@ -142,6 +152,7 @@ def test_what_inflates_to_a_length_or_rotation_holds_it(count):
         else:
             held, name = fs.blocked_torque(tube, pressure, free["rotation"].item(), x=0.0), "torque"
         size = np.pi * R**2 * pressure * (1.0 if by_force else R)
-        if held["status"] != OK or abs(held[name].item() - load) > 1e-4 * max(size, abs(load)):
-            lost.append((tube, pressure, name, load, held["status"].item(), held[name].item()))
+        found, near = held[name].item(), 1e-4 * max(size, abs(load))
+        if held["status"] != OK or (abs(found - load) > near and not is_held(tube, pressure, found, free, by_force)):
+            lost.append((tube, pressure, name, load, held["status"].item(), found))
     assert len(lost) <= 0.003 * count, lost

@@ -19,7 +19,7 @@ from ..numerics.path import NOTHING, Held, Path, Track, load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
 from ..physics import lagrangian
-from ..physics.wall import may_go_slack, taut
+from ..physics.wall import may_go_slack, with_bonded_fibers
 from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
@@ -92,12 +92,6 @@ def falling(start, load, what):
 def cylinder_multiplier(cell, load, direction):
     """The multiplier that makes y = 1 an equilibrium of a tube that is ``cell`` all along."""
     return -lagrangian.density(1.0, 0.0, cell, load)[1] / lagrangian.conjugate(1.0, 0.0, cell, load, direction)[1]
-
-
-@kernel
-def with_taut_fibers(load):
-    """The load on the same tube whose two families cannot go slack."""
-    return Load(load.gamma, load.rubber, taut(load.wall), load.p, load.f, load.m, load.e)
 
 
 @kernel
@@ -187,7 +181,7 @@ def from_rest(room, tube, cell, load, what):
         share *= 0.5
         now = loaded(path.origin, path.direction, share)
         for guess in range(2 if may_go_slack(load.wall) else 1):
-            multiplier = cylinder_multiplier(cell, with_taut_fibers(now) if guess == 0 else now, what.unit)
+            multiplier = cylinder_multiplier(cell, with_bonded_fibers(now) if guess == 0 else now, what.unit)
             make_straight(track, tube, multiplier)
             status, negative, tangent_mu = stand(track, tube, path, share, 1.0, 0, room.space.work)
             n, largest = len(track.x) - 1, 0.0

@@ -19,7 +19,7 @@ from ..cells import nothing_yet
 from ..load import Load, under
 from ..physics import lagrangian, membrane, physical
 from ..physics.lagrangian import ROUNDING
-from ..physics.wall import BONDED, may_go_slack
+from ..physics.wall import may_go_slack, with_bonded_fibers
 from ..problem import FORCE, PHYSICAL, SOURCE, TORQUE
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, OK
 from . import first_guess
@@ -44,25 +44,12 @@ def holding(load, length_held, mu):
 
 
 @kernel
-def bonded(load):
-    """The same load on fibers that may push."""
-    return Load(load.gamma, load.rubber, _bonded(load.wall), load.p, load.f, load.m, load.e)
-
-
-@kernel
-def _bonded(wall):
-    if len(wall) == 1:
-        return wall
-    return wall[0], wall[1], BONDED, wall[3], wall[4]
-
-
-@kernel
 def cylinder(cell, load, length_held):
     """``(c, c_y, mu)`` of the straight cylinder: what it adds to C at each place, and its multiplier."""
     psi, psi_y, _, G_1, G_y, _ = membrane.kinematics(spread(1.0), cell, load)
     s = sqrt(max(1.0 + G_1, 0.0))
     c, c_y = (s, 0.5 * G_y / s) if length_held else (psi, psi_y)
-    return c, c_y, -lagrangian.density(spread(1.0), 0.0, cell, bonded(load))[1] / c_y
+    return c, c_y, -lagrangian.density(spread(1.0), 0.0, cell, with_bonded_fibers(load))[1] / c_y
 
 
 @kernel
@@ -77,7 +64,9 @@ def _both_pull(cell, load, wall):
         return mask_of(-1)
     if not may_go_slack(wall):
         return mask_of(-1)
-    alpha, beta, _ = physical.tensions(spread(1.0), spread(0.0), cell, bonded(load), nothing_yet(spread(0.0)))
+    alpha, beta, _ = physical.tensions(
+        spread(1.0), spread(0.0), cell, with_bonded_fibers(load), nothing_yet(spread(0.0))
+    )
     return (alpha > 0.0) & (beta > 0.0)
 
 
@@ -162,7 +151,7 @@ def start(
             never = mask_of(valid) & (cell[0] == 0.0) & isnt(loose_turn(load, length_held) & isnt(target == 0.0))
         todo = todo & isnt(never | pushed)
         now = holding(load, length_held, mu)
-        pulled = lagrangian.density(spread(1.0), 0.0, cell, bonded(now))[0] > 0.0
+        pulled = lagrangian.density(spread(1.0), 0.0, cell, with_bonded_fibers(now))[0] > 0.0
         stands = todo & upheld & pulled & both_pull(cell, now)
         firm, gone = cylinder_stability(cell, now, half)
         trial, toward = get(found, LOST), select(target < first, -1.0, spread(1.0))

@@ -105,7 +105,7 @@ def middle(u, depth, cell, load, scratch):
     return Middle(
         u, sqrt(max(L_yy / L_vv, LEAST_RATE)), depth, q, whole, y, level, sqrt(max(-T / (s * mean_yy), 0.0)), rise,
         -(own_yy + 2.0 * rise * s_y) / s, s, psi, energy,
-        (s_u - s, u * u * s_u - y * y * s, psi_u - psi, energy_u - energy),
+        behind(u, s_u, psi_u, energy_u, y, s, psi, energy),
     )  # fmt: skip
 
 
@@ -133,17 +133,18 @@ def middle_at(y, cell, load, half, scratch):
     rate = sqrt(fall * s / -L_vv)
     far = min(max(rate * half, 1.0), DEEPEST)
     least = fall * reach * 2.0 / (1.0 / fallen(far, scratch) - 2.0)
-    u = y - gap
+    u = select(depth >= ALMOST * DEEPEST, y - gap, y)  # of others it is but a number
     _, G_u, psi_u, energy_u = lagrangian.level_of(u, cell, load, near)
-    s_u, deep = sqrt(max(1.0 + G_u, 0.0)), depth >= ALMOST * DEEPEST  # of others u is but a number
     return Middle(
-        u, select(driven, 1.0 / select(driven, per_depth, 1.0), rate), depth, q, whole, y, level, per_depth, rise,
-        -(L_yy + rise * near[7] / s) / s, s, psi, energy,
-        (
-            select(deep, s_u - s, 0.0), select(deep, u * u * s_u - y * y * s, 0.0), select(deep, psi_u - psi, 0.0),
-            select(deep, energy_u - energy, 0.0),
-        ),
+        y - gap, select(driven, 1.0 / select(driven, per_depth, 1.0), rate), depth, q, whole, y, level, per_depth, rise,
+        -(L_yy + rise * near[7] / s) / s, s, psi, energy, behind(u, sqrt(1.0 + G_u), psi_u, energy_u, y, s, psi, energy),
     ), driven, rise / least - 1.0  # fmt: skip
+
+
+@kernel
+def behind(u, s_u, psi_u, energy_u, y, s, psi, energy):
+    """By how much s, y^2 s, psi and the energy are more in the uniform tube than in the middle."""
+    return s_u - s, u * u * s_u - y * y * s, psi_u - psi, energy_u - energy
 
 
 @kernel

@@ -23,6 +23,7 @@ import numpy as np
 
 from ...jit import kernel
 from ..either import select, some
+from ..load import Load
 from . import mooney_wall
 from .membrane import excess, yeoh_slope
 
@@ -67,11 +68,19 @@ def may_go_slack(wall):
 
 
 @kernel
-def taut(wall):
-    """The wall with two families that may push, where it has loose ones."""
+def with_bonded_fibers(load):
+    """The load on the same tube whose two families may push, if they are loose."""
+    return Load(load.gamma, load.rubber, _bonded(load.wall), load.p, load.f, load.m, load.e)
+
+
+@kernel
+def _bonded(wall):
     if len(wall) == 1:
         return wall
-    return wall[0], wall[1], BONDED if wall[2] == LOOSE else wall[2]
+    threads = BONDED if wall[2] == LOOSE else wall[2]
+    if len(wall) == 3:
+        return wall[0], wall[1], threads
+    return wall[0], wall[1], threads, wall[3], wall[4]
 
 
 @kernel
