@@ -29,11 +29,11 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
 LONGER = 1e-9  # relative: more than rounding
-STRONG = 4.0  # pull, to pressure and torque
+STRONG, STRONGER = 4.0, 32.0  # pulls, to pressure and torque
 # of a beginning: stretch and multiplier, length or rotation C of half the tube (NaN: not known yet), dC/dmu of a cylinder,
 # the longest half tube that the fibers allow, and whether the way from rest with C held is gone
 STRETCH, MULTIPLIER, HELD, RISE, LONGEST, LOST = range(6)
-AT_CYLINDER, AT_FREE, AT_STRONG = TRIALS = range(3)  # where to begin, at first
+AT_CYLINDER, AT_FREE, AT_STRONG, AT_STRONGER = TRIALS = range(4)  # where to begin, at first
 BEGINNING = LOST + 1
 
 
@@ -85,7 +85,8 @@ def free_start(cell, load, half, length_held, toward, trial, asked):
     u, came = carried_from_rest(cell, load, half, asked & isnt(trial > AT_FREE))
     if not some(asked & isnt(came)):
         return u, came, zero
-    pull = STRONG * max(load.p, abs(load.m)) if length_held else STRONG * toward * max(load.p, abs(load.f))
+    strength = select(trial > AT_STRONG, spread(STRONGER), spread(STRONG))
+    pull = strength * max(load.p, abs(load.m)) if length_held else strength * toward * max(load.p, abs(load.f))
     other, pulled = carried_from_rest(cell, holding(load, length_held, pull), half, asked & isnt(came))
     return select(came, u, other), came | pulled, select(came, zero, pull)
 
@@ -155,9 +156,11 @@ def start(
         stands = todo & upheld & pulled & both_pull(cell, now)
         firm, gone = cylinder_stability(cell, now, half)
         trial, toward = get(found, LOST), select(target < first, -1.0, spread(1.0))
+        natural = half if length_held else spread(0.0)
+        todo = todo & isnt((trial > AT_CYLINDER) & stands & (target == natural))  # has its one way from rest
         stands = stands & isnt(trial > AT_CYLINDER)
         straight = stands & (target == first)
-        lost = upheld & gone & (first == (half if length_held else 0.0)) & isnt(target == first)
+        lost = upheld & gone & (first == natural) & isnt(target == first)
         stands = stands & isnt(lost)
         u, came, pull = free_start(cell, load, half, length_held, toward, trial, todo & isnt(stands))
         put(found, MULTIPLIER, select(stands, mu, pull))
