@@ -35,7 +35,8 @@ from .sought import (  # noqa: F401
 )
 from .ways import EVERY, cylinder_multiplier, held_at
 
-PULLS = (0.0, 1.0, -1.0, 4.0, -4.0, 16.0, -16.0)  # of the load that will hold, as the others rise: a tube may snap without it
+PULLS = 0.0, 1.0, -1.0, 4.0, -4.0, 16.0, -16.0  # of the load that holds, as others rise: a tube may snap without it
+GENTLE = -0.8  # of the pressure: a push
 
 
 @kernel
@@ -62,12 +63,19 @@ def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
         snaps = True
         for pull in PULLS:
             if snaps:
-                end = ways.from_free(room, tube, sought.with_pressure, sought.unit, pull, sought.wanted)
+                end = ways.from_free(room, tube, sought.with_pressure, sought.unit, borne(pull, sought), sought.wanted)
                 again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy, out)
                 done = valued(again.status)
                 found = again if done else found
                 snaps = not done and (pull != 0.0 or (end.status == BEYOND_LIMIT and not end.path.held.any))
     return finish(room, tube, sought, found, out) if valued(found.status) else found
+
+
+@kernel
+def borne(pull, sought):
+    """The same pull, in units of what holds, or as much of a push as the pressure bears."""
+    unit = sought.unit.f
+    return max(pull, GENTLE * sought.with_pressure.p / unit) if unit > 0.0 else pull
 
 
 @kernel
