@@ -92,6 +92,8 @@ def fault(y, v, cell, load):
     H, D, area = cell
     T, t, most = load.p * y * y + load.f, np.array([H + D, H - D]), load.gamma**2
     _, G_1, psi, *on = physical.place(y, v, T, cell, load)
+    if 1 + G_1 - v * v < 1e-6 * (1 + G_1):  # the meridian stands upright all but to rounding
+        return 0.0
     on = np.array(on, bool)
     _, W_G, W_p, *_ = wall.slopes(y, G_1, psi, area, load.rubber, load.wall)
     pull = 0.5 * T / np.sqrt(1 + G_1 - v * v)
