@@ -19,7 +19,7 @@ from .lanes import held
 from .lanes.held import AT_CYLINDER, BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH, TRIALS
 from .physics.lagrangian import ROUNDING
 from .physics.wall import LOOSE
-from .problem import AREA, FORCE, LENGTH, PHYSICAL, THREADS, TORQUE, wall_columns
+from .problem import AREA, FORCE, PHYSICAL, THREADS, TORQUE, wall_columns
 from .status import COMPRESSED, HELD_IMPOSSIBLE, OK, PENDING
 
 TURNS = 30  # solutions of one state, at most; some six do nearly always
@@ -71,9 +71,7 @@ class Search:
         """Write what needs no search to ``found``; returns where others begin, in one of the :data:`.lanes.held.TRIALS`."""
         beginnings, asked = np.full((len(self.problems), BEGINNING), np.nan), self.pressures > 0.0
         beginnings[:, LOST] = trial
-        if trial != AT_CYLINDER:  # what was never held otherwise has its one way from rest
-            natural = 0.5 * self.problems[:, LENGTH] if self.unknown == FORCE else 0.0
-            asked &= (found.status == PENDING) & (self.targets != natural)
+        asked &= found.status == PENDING
         if wall_columns(self.problems) == PHYSICAL:
             asked &= self.problems[:, THREADS] <= LOOSE  # of a single family the cylinder leaves the load open
         every = np.flatnonzero(asked)

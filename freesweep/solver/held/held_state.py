@@ -19,7 +19,7 @@ from ...jit import kernel
 from ..physics import lagrangian
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from . import ways
-from .settle import finish, lower, settle, with_neck
+from .settle import finish, settle, with_neck
 from .sought import (  # noqa: F401
     FROM_FREE,
     FROM_REST,
@@ -35,7 +35,8 @@ from .sought import (  # noqa: F401
 )
 from .ways import EVERY, cylinder_multiplier, held_at
 
-PULLS = (0.0, 1.0, -1.0, 4.0, -4.0)  # of the load that will hold, as the others rise: a tube may snap without it
+PULLS = 0.0, 1.0, -1.0, 4.0, -4.0, 16.0, -16.0  # of the load that holds, as others rise: a tube may snap without it
+GENTLE = -0.8  # of the pressure: a push
 
 
 @kernel
@@ -62,12 +63,19 @@ def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
         snaps = True
         for pull in PULLS:
             if snaps:
-                end = ways.from_free(room, tube, sought.with_pressure, sought.unit, pull, sought.wanted)
+                end = ways.from_free(room, tube, sought.with_pressure, sought.unit, borne(pull, sought), sought.wanted)
                 again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy, out)
                 done = valued(again.status)
                 found = again if done else found
                 snaps = not done and (pull != 0.0 or (end.status == BEYOND_LIMIT and not end.path.held.any))
     return finish(room, tube, sought, found, out) if valued(found.status) else found
+
+
+@kernel
+def borne(pull, sought):
+    """The same pull, in units of what holds, or as much of a push as the pressure bears."""
+    unit = sought.unit.f
+    return max(pull, GENTLE * sought.with_pressure.p / unit) if unit > 0.0 else pull
 
 
 @kernel
@@ -80,11 +88,6 @@ def first_way(room, tube, sought):
             return end
     allowed = 1 if sought.varies and mirrored(tube) else 0
     end = ways.from_rest(room, tube, sought.cell, there, held_at(unit, natural, natural, allowed))
-    if end.status == COMPRESSED and sought.varies and sought.raised.p != there.p:
-        end = ways.from_rest(room, tube, sought.cell, sought.raised, held_at(unit, natural, natural, allowed))
-        if end.status == OK and wanted != natural:
-            end = ways.go(room, tube, ways.moving(sought.raised, held_at(unit, natural, wanted, EVERY)))
-        return lower(room, tube, end, sought.raised, there, sought) if end.status == OK else end
     if end.status == OK and wanted != natural:
         end = ways.go(room, tube, ways.moving(there, held_at(unit, natural, wanted, EVERY)))
     return end
@@ -92,10 +95,8 @@ def first_way(room, tube, sought):
 
 @kernel
 def from_cylinder(room, tube, sought):
-    """From the straight cylinder to what is wanted, through stable states, under a pressure that is lowered at last."""
-    track, x, load, unit = room.track, tube.places, sought.raised, sought.unit
-    multiplier = cylinder_multiplier(sought.cell, load, unit)
-    ways.make_straight(track, tube, multiplier)
+    """From the straight cylinder to what is wanted, through stable states."""
+    track, x, load, unit = room.track, tube.places, sought.with_pressure, sought.unit
+    ways.make_straight(track, tube, cylinder_multiplier(sought.cell, load, unit))
     first = lagrangian.conjugate(1.0, 0.0, sought.cell, load, unit)[0] * x[len(x) - 1]
-    end = ways.go(room, tube, ways.moving(load, held_at(unit, first, sought.wanted, 0)))
-    return lower(room, tube, end, load, sought.with_pressure, sought) if end.status == OK else end
+    return ways.go(room, tube, ways.moving(load, held_at(unit, first, sought.wanted, 0)))

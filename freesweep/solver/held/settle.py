@@ -43,6 +43,10 @@ def settle(room, tube, end, sought, path, accuracy, out):
             end = ways.follow(room, tube, end.path, 1.0, end.here[1], 1.0 + NEAR)
     turned = end.status == BEYOND_LIMIT and end.path.held.any and end.ahead[2] > 0.0
     if turned and is_flat(end.ahead[0], end.ahead[1], end.path):
+        n = len(track.x) - 1
+        own = fill(tube.course, tube.edges, track.x, n, n, tube.cells)
+        if pushed(track.y[: n + 1], own, load_at(end.path, track.y, n, end.here[0])):
+            return Found(COMPRESSED, 0, 0, load, end.here[0], True, path), end
         found = at_turn(room, tube, end, sought, path, accuracy, out)
     if valued(found.status) and not found.load.p + found.load.f > 0.0:  # at the clamped ends, where y = 1
         return Found(COMPRESSED, 0, 0, load, 1.0, True, path), end

@@ -16,21 +16,19 @@ from .ways import cylinder_multiplier
 HELD_LENGTH, HELD_ROTATION = 0, 1
 FROM_REST, FROM_FREE = 0, 1
 LONGER = 1e-9  # relative: from what the fibers allow
-RAISES = 40  # of the pressure by a half, until the wall of the starting cylinder is under tension
 WITHOUT_PRESSURE = 0.1  # times the wall's section: the pressure that is gone to first where none is asked for
 CYLINDER = 3  # numbers of a cell, of which a body has more
 MIRROR_OFFSET, MIRROR_TOLERANCE = 0.37, 1e-12  # places off jumps; of H, D and the section
 
 
 class Sought(NamedTuple):
-    """A held state: its load, but for what holds it; ``with_pressure``, the same where there is none; and ``raised``, with
-    more, at which the wall of the straight cylinder ``cell`` is under tension, if it ``stands``. The load ``unit`` holds
-    the integral, in units of ``scale``; it is ``natural`` undeformed, and ``wanted``.
+    """A held state: its load, but for what holds it; ``with_pressure``, the same where there is none, and whether there the
+    wall of the straight cylinder ``cell`` is under tension: it ``stands``. The load ``unit`` holds the integral, in units
+    of ``scale``; it is ``natural`` undeformed, and ``wanted``.
     """
 
     load: tuple
     with_pressure: tuple
-    raised: tuple
     cell: tuple
     stands: bool
     unit: tuple
@@ -123,29 +121,25 @@ def refused(load, target, kind, tube):
 
 @kernel
 def describe(load, target, kind, tube):
-    """What is sought. A place is chosen whose cylinder can carry the load, at a higher pressure if it must be."""
+    """What is sought. A place is chosen whose cylinder can carry the load."""
     course, places = tube.course, tube.places
     varies = course.shape[0] > 1 or course.shape[1] > 1
     cell, unit = guide.cell_along(tube, 0.5), unit_of(kind, 1.0)
     there = at_pressure(load, load.p if load.p > 0.0 or kind == HELD_ROTATION else WITHOUT_PRESSURE * cell[2])
-    raised, stands = there, False
-    for attempt in range((guide.PLACES if varies else 1) * RAISES):
-        share = ((attempt // RAISES) * 0.5 / (guide.PLACES - 1) + 0.5) % 1.0
-        cell = guide.cell_along(tube, share)
-        raised = at_pressure(there, there.p * 1.5 ** (attempt % RAISES))
-        multiplier = cylinder_multiplier(cell, raised, unit)
+    multiplier, stands = 0.0, False
+    for attempt in range(guide.PLACES if varies else 1):
+        cell = guide.cell_along(tube, (attempt * 0.5 / (guide.PLACES - 1) + 0.5) % 1.0)
+        multiplier = cylinder_multiplier(cell, there, unit)
         stands = (
-            abs(multiplier) < np.inf and lagrangian.density(1.0, 0.0, cell, loaded(raised, unit, multiplier))[0] > 0.0
+            abs(multiplier) < np.inf and lagrangian.density(1.0, 0.0, cell, loaded(there, unit, multiplier))[0] > 0.0
         )
         if stands:
             break
-    scale = max(there.p, abs(load.f))
-    if stands:
-        scale = max(scale, abs(cylinder_multiplier(cell, raised, unit)))
+    scale = max(there.p, abs(load.f), abs(load.m))
+    if abs(multiplier) < np.inf:
+        scale = max(scale, abs(multiplier))
     natural = places[len(places) - 1] * scale if kind == HELD_LENGTH else 0.0
-    return Sought(
-        load, there, raised, cell, stands, unit_of(kind, scale), scale, natural, target * scale, varies
-    )  # fmt: skip
+    return Sought(load, there, cell, stands, unit_of(kind, scale), scale, natural, target * scale, varies)
 
 
 @kernel

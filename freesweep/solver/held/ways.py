@@ -27,6 +27,7 @@ EVERY = 1 << 30  # unstable directions allowed: any number
 MOST_STEPS = 1000
 SMALL_STRAIN = 0.02  # of the first state on the way from rest: there the wall has one state only
 HALVINGS = 60  # of its load, until that holds
+LEAST_SHARE = 1e-6  # of the loads: all but none
 
 
 class Room(NamedTuple):
@@ -189,7 +190,10 @@ def from_rest(room, tube, cell, load, what):
                 largest = max(largest, abs(track.y[i] - 1.0))
             if status == FOLLOWED and negative == 0 and largest < SMALL_STRAIN and is_stiff(tube, path, share):
                 return follow(room, tube, path, share, tangent_mu, 1.0)
-    return stopped(NOT_CONVERGED, path, 0.0, 1.0)
+    least = loaded(path.origin, path.direction, LEAST_SHARE)
+    least = loaded(least, what.unit, cylinder_multiplier(cell, least, what.unit))
+    gone = lagrangian.density(1.0, 0.0, cell, least)[0] <= 0.0  # the wall would be pushed from the first load on
+    return stopped(COMPRESSED if gone else NOT_CONVERGED, path, 0.0, 1.0)
 
 
 @kernel

@@ -29,11 +29,11 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
 LONGER = 1e-9  # relative: more than rounding
-STRONG = 4.0  # pull, to pressure and torque
+STRONG, STRONGER, GENTLE = 4.0, 32.0, -0.8  # pulls, to pressure and torque; a push, to the pressure
 # of a beginning: stretch and multiplier, length or rotation C of half the tube (NaN: not known yet), dC/dmu of a cylinder,
 # the longest half tube that the fibers allow, and whether the way from rest with C held is gone
 STRETCH, MULTIPLIER, HELD, RISE, LONGEST, LOST = range(6)
-AT_CYLINDER, AT_FREE, AT_STRONG = TRIALS = range(3)  # where to begin, at first
+AT_CYLINDER, AT_FREE, AT_STRONG, AT_STRONGER, AT_OPPOSITE = TRIALS = range(5)  # where to begin, at first
 BEGINNING = LOST + 1
 
 
@@ -79,13 +79,19 @@ def loose_turn(load, length_held):
 @kernel
 def free_start(cell, load, half, length_held, toward, trial, asked):
     """The uniform stretch of the free tube, carried from rest, where there is one, and the multiplier under which: none, or,
-    where it would snap then or that was tried, a strong pull, or a strong torque ``toward`` what is held.
+    where it would snap then or that was tried, a strong pull, or a strong torque ``toward`` what is held; at last the
+    opposite.
     """
     zero = spread(0.0)
     u, came = carried_from_rest(cell, load, half, asked & isnt(trial > AT_FREE))
     if not some(asked & isnt(came)):
         return u, came, zero
-    pull = STRONG * max(load.p, abs(load.m)) if length_held else STRONG * toward * max(load.p, abs(load.f))
+    opposite = trial > AT_STRONGER
+    strength = select((trial > AT_STRONG) & isnt(opposite), spread(STRONGER), spread(STRONG))
+    if length_held:
+        pull = select(opposite, GENTLE * load.p, strength * max(load.p, abs(load.m)))
+    else:
+        pull = strength * select(opposite, -toward, toward) * max(load.p, abs(load.f))
     other, pulled = carried_from_rest(cell, holding(load, length_held, pull), half, asked & isnt(came))
     return select(came, u, other), came | pulled, select(came, zero, pull)
 
@@ -155,9 +161,11 @@ def start(
         stands = todo & upheld & pulled & both_pull(cell, now)
         firm, gone = cylinder_stability(cell, now, half)
         trial, toward = get(found, LOST), select(target < first, -1.0, spread(1.0))
+        natural = half if length_held else spread(0.0)
+        todo = todo & isnt((trial > AT_CYLINDER) & stands & (target == natural))  # has its one way from rest
         stands = stands & isnt(trial > AT_CYLINDER)
         straight = stands & (target == first)
-        lost = upheld & gone & (first == (half if length_held else 0.0)) & isnt(target == first)
+        lost = upheld & gone & (first == natural) & isnt(target == first)
         stands = stands & isnt(lost)
         u, came, pull = free_start(cell, load, half, length_held, toward, trial, todo & isnt(stands))
         put(found, MULTIPLIER, select(stands, mu, pull))

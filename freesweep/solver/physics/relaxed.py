@@ -81,18 +81,23 @@ def axial(G, v):
 
 @kernel
 def free_point(y, G_1, psi, low, v, T, m, area, rubber, wall, todo):
-    """``(G - 1, psi)`` that nothing holds, from a first guess above ``low``. Only where it is to do."""
+    """``(G - 1, psi)`` that nothing holds, from a first guess above ``low``. Only where it is to do. Newton's method is one
+    along the meridional stretch q = sqrt(G): a thick wall's W is convex in that, not in G.
+    """
+    least = sqrt(1.0 + low)
     for _ in range(ITERATIONS):
         _, W_G, W_p, _, _, _, W_GG, W_Gp, W_pp = slopes(y, G_1, psi, area, rubber, wall)
-        s = axial(1.0 + G_1, v)
-        rise, turn, bend = 0.5 * T / s - W_G, m - W_p, 0.25 * T / (s * s * s) + W_GG
-        cross = select(bend * W_pp > W_Gp * W_Gp, W_Gp, 0.0)  # far off the step is one along G, and one along psi
+        q, s = sqrt(1.0 + G_1), axial(1.0 + G_1, v)
+        rise, turn, cross = q * (T / s - 2.0 * W_G), m - W_p, 2.0 * q * W_Gp
+        bend = abs(T * v * v / (s * s * s) + 2.0 * W_G + 4.0 * q * q * W_GG)
+        cross = select(bend * W_pp > cross * cross, cross, 0.0)  # far off the step is one along q, and one along psi
         det = bend * W_pp - cross * cross
         wider, further = (W_pp * rise - cross * turn) / det, (bend * turn - cross * rise) / det
-        most = (1.0 - SHORT) * (G_1 - low)
+        most = (1.0 - SHORT) * (q - least)
         share = min(min(most / max(abs(wider), NO_ROOM), LONG / max(y * abs(further), NO_ROOM)), 1.0)
-        G_1, psi = select(todo, G_1 + share * wider, G_1), select(todo, psi + share * further, psi)
-        todo = todo & (max(abs(wider), y * abs(further)) >= CLOSE * (1.0 + G_1))
+        G_1 = select(todo, G_1 + share * wider * (2.0 * q + share * wider), G_1)
+        psi = select(todo, psi + share * further, psi)
+        todo = todo & ((q * abs(wider) >= CLOSE * s * s) | (y * abs(further) >= CLOSE))
         if not some(todo):
             break
     return G_1, psi
@@ -300,9 +305,10 @@ def settle(y, v, H, D, gg, T, m, area, rubber, wall):
         near, far = select(going & before, at, near), select(going & isnt(before), at, far)
         new = at - F / F_p
         new = select((F_p < 0.0) & is_between(new, near, far, side), new, 0.5 * (near + far))
-        change = abs(new - at)
-        at = select(going, new, at)
-        going = going & (change > CLOSE * unit)
+        to_G_1 = reach(y, new, t, stretch)
+        unsettled = abs(to_G_1 - reach(y, at, t, stretch)) > CLOSE * max(1.0 + to_G_1 - v * v, NO_ROOM)
+        change, at = abs(new - at), select(going, new, at)
+        going = going & ((change > CLOSE * unit) | unsettled)
         if not some(going):
             break
     one = isnt(both | none)
