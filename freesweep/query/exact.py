@@ -9,11 +9,11 @@ from numba import config
 
 from ..description.actuator import APART, LARGEST_ANGLE
 from ..description.courses import distinct, followed
-from ..description.families import BITS, FAMILIES, lines_of
+from ..description.families import BITS, FAMILIES, beyond_a_point, lines_of
 from ..description.local import COURSE
 from ..description.profiles import SENSITIVITY, widened
 from ..description.tube_model import MODELS
-from ..scaling import ALONG, OUTPUTS, output_scales, problem_rows, wall_volume_inside
+from ..scaling import ALONG, OUTPUTS, SLACK, output_scales, problem_rows, wall_volume_inside
 from ..solver.status import PENDING
 from ..status import DEGENERATE, INVALID, NOT_CONVERGED, VALUED
 from . import reference
@@ -99,6 +99,8 @@ def solve(
             found[name][good] = np.where(valued, number, np.nan)
             found[f"{name}_error"][good] = np.where(valued, bounds[:, k] * scales[name], np.nan)
         slack[good] = np.where(valued, flags, 0)
+        if names[-1] in ALONG:
+            slack = beyond_a_point(slack, *(found[name] for name in SLACK))
         _tell_families(found, slack, lines.single, families)
         if held:
             stable[good] = second

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import VARIABLES
+from ..description.families import A_POINT
 from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, bent, make_axis, part_of
@@ -167,7 +168,7 @@ class Table:
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
             flags = self._taut_nodes()
             for name, variable in self.family.variables.items():
-                flags = flags | (self._grid(name) > 0.0) * np.uint8(SLACK_FLAGS[variable])
+                flags = flags | (self._grid(name) > A_POINT) * np.uint8(SLACK_FLAGS[variable])
             codes |= self._beyond_rest(flags) << 4
         return codes
 
