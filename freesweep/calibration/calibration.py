@@ -31,7 +31,7 @@ class Calibration:
     sigma : standard uncertainty by measured quantity: as given (root mean square), or estimated from the scatter
     condition : ratio of the best to the worst seen combination of relative changes of the parameters
     chi_square : weighted squared residuals per degree of freedom; near 1 where the model fits the uncertainties given
-    notes : in sentences: the verdict, with the typical misfit as a share of the range measured; then what a reader has to know
+    notes : in sentences: the verdict, and the typical misfit as a share of the range measured; what a reader has to know
     profile_intervals : (p, 2) at 95 % from the profile likelihood: other parameters are fitted anew at each value
     fits : whether the residuals look like noise; where they do not, intervals are widened for it, ``widening`` times (p,)
     leave_one_out : root mean square misfit by quantity of curves, each by a fit to all others (NaN: there are none)
