@@ -51,6 +51,8 @@ def table(found, shown=SHOWN) -> str:
         if name in found and name in free | tied - {"fiber_radius"} and found[name].dims == ("candidate",):
             unit, scale = _shown(found[name].attrs["units"], shown)
             columns.append((_headed(name, unit), [f"{value * scale:.6g}" for value in found[name].values]))
+    if "material" in found:
+        columns.append(("material", found["material"].values.tolist()))
     for group, fine in (("goal", "goal_met"), ("limit", "limit_kept")):
         for k in range(found.sizes.get(group, 0)):
             heading, scale = _title(found[group].values[k], shown)

@@ -15,11 +15,15 @@ from grids import CHILD_ENVIRONMENT, make
 import freesweep as fs
 from freesweep.cli import main
 from freesweep.inverse import look, wish_file
+from freesweep.inverse.designing import find
 from freesweep.inverse.least import beaten
 from freesweep.inverse.predict import State
+from freesweep.inverse.report import csv as candidates_csv
+from freesweep.inverse.report import table
 from freesweep.inverse.shown import shown
 from freesweep.inverse.singles import solve_single
 from freesweep.inverse.wishes import Wish
+from freesweep.plot.candidates import draw
 from freesweep.sweep.spec import parse
 from freesweep.thesis.prototypes import found_rotator
 
@@ -493,6 +497,25 @@ def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, cap
         assert float(line.split()[3]) == pytest.approx(1e3 * float(one["radius [m]"]), rel=1e-5)
         assert line.split()[-1] == ("-", "alpha", "beta")[int(one["slack_fiber"])]
     assert picture.stat().st_size > 20_000
+
+
+def test_a_rubber_that_was_chosen_has_its_name_in_table_file_and_picture():
+    own = fs.NeoHookean(1e5)
+    goals = [fs.Goal("stroke", at_least=0.1, pressure=1e5)]
+    free = {"alpha": (20, 40), "beta": "-alpha", "material": ["dragon-skin-30", fs.materials["natural-latex"], own]}
+    result, tubes = find(tube(30.0, -30.0), free, goals, count=6)
+    names = {"dragon-skin-30": "dragon-skin-30", "natural-latex": "natural-latex", repr(own): own}
+    chosen = result["material"].values.tolist()
+    assert set(chosen) == {*names}
+    assert [fs.materials.get(name, own) for name in chosen] == [one.material for one in tubes]
+    heading, *rows = table(result).splitlines()
+    assert "  material  " in heading
+    assert all(name in row for name, row in zip(chosen, rows))
+    header, *rows = csv.reader(candidates_csv(result).splitlines())
+    assert [row[header.index("material")] for row in rows] == chosen
+    figure = draw(result, *shown(result, tubes, goals))
+    said = [text.get_text() for text in figure.axes[-1].texts]
+    assert [text.split(", ", 1)[1] for text in said] == chosen[:5]
 
 
 def test_shapes_are_shown_in_the_state_that_is_asked_for():
