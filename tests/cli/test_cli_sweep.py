@@ -40,7 +40,7 @@ def test_from_a_specification_to_a_map(specification, tmp_path, capsys):
         "A tiny sweep",
         "axes",
         "pressure",
-        "0 .. 50000 Pa",
+        "0 kPa .. 50 kPa",
         "deformed_length",
         "[m]",
         "statuses",

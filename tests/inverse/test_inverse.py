@@ -24,6 +24,7 @@ from freesweep.inverse.shown import shown
 from freesweep.inverse.singles import solve_single
 from freesweep.inverse.wishes import Wish
 from freesweep.plot.candidates import draw
+from freesweep.report import shown_in
 from freesweep.sweep.spec import parse
 from freesweep.thesis.prototypes import found_rotator
 
@@ -131,7 +132,10 @@ def test_a_straight_muscle_that_shall_rotate_says_why_not():
     wish = [fs.Goal("rotation", 90, pressure=1e5, tolerance=1)]
     found = fs.design(tube(beta=-30.0), {"alpha": (10, 80), "beta": "-alpha"}, wish)
     assert not found["met"].values.any()
-    assert found.attrs["summary"].endswith("instead of 90 degree: nothing that is free changes it")
+    assert found.attrs["summary"].endswith("instead of 90 deg: nothing that is free changes it")
+    asked = shown_in([("15 psi", "Pa"), ("1 rad", "degree")])
+    result, _ = find(tube(beta=-30.0), {"alpha": (10, 80), "beta": "-alpha"}, wish, shown=asked)
+    assert "has rotation at pressure 14.5038 psi of 0 rad instead of 1.5708 rad" in result.attrs["summary"]
 
 
 def test_lists_that_were_meant_as_ranges_are_told_to_be_none():
@@ -167,7 +171,7 @@ def test_goals_that_fight_are_named():
         (
             fs.Goal("force", 500, pressure=1e5, tolerance=1),
             [fs.Limit("outer_radius", at_most=8e-3, pressure=1e5)],
-            "N instead of 500 N: it fights with outer_radius at pressure 100000 Pa",
+            "N instead of 500 N: it fights with outer_radius at pressure 100 kPa",
         ),
         (
             fs.Goal("stroke", 0.1, pressure=1e5),
@@ -175,7 +179,7 @@ def test_goals_that_fight_are_named():
                 fs.Limit("deformed_length", at_most=0.1, pressure=1e5),
                 fs.Limit("deformed_length", at_least=0.2, pressure=1e5),
             ],
-            "m instead of at most 0.1 m: it fights with deformed_length at pressure 100000 Pa, at least 0.2 m",
+            "mm instead of at most 100 mm: it fights with deformed_length at pressure 100 kPa, at least 200 mm",
         ),
     ],
 )
@@ -442,10 +446,11 @@ def test_what_a_bound_or_a_limit_costs_is_said():
     muscle = tube(beta=-30.0)
     least = fs.design(muscle, bounds("radius"), fs.Goal("force", at_least=60, pressure=2e5), minimize="radius", count=1)
     saved = least["radius"].item() / 120 * 6
-    assert least.attrs["prices"].startswith("least radius: 6 N less of force at pressure 200000 Pa would save")
-    assert float(least.attrs["prices"].split()[-2]) == pytest.approx(saved, rel=0.05)
+    assert least.attrs["prices"].startswith("least radius: 6 N less of force at pressure 200 kPa would save")
+    assert least.attrs["prices"].endswith(" mm")
+    assert float(least.attrs["prices"].split()[-2]) == pytest.approx(1e3 * saved, rel=0.05)
     short = fs.design(muscle, {"radius": (3e-3, 4e-3)}, fs.Goal("force", at_least=60, pressure=2e5), count=1)
-    assert "0.0001 m more of radius would buy" in short.attrs["summary"]
+    assert "0.1 mm more of radius would buy" in short.attrs["summary"]
 
 
 def test_a_limit_is_a_range():
