@@ -19,7 +19,7 @@ from .profiles import ProfileError, as_profile, is_profile, together
 from .quantities import Along, Quantities, Quantity
 from .revolution import inner_radius, is_body, resolved
 from .tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
-from .unit_warnings import doubts, warn_of
+from .unit_warnings import design_doubts, warn_of
 
 LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
 SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
@@ -178,9 +178,8 @@ class Actuator:
         without = dict.fromkeys((name for name in FAMILIES if getattr(self, name) is None), 0.0)
         numbers = self.design() | without | {name: self.profile(name).samples() for name in varying}
         own = {name: numbers[name] for name in (*VARYING, "length", "c10")}
-        if self.is_body:
-            own["thickness"] = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY)
-        warn_of(doubts(**own, thick=self.is_thick), stacklevel=3)
+        thickness = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY) if self.is_body else None
+        warn_of(design_doubts(own, self.is_thick, thickness), stacklevel=3)
 
     @classmethod
     def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":

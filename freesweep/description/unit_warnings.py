@@ -23,21 +23,27 @@ HELD = 10.0  # times the undeformed length, or a part of it: a length that is he
 HINT = 'plain numbers are in SI units and degrees, others need theirs, as in "4.76 mm" or "0.17 MPa"'
 
 
-def doubts(
-    alpha, beta, length, radius, wall, c10, thickness=None, thick=False, pressure=None, force=0.0, torque=0.0,
-    deformed_length=None,
-) -> list:  # fmt: skip
-    """Sentences on the values of designs and loads, numbers or arrays [degree, m, Pa, N, N m]; none for most.
-
-    ``thickness`` is wall over radius of each design, where these are more than one; a wall may be taken for ``thick``.
-    Without ``pressure`` the design alone is looked at, with it the load alone.
+def design_doubts(design, thick=False, thickness=None) -> list:
+    """Sentences on the values of a ``design``: name -> number or array [degree, m, Pa], of alpha, beta, length, radius, wall
+    and c10; none for most. ``thickness`` is wall over radius of each design, where these are more than one; a wall may be
+    taken for ``thick``.
     """
-    given = {"alpha": alpha, "beta": beta, "length": length, "radius": radius, "wall": wall, "c10": c10}
-    given["thickness"] = np.divide(wall, radius) if thickness is None else thickness
-    given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in given.items()}
-    if pressure is None:
-        return _of_design(**given, thick=thick)
-    return _of_load(**given, pressure=pressure, force=force, torque=torque, held=deformed_length)
+    return _of_design(**_arrays(design, thickness), thick=thick)
+
+
+def load_doubts(design, loads, thickness=None) -> list:
+    """Sentences on the ``loads`` of a design: name -> number or array [Pa, N, N m, m], of pressure, force, torque, and a
+    deformed length that is held; none for most.
+    """
+    held = loads.get("deformed_length")
+    given = {name: loads.get(name, 0.0) for name in ("pressure", "force", "torque")}
+    return _of_load(**_arrays(design, thickness), **given, held=held)
+
+
+def _arrays(design, thickness):
+    """The values of a design, and its thickness, as arrays."""
+    thickness = np.divide(design["wall"], design["radius"]) if thickness is None else thickness
+    return {name: np.atleast_1d(np.asarray(value, float)) for name, value in {**design, "thickness": thickness}.items()}
 
 
 def warn_of(found, stacklevel):

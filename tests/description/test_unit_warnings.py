@@ -10,7 +10,7 @@ from grids import swept
 
 from freesweep import Actuator, MooneyRivlin, inflate, lock
 from freesweep.closed_form import region
-from freesweep.description.unit_warnings import doubts
+from freesweep.description.unit_warnings import design_doubts, load_doubts
 from freesweep.statics import thin_wall_attributes
 from freesweep.status import NOT_CONVERGED
 from freesweep.thick_wall import grid_attributes, softer
@@ -62,7 +62,9 @@ USUAL = {"alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1
     ],
 )
 def test_what_looks_like_a_slip_of_units_is_told(given, says):
-    found = doubts(**USUAL | given)
+    loads = {name: given[name] for name in ("pressure", "force", "torque", "deformed_length") if name in given}
+    design = USUAL | {name: given[name] for name in given.keys() & USUAL.keys()}
+    found = load_doubts(design, loads) if loads else design_doubts(design, given.get("thick", False))
     assert (
         [sentence.startswith(start) for sentence, start in zip(found, says)]
         == [True] * len(says)
