@@ -90,7 +90,8 @@ def _read_points(path, faults, asked):
 
     from ..atlas.schema import PARAMETERS
     from ..description.faults import ActuatorError
-    from ..table_file import TEXT, Known, read_columns
+    from ..table_file import read_columns
+    from ..table_heads import TEXT, Known
 
     known = Known({name: parameter.units for name, parameter in PARAMETERS.items()} | {"design": TEXT}, {})
     try:

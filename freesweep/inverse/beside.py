@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..description.actuator import APART
 from ..description.families import beyond_a_point, lines_of
+from ..description.impossible import APART
 from ..query.reference import COLUMNS
 from ..scaling import ALONG as ALONG_TUBE
 from ..scaling import OUTPUTS, SLACK, problem_rows

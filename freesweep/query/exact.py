@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import config
 
-from ..description.actuator import APART, LARGEST_ANGLE
 from ..description.courses import distinct, followed
 from ..description.families import BITS, FAMILIES, beyond_a_point, lines_of
+from ..description.impossible import APART, LARGEST_ANGLE
 from ..description.local import COURSE
-from ..description.profiles import SENSITIVITY, widened
+from ..description.splines import SENSITIVITY, widened
 from ..description.tube_model import MODELS, TubeModel
 from ..scaling import ALONG, OUTPUTS, SLACK, output_scales, problem_rows, wall_volume_inside
 from ..solver.status import PENDING
@@ -24,7 +24,7 @@ HELD_KINDS = {  # and what is told of their states
     reference.LENGTH_HELD: ("force", "mid_radius"), reference.ROTATION_HELD: ("torque", "mid_radius")
 }  # fmt: skip
 CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
-LATER = ("..solver.batch", "..solver.hold_batch", "..solver.lanes.by_middle", "..solver.lanes.held", ".physical_tube")
+LATER = ("..solver.batch", "..solver.hold_batch", "..solver.lanes.by_middle", "..solver.lanes.held", ".physical_along")
 SHARE = 512  # points that one thread solves at a time
 FEW, ROUGH = (
     (1, 3),

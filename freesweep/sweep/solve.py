@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..description.families import beyond_a_point
-from ..description.profiles import SENSITIVITY, widened
+from ..description.splines import SENSITIVITY, widened
 from ..description.tube_model import THREADS as CODES
 from ..scaling import OUTPUTS, SLACK
 from ..status import DEGENERATE, INVALID
