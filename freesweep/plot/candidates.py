@@ -92,7 +92,7 @@ def _draw_curve(ax, curve):
         mark = "D" if len(ends) == 2 else "^" if np.isfinite(low) else "v"
         ax.errorbar(across * at, up * np.mean(ends), yerr=0.5 * up * np.ptp(ends), fmt=mark, color=style.INK,
                     markersize=4 if mark == "D" else 6, markerfacecolor=style.PAPER,
-                    capsize=3 if mark == "D" else 0, zorder=5)  # fmt: skip
+                    elinewidth=style.THIN, capsize=3 if mark == "D" else 0, zorder=5)  # fmt: skip
     unit = "degree" if unit == "deg" else unit  # as at the other axes
     label = f"{curve.output.replace('_', ' ')} [{unit}]".removesuffix(" [1]")
     ax.set(xlabel=axis_label(curve.along), ylabel=label)
