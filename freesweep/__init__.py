@@ -28,7 +28,7 @@ _HOMES = {
     "constriction": "sleeve",
     "Measurement": "calibration.measured",
     "read_measurements": "calibration.csv_file",
-    "Calibration": "calibration.fit",
+    "Calibration": "calibration.calibration",
     "calibrate": "calibration.fit",
     "design": "inverse.designing",
     "Goal": "inverse.wishes",

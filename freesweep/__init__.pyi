@@ -4,8 +4,8 @@ from . import status as status
 from .atlas.store import Atlas as Atlas
 from .atlas.store import UnsealedWarning as UnsealedWarning
 from .atlas.store import open_atlas as open_atlas
+from .calibration.calibration import Calibration as Calibration
 from .calibration.csv_file import read_measurements as read_measurements
-from .calibration.fit import Calibration as Calibration
 from .calibration.fit import calibrate as calibrate
 from .calibration.measured import Measurement as Measurement
 from .description.actuator import Actuator as Actuator

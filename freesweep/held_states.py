@@ -6,7 +6,7 @@ import numpy as np
 
 from .derivative.request import asked_of
 from .description.loads import each_once, read_load, read_stations, warn_of_loads
-from .description.profiles import SENSITIVITY, widened
+from .description.splines import SENSITIVITY, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .statics import read_course, undeformed

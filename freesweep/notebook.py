@@ -3,7 +3,7 @@
 import math
 from html import escape
 
-from .report import SHOWN
+from .report import quantity
 
 WIDE, HIGH = 220.0, 70.0  # of the drawn wall, unrolled [pixels]
 PITCH = 22.0  # between threads of a family [pixels]
@@ -17,12 +17,6 @@ def table(caption, rows) -> str:
     """A table of two or more columns of texts; a caption in bold above."""
     lines = ["<tr>" + "".join(f'<td style="{CELL}">{escape(str(cell))}</td>' for cell in row) + "</tr>" for row in rows]
     return f'<div><b>{escape(caption)}</b><table style="{STYLE}">{"".join(lines)}</table></div>'
-
-
-def quantity(value, units) -> str:
-    """A number in everyday units."""
-    unit, scale = SHOWN.get(units, (units.removeprefix("1"), 1.0))
-    return f"{value * scale:.6g} {unit}".rstrip()
 
 
 def of_rubber(rubber) -> str:

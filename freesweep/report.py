@@ -5,12 +5,12 @@ from .status import STATUSES, VALUED
 COLUMNS = ("force", "torque", "deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
 SHOWN = {
     "m": ("mm", 1e3),
-    "m3": ("ml", 1e6),
+    "m3": ("mL", 1e6),
     "degree": ("deg", 1.0),
-    "J": ("J", 1.0),
+    "J": ("mJ", 1e3),
     "Pa": ("kPa", 1e-3),
     "N": ("N", 1.0),
-    "N m": ("N m", 1.0),
+    "N m": ("mN m", 1e3),
 }
 FAMILIES = "", "alpha", "beta", "alpha, beta"  # by the flags of slack_fiber
 THREADS = {  # what families without a pull do: loose ones go slack, bonded ones are asked to push
@@ -20,6 +20,12 @@ THREADS = {  # what families without a pull do: loose ones go slack, bonded ones
         "the state relies on a fiber family that would have to push somewhere; fibers cannot",
     ),
 }
+
+
+def quantity(value, units) -> str:
+    """A number in everyday units."""
+    unit, scale = SHOWN.get(units, (units.removeprefix("1"), 1.0))
+    return f"{value * scale:.6g} {unit}".rstrip()
 
 
 def shown_in(asked) -> dict:

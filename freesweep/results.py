@@ -6,7 +6,7 @@ import numpy as np
 
 from . import status
 from .atlas.schema import PROFILES, attributes
-from .description.families import told, told_slack
+from .description.families import beyond_a_point, told, told_slack
 from .description.revolution import wall_volume_inside as wall_volume_of_body
 from .description.strain import warn_beyond_range
 from .scaling import ALONG, OF_MEMBRANES, OUTPUTS, SLACK, output_scales, wall_volume_inside
@@ -44,8 +44,9 @@ def dataset(tube, axes, stations, found, without=()):
             worst[name], worst[f"{name}_error"] = (found[of][..., k] * scale[name] for of in ("values", "bounds"))
         for name in SLACK:
             worst[name] = np.clip(worst[name], 0.0, 1.0)  # sums of lengths are rounded
+    slack = beyond_a_point(found["slack_fiber"], *(worst[name] for name in SLACK))
     worst, along = told(tube, worst), told(tube, along)
-    data["slack_fiber"] = (names, told_slack(tube, found["slack_fiber"]).astype(np.int8))
+    data["slack_fiber"] = (names, told_slack(tube, slack).astype(np.int8))
     data |= {name: (names, array) for name, array in worst.items()}
     data |= {name: ((*names, "x"), array[..., np.searchsorted(every, stations)]) for name, array in along.items()}
     coordinates = {name: ((name,), np.atleast_1d(value)) for name, value in axes.items()} | {"x": (("x",), stations)}

@@ -6,12 +6,12 @@ import numpy as np
 
 from . import status
 from .derivative.request import asked_of
-from .description import profiles
 from .description.actuator import Actuator
 from .description.faults import ActuatorError
 from .description.loads import each_once, read_load, read_stations, warn_of_loads
-from .description.profiles import SENSITIVITY, widened
+from .description.profiles import ProfileError
 from .description.quantities import Names, Quantities
+from .description.splines import SENSITIVITY, follow, widened
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .thick_wall import thin_wall_attributes
@@ -186,6 +186,6 @@ def undeformed(tube, stations, whole):
 def read_course(tube, accuracy):
     """The course along a tube that varies, as the kernels take it, and its error; raises :class:`ActuatorError`."""
     try:
-        return profiles.follow(tube, accuracy)
-    except profiles.ProfileError as fault:
+        return follow(tube, accuracy)
+    except ProfileError as fault:
         raise ActuatorError([f"alpha, beta, wall, radius: {fault}"]) from None

@@ -37,7 +37,12 @@ STATUSES = (
         "the held length or rotation cannot be reached, or is none (straight fibers, alpha = -beta); hold another",
     ),
     Status(5, "inaccurate", "solved, but the error bound misses the accuracy asked for; the value and its bound stand"),
-    Status(6, "not_converged", "a defect of the solver: please report the design"),
+    Status(
+        6,
+        "not_converged",
+        "no state was found: where the pressure is 1e4 times the rubber's c10 or more look at their units (the shape is the"
+        " locked one there), else a defect of the solver: please report the design",
+    ),
     Status(7, "invalid", "a parameter lies outside the domain of the model"),
     Status(8, "outside_atlas", "the point lies beyond the grid; no extrapolation is made"),
     Status(
@@ -74,7 +79,8 @@ FLAG_COMMENTS = {
     "limit_found": "0 also where no branch was followed: read the status first. Beyond a limit pressure the tube snaps",
     "held_path": "0 also where there is no result. From rest: what is held is kept at its undeformed value while the loads"
     " rise, then changed; where the wall would have to be pushed on that way, it is changed from where nothing was held",
-    "slack_fiber": "0 also where there is no result. A family that would have to push cannot: the tube deforms otherwise",
+    "slack_fiber": "0 also where there is no result. A family that would have to push cannot: the tube deforms otherwise."
+    " Slack over more than 1e-6 of the length (slack_alpha, slack_beta); a pull that ends at a single place is none",
 }
 
 

@@ -5,47 +5,24 @@ the names passed over. Nothing is dropped without a word: ``notes`` count what w
 """
 
 import csv
-import difflib
 import re
 from typing import NamedTuple
 
 import numpy as np
 
 from .description.faults import ActuatorError
-from .description.units import NEAR, quantity, shown
+from .description.units import quantity, shown
+from .table_heads import NUMBER, RATIO, TEXT, Known, read_head, units_below, wanted_of, where_names_are
 
 LARGEST_FILE = 64_000_000  # bytes
 MOST_FAULTS = 30
-MOST_ABOVE = 60  # lines above the names, of what a bench writes about itself
 COMMENTS = ("#", "%", "//")
 NO_NUMBER = {"", "nan", "na", "n/a", "#n/a", "#div/0!", "-", "--", "none", "null", "missing"}
-PARTED_BY = {",": "commas", ";": "semicolons", "\t": "tabs"}
 MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # what spreadsheets call Unicode text
-EXAMPLES = {"m": "mm", "Pa": "kPa", "degree": "deg", "N": "N", "N m": "N m"}
-TEXT = "text"  # in place of a unit: a column of words
-RATIO = "ratio"  # in place of a unit: a number that says whether it is a percentage
 
-_HEADS = [
-    re.compile(pattern, re.DOTALL)
-    for pattern in (
-        r"(.*?)\s*[\[{](.*)[\]}]",  # pressure [kPa(g)]
-        r"(.*?)\s*\((.*)\)",  # pressure (kPa)
-        r"(.*?)\s*(?:/|,|\bin\b)\s*([^[{]+)",  # pressure / kPa
-        r"(\S+)\s+([^[{]+)",  # pressure kPa(g)
-        r"(.+)_([^[{]+)",  # pressure_kPa; "force_temperature [C]" is no force
-    )
-]
 _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _POINT = re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
-_NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?")
-
-
-class Known(NamedTuple):
-    """Columns that are wanted: name -> unit they are kept in, and other names for them."""
-
-    units: dict
-    synonyms: dict
 
 
 class Columns(NamedTuple):
@@ -65,13 +42,6 @@ class Columns(NamedTuple):
         return f"(line {self.lines[row]}, column {self.places[name]})"
 
 
-class _Head(NamedTuple):
-    name: str
-    unit: str
-    text: str
-    place: int  # column of the file, from 1
-
-
 def read_columns(path, known: Known, plain=False) -> Columns:
     """The columns of a file that are ``known``; the rest is passed over. Raises :class:`ActuatorError` with every fault.
 
@@ -79,14 +49,14 @@ def read_columns(path, known: Known, plain=False) -> Columns:
     """
     notes, faults = [], []
     lines = _lines(path, notes)
-    parting, at = _where_names_are(lines, known)
+    parting, at = where_names_are(lines, known)
     if at:
         notes.append(f"{_count(at, 'line')} above the names passed over")
     rows = [(number, _parted(text, parting, number)) for number, text in lines[at:]]
     (line, heads), rows = rows[0], rows[1:]
     named = max((place for place, text in enumerate(heads, 1) if text.strip()), default=0)
-    heads = [_head(text, place, known) for place, text in enumerate(_ended(heads, named), 1)]
-    heads, rows = _units_below(heads, rows, known)
+    heads = [read_head(text, place, known) for place, text in enumerate(_ended(heads, named), 1)]
+    heads, rows = units_below(heads, rows, known)
     if not rows:
         raise ActuatorError([f"found {len(lines)} lines; give a line of names and units, then the states"])
     empty = [number for number, row in rows if not any(row)]
@@ -100,7 +70,7 @@ def read_columns(path, known: Known, plain=False) -> Columns:
         raise ActuatorError(
             [f"line {line}: blanks alone part its columns; write commas, semicolons or tabs (column 1)"]
         )
-    wanted, others = _wanted(heads, line, known, plain, faults)
+    wanted, others = wanted_of(heads, line, known, plain, faults)
     if others:
         notes.append(
             f"{_count(len(others), 'column')} not needed and passed over: "
@@ -157,53 +127,10 @@ def _ended(row, names):
     return row[:names] if not any(row[names:]) else row
 
 
-def _where_names_are(lines, known):
-    """By what columns are parted, and which of the lines names them: the first with a known name."""
-    for at, (_, text) in enumerate(lines[:MOST_ABOVE]):
-        parting = max(PARTED_BY, key=text.count)
-        if any(_head(cell, 1, known).name in known.units for cell in text.split(parting)):
-            return parting, at
-    return max(PARTED_BY, key=lines[0][1].count), 0
-
-
-def _head(text, place, known):
-    """Name and unit of a column, however they are written."""
-    text = text.strip()
-    tries = [
-        _Head(_called(match.group(1), known), match.group(2).strip(), text, place)
-        for pattern in _HEADS
-        if (match := pattern.fullmatch(text))
-    ]
-    plain = _Head(_called(text, known), "", text, place)
-    tries.insert(len(tries) if set("[{(") & set(text) else 0, plain)
-    return next((head for head in tries if head.name in known.units), tries[0])
-
-
-def _called(text, known):
-    name = re.sub(r"\W+", "_", text.strip().lower()).strip("_")
-    return known.synonyms.get(name, name)
-
-
-def _units_below(heads, rows, known):
-    """Units from a line of their own, below the names, where there is one."""
-    if not rows or any(head.unit for head in heads) or len(rows[0][1]) != len(heads):
-        return heads, rows
-    cells = [cell.strip("[](){} ") for cell in rows[0][1]]
-    if any(_NUMBER.fullmatch(cell) for cell in cells) or not any(
-        cell and head.name in known.units and _is_unit(cell) for head, cell in zip(heads, cells)
-    ):
-        return heads, rows
-    return [head._replace(unit=cell) for head, cell in zip(heads, cells)], rows[1:]
-
-
 def _is_spaced(cell):
     """Whether a cell holds several numbers, with blanks between."""
     parts = cell.split()
-    return len(parts) > 1 and all(_NUMBER.fullmatch(part) for part in parts)
-
-
-def _is_unit(text):
-    return any(not _unit_fault(text, kept) for kept in (*EXAMPLES, "1"))
+    return len(parts) > 1 and all(NUMBER.fullmatch(part) for part in parts)
 
 
 def _uneven(row, count):
@@ -211,43 +138,6 @@ def _uneven(row, count):
     if len(row) < count:
         return f"cells are missing at its end (from column {len(row) + 1})"
     return f"a separator too many, or a decimal comma where a point belongs (from column {count + 1})"
-
-
-def _wanted(heads, line, known, plain, faults):
-    """Columns to be read, once each, and those that are passed over."""
-    wanted, others = [], []
-    for head in heads:
-        kept, place = known.units.get(head.name), f" (line {line}, column {head.place})"
-        if not head.text:
-            faults.append(f"column {head.place}: has no name; name it or remove it{place}")
-        elif kept is None:
-            near = difflib.get_close_matches(head.name[:40], known.units, n=1, cutoff=NEAR)
-            if near:
-                faults.append(f"column {shown(head.text)}: unknown; did you mean {near[0]}?{place}")
-            else:
-                others.append(head)
-        elif any(other.name == head.name for other in wanted):
-            faults.append(f"column {shown(head.text)}: given twice{place}")
-        elif kept == RATIO and head.unit not in ("%", "1"):
-            faults.append(
-                f"column {shown(head.text)}: a share or a percentage? write '{head.name} [%]' or '{head.name} [1]'{place}"
-            )
-        elif not head.unit and kept in EXAMPLES and not plain:
-            faults.append(f"column {shown(head.text)}: names no unit; write '{head.name} [{EXAMPLES[kept]}]'{place}")
-        elif kept != TEXT and (fault := _unit_fault(head.unit, "1" if kept == RATIO else kept)):
-            faults.append(f"column {head.name}: {fault}{place}")
-        else:
-            wanted.append(head)
-    return wanted, others
-
-
-def _unit_fault(unit, kept):
-    """What is wrong with a unit, said of one such quantity."""
-    try:
-        quantity(f"1 {unit}", kept)
-    except ValueError as error:
-        return str(error)
-    return ""
 
 
 def _decimal_comma(wanted, rows, parting, faults, notes):
@@ -304,7 +194,7 @@ def _cells(head, rows, kept, comma, faults):
 
 def _has_unit(cell, unit):
     """Whether a number brings the unit of its column along."""
-    return bool(unit) and cell.endswith(unit) and bool(_NUMBER.fullmatch(cell.removesuffix(unit).strip()))
+    return bool(unit) and cell.endswith(unit) and bool(NUMBER.fullmatch(cell.removesuffix(unit).strip()))
 
 
 def _complete(values, lines, known, notes):

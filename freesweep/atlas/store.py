@@ -13,6 +13,7 @@ import numpy as np
 from ..description.given import described
 from ..description.options import read_choice, read_path
 from ..description.quantities import Names, Quantities
+from ..report import quantity
 from ..status import STATUSES
 from . import netcdf
 from .content import faults
@@ -250,19 +251,21 @@ def describe(atlas) -> str:
     lines = [f"{atlas.path}: {data.attrs.get('title', '')}", "", "axes"]
     for name, size in data.sizes.items():
         values = data[name].values
-        unit = data[name].attrs.get("units", "").removeprefix("1")
-        span = f"{values[0]:g} .. {values[-1]:g} {unit}" if values.dtype.kind == "f" else ", ".join(map(str, values))
+        unit = data[name].attrs.get("units", "")
+        ends = [quantity(values[k], unit) for k in (0, -1)] if values.dtype.kind == "f" else map(str, values)
+        span = " .. ".join(ends) if values.dtype.kind == "f" else ", ".join(ends)
         lines.append(f"  {name:<18}{size:>6}  {span}")
     lines += ["", "fixed"]
     for name, value in data.coords.items():
         if value.ndim == 0:
-            lines.append(f"  {name:<18}{float(value):>12g} {value.attrs.get('units', '')}")
-    lines += ["", "variables"]
+            lines.append(f"  {name:<18}{'':>8}{quantity(float(value), value.attrs.get('units', ''))}")
+    lines += ["", "variables, in units of the file"]
     for name, variable in data.data_vars.items():
         if not name.endswith("_error"):
             bound = ", with error bound" if f"{name}_error" in data else ""
             unit = variable.attrs.get("units")
-            said = variable.attrs.get("comment", variable.attrs.get("long_name", ""))
+            about = ("comment", "long_name") if unit else ("long_name",)  # comments of flags are long
+            said = next((variable.attrs[each] for each in about if each in variable.attrs), "")
             lines.append(f"  {name:<28}{f'[{unit}]' if unit else '[flag]':<10}{said}{bound}")
     lines += ["", "statuses"]
     for status in (name for name in STATUS_OF if name in data):

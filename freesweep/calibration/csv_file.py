@@ -12,7 +12,8 @@ from ..description.options import read_path
 from ..description.quantities import Path
 from ..description.units import shown
 from ..report import SHOWN
-from ..table_file import RATIO, TEXT, Known, read_columns
+from ..table_file import read_columns
+from ..table_heads import RATIO, TEXT, Known
 from .branches import BRANCHES, branch_faults
 from .measured import COLUMNS, SHORTENINGS, Measurement, as_length, default_measured, measured_faults, read_names
 

@@ -79,7 +79,8 @@ def _label(found, k, swept, rows):
 def page(found, shown=USUAL) -> str:
     """The page as HTML."""
     image = base64.b64encode(picture(found)).decode()
-    verdict = "The model fits: what is left looks like noise." if found.fits else found.notes[0].capitalize() + "."
+    verdict, *others = found.notes
+    verdict = f"{verdict[0].upper()}{verdict[1:]}."
     parts = [
         "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Calibration</title><style>",
         "body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}table{border-collapse:collapse}",
@@ -92,7 +93,7 @@ def page(found, shown=USUAL) -> str:
         f"<h2>Curves</h2><img alt='curves and residuals' src='data:image/png;base64,{image}'>",
         "<p>Lines: the model; bands: where 95 % of readings are expected, with half of what parts the branches of loops;"
         " rings: slack muscles. Below: what is left.</p>",
-        "<h2>What a reader has to know</h2><ul>", *(f"<li>{html.escape(note)}</li>" for note in found.notes), "</ul>",
+        "<h2>What a reader has to know</h2><ul>", *(f"<li>{html.escape(note)}</li>" for note in others), "</ul>",
     ]  # fmt: skip
     for number, tube in enumerate(dict.fromkeys(found.tubes), 1):
         parts += [f"<h2>Actuator {number}</h2>", f"<pre>{html.escape(as_toml(found, tube))}</pre>"]

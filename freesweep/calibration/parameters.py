@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..description.actuator import LARGEST_ANGLE, Actuator
+from ..description.actuator import Actuator
 from ..description.faults import ActuatorError
 from ..description.given import described, numbers
+from ..description.impossible import LARGEST_ANGLE
 from ..inverse.freedom import TIE
 
 EXTENSION = "fiber_extension"

@@ -8,7 +8,7 @@ from numba import config
 
 from ..description.tube_model import TubeModel
 from ..query import reference
-from ..query.exact import solve
+from ..query.exact import Tubes, solve
 from ..query.reference import COLUMNS, FIBERS, FORCE, HELD, LENGTH, LENGTH_HELD, LOADED, PRESSURE, ROTATION_HELD
 from ..scaling import problem_rows
 from ..status import VALUED
@@ -125,7 +125,7 @@ def _by_vectors(points, energy, model):
     from ..solver.batch import walk_by_vectors
 
     if config.DISABLE_JIT:  # vectors are machine code only
-        return solve(LOADED, points, energy, ACCURACY[model.is_physical], model=model)["deformed_length"]
+        return solve(LOADED, points, Tubes(energy, model), ACCURACY[model.is_physical])["deformed_length"]
     design = dict(zip(COLUMNS, points.T))
     rows = problem_rows(design, energy, model.is_thick, model.is_loose)
     pressures = points[:, PRESSURE] / points[:, reference.C10]
@@ -197,11 +197,11 @@ def _shared(kind, points, energy, model):
     """Exact solutions, on all cores."""
     cores = os.cpu_count() or 1
     parts = min(cores, max(len(points) // SPLIT, 1))
-    accuracy = ACCURACY[model.is_physical]
+    accuracy, tubes = ACCURACY[model.is_physical], Tubes(energy, model)
     if parts == 1:
-        return solve(kind, points, energy, accuracy, model=model)
+        return solve(kind, points, tubes, accuracy)
     with ThreadPoolExecutor(parts) as pool:
-        solved = list(pool.map(lambda k: solve(kind, points[k::parts], energy, accuracy, model=model), range(parts)))
+        solved = list(pool.map(lambda k: solve(kind, points[k::parts], tubes, accuracy), range(parts)))
     found = {name: np.empty(len(points), array.dtype) for name, array in solved[0].items()}
     for k, part in enumerate(solved):
         for name, array in part.items():

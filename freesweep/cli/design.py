@@ -28,13 +28,14 @@ def _run(options):
     if options.out and Path(options.out).suffix not in (".csv", ".nc"):
         raise ValueError(f"--out: found {options.out!r}; candidates are kept as .csv or .nc")
     asked = wish_file.read(options.wishes)
-    found, tubes = find(**asked)
+    shown_as = shown_in(wish_file.units_asked(options.wishes))
+    found, tubes = find(**asked, shown=shown_as)
     if options.json:
         from .as_json import of_candidates
 
         print(of_candidates(found))
     else:
-        print(table(found, shown_in(wish_file.units_asked(options.wishes))))
+        print(table(found, shown_as))
         print(found.attrs["summary"])
         if found.attrs.get("prices"):
             print(found.attrs["prices"])

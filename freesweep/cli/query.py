@@ -90,7 +90,8 @@ def _read_points(path, faults, asked):
 
     from ..atlas.schema import PARAMETERS
     from ..description.faults import ActuatorError
-    from ..table_file import TEXT, Known, read_columns
+    from ..table_file import read_columns
+    from ..table_heads import TEXT, Known
 
     known = Known({name: parameter.units for name, parameter in PARAMETERS.items()} | {"design": TEXT}, {})
     try:
@@ -170,6 +171,13 @@ def _shown(units):
     return SHOWN.get(units, (units.removeprefix("1"), 1.0))
 
 
+def _flag(found, name, value):
+    """A flag in words: none, alpha family, stable."""
+    about = found[name].attrs
+    words = dict(zip(about["flag_values"], about["flag_meanings"].split()))
+    return words[value].replace("_", " ")
+
+
 def _table(found):
     """Everyday units; one line for each variable of a single point, else one for each point."""
     from ..report import aligned, number
@@ -194,15 +202,17 @@ def _table(found):
             error = record[f"{name}_error"] * shown[name][1]
             rows.append((name, f"{cell(record, name)} {shown[name][0]}", "-" if error != error else f"{error:.1e}"))
         rows += [(name, record[name], "") for name in statuses]
-        rows += [(name, str(record[name]), "") for name in flags]
+        rows += [(name, _flag(found, name, record[name]), "") for name in flags]
         lines = aligned(rows)
     else:
         varying = [name for name in found.coords if name in records[0] and found[name].ndim]
         heads = [f"{name} [{shown[name][0]}]" if shown[name][0] else name for name in [*varying, *values]]
-        rows = [[*heads, *statuses]]
+        flags = [name for name in flags if name == "slack_fiber" and any(record[name] for record in records)]
+        rows = [[*heads, *statuses, *flags]]
         for record in records:
             given = [f"{record[name] * shown[name][1]:.6g}" if name != "design" else record[name] for name in varying]
-            rows.append([*given, *(cell(record, name) for name in values), *(record[name] for name in statuses)])
+            rows.append([*given, *(cell(record, name) for name in values), *(record[name] for name in statuses),
+                         *(_flag(found, name, record[name]) for name in flags)])  # fmt: skip
         lines = aligned(rows)
     seen = sorted({record[name] for record in records for name in statuses} - {"ok"})
     told = (one for one in STATUSES if one.meaning in seen)

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from .. import status
-from ..description.profiles import SENSITIVITY
+from ..description.splines import SENSITIVITY
 from ..scaling import SLACK
 from .equilibrium import NotFound
 from .request import attributes

@@ -1,5 +1,6 @@
 """Derivatives on nested meshes, extrapolated and bounded like the outputs (:mod:`freesweep.solver.numerics.nested`)."""
 
+from collections.abc import Callable
 from copy import copy
 from typing import NamedTuple
 
@@ -8,6 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 from . import grid
 from .equilibrium import Meshes, NotFound, equilibrium, outputs, sums
+from .physics import Physics
 
 LEVELS = 4  # meshes, each with twice the cells of the one before, that are solved at once
 FINEST = 8  # doublings of the coarsest mesh's cells
@@ -72,6 +74,20 @@ def shrunk(physics, meshes, y):
     raise NotFound
 
 
+class Task(NamedTuple):
+    """What is to be told of a state: ``known`` solves, ``wanted`` has all parameters; whether the last node is ``free``, as
+    of half a tube, and where ``segments`` meet; ``finish`` makes tables of outputs (meshes, outputs, 1 + parameters), and
+    the unit of each number; and how exactly.
+    """
+
+    known: Physics
+    wanted: Physics
+    free: bool
+    segments: np.ndarray
+    finish: Callable
+    accuracy: float
+
+
 def solve(known, wanted, shape, free, segments, hold, finish, accuracy) -> Found:
     """Outputs and derivatives of the state of which ``shape(finer)`` gives places and the stretches there, about: ``known``
     solves, ``wanted`` has all parameters; ``finish`` makes tables of outputs (meshes, outputs, 1 + parameters), and the
@@ -81,10 +97,11 @@ def solve(known, wanted, shape, free, segments, hold, finish, accuracy) -> Found
     its distance from there enters the bounds, as the results moved when it was moved before.
     """
     known, x, y, hold, least = on_first(known, shape, free, segments, hold)
+    task = Task(known, wanted, free, segments, finish, accuracy)
     kinks, before, shift = known.kinks(segments), None, None
     for made in range(ROUNDS):
         ends = np.union1d(segments, kinks)
-        found, units, seen = on_nested(known, wanted, x, y, free, ends, segments, hold, least, finish, accuracy)
+        found, units, seen = on_nested(task, x, y, ends, hold, least)
         if len(kinks) == 0 and len(seen) == 0:
             return found
         if len(seen) == len(kinks):
@@ -124,10 +141,11 @@ def on_first(known, shape, free, segments, hold):
                 raise
 
 
-def on_nested(known, wanted, x, y, free, ends, segments, hold, least, finish, accuracy):
+def on_nested(task, x, y, ends, hold, least):
     """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change; the coarsest,
     doubled ``least`` times, is a finer one where that has no state.
     """
+    known, wanted, free, segments, finish, accuracy = task
     shape = Shape(known, x, y, ends)
     nodes, edges = shape.graded(ends, free)
 

@@ -97,9 +97,11 @@ def equations(local, s, four, w_G, w_p):
     return first, second, reach(local.t_a), reach(local.t_b)
 
 
-def jacobian(y, T, s, four, t_a, t_b, alpha, beta, w_GG, w_Gp, w_pp):
-    """Their derivatives by the four, (cells, 4, 4); a slack family's last equation is that its multiplier is 0."""
-    _, psi, a, b = four
+def jacobian(y, T, s, four, tangents, taut, second):
+    """Their derivatives by the four, (cells, 4, 4); a slack family's last equation is that its multiplier is 0. ``tangents``
+    of both families, whether they are ``taut``; ``second`` derivatives of the wall's energy by G and psi.
+    """
+    (_, psi, a, b), (t_a, t_b), (alpha, beta), (w_GG, w_Gp, w_pp) = four, tangents, taut, second
     out = np.zeros((len(psi), 4, 4))
     twice = 2.0 * y * y
     by_a, by_b = twice * (t_a + psi), twice * (t_b + psi)
@@ -132,11 +134,11 @@ class PhysicalTube(Physics):
         T = np.maximum(p * y * y + f, NO_ROOM)
         weighed = Dual(e * area.value)
         low = np.maximum(v * v, value(narrowest(Dual(y), wall))) - 1.0
+        plain = Local(y, p, f, m, t_a, t_b, gg, weighed, rubber, wall)
         if self.settled is None:
-            self.settled = self._first(place, y, v, share, H, D, gg, T, m, weighed, rubber, wall)
+            self.settled = self._first(place, share, v, T, (H, D), plain)
         known = self.settled.at(share)
         four, alpha, beta = known.four.copy(), known.alpha.copy(), known.beta.copy()
-        plain = Local(y, p, f, m, t_a, t_b, gg, None, None, None)
         size, families = np.abs(T) + np.abs(m) + NO_ROOM, len(followed(self.tube))
         four[0] = np.maximum(four[0], low + 1e-9)
         for _ in range(CHANGES):
@@ -145,7 +147,7 @@ class PhysicalTube(Physics):
             if self.is_locked:  # threads bear it all: where one is slack, only the other's pull tells the twist
                 pull = 0.5 * T / np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
                 four[2], four[3] = np.where(alpha & ~beta, pull, four[2]), np.where(beta & ~alpha, pull, four[3])
-            four = self._newton(plain, v, low, four, alpha, beta, weighed, rubber, wall)
+            four = self._newton(plain, v, low, four, alpha, beta)
             if not self.tube.is_loose:
                 break
             W = energy(Dual(y), Dual(four[0]), Dual(four[1]), weighed, rubber, wall)
@@ -161,38 +163,37 @@ class PhysicalTube(Physics):
         self.settled = Settled(share, four, alpha, beta)
         return local, w, e, four, alpha, beta, low, given
 
-    def _first(self, place, y, v, share, H, D, gg, T, m, area, rubber, wall):
-        """From the kernel itself, in some cells."""
+    def _first(self, place, share, v, T, angles, plain):
+        """From the kernel itself, in some cells; ``angles``: half the sum and difference of both tangents."""
         from ..solver.load import Load
 
-        some = np.unique(np.linspace(0, len(y) - 1, min(len(y), FIRST_CELLS)).astype(int))
+        y, some = plain.y, np.unique(np.linspace(0, len(v) - 1, min(len(v), FIRST_CELLS)).astype(int))
         four, taut = np.zeros((4, len(some))), np.ones((2, len(some)), bool)
 
         def at(number, j):
             number = number.value if isinstance(number, Dual) else np.asarray(number)
             return float(number[j] if np.size(number) > 1 else number.reshape(-1)[0])
 
-        gamma = float(np.sqrt(gg[0]))
+        gamma = float(np.sqrt(plain.gg[0]))
         for k, j in enumerate(some):
-            cell = at(H, j), at(D, j), at(area, j)
-            own, layers = tuple(at(c, j) for c in rubber), tuple(at(c, j) for c in wall)
-            load = Load(gamma, own, layers, 0.0, 0.0, float(m[j]), 1.0)
+            cell = *(at(one, j) for one in angles), at(plain.area, j)
+            own, layers = tuple(at(c, j) for c in plain.rubber), tuple(at(c, j) for c in plain.wall)
+            load = Load(gamma, own, layers, 0.0, 0.0, float(plain.m[j]), 1.0)
             _, four[0, k], four[1, k], taut[0, k], taut[1, k] = place(float(y[j]), float(v[j]), float(T[j]), cell, load)
         return Settled(share[some], four, taut[0], taut[1])
 
-    def _newton(self, plain, v, low, four, alpha, beta, area, rubber, wall):
-        energy = walls()[0]
+    def _newton(self, plain, v, low, four, alpha, beta):
+        energy, own = walls()[0], (plain.area, plain.rubber, plain.wall)
         for _ in range(STEPS):
-            W = energy(Dual(plain.y), Dual(four[0]), Dual(four[1]), area, rubber, wall)
+            W = energy(Dual(plain.y), Dual(four[0]), Dual(four[1]), *own)
             w = [np.broadcast_to(one.value if isinstance(one, Dual) else one, v.shape) for one in W]
             s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
             left = equations(plain, s, four, w[2], w[3])
             wrong = np.stack(
                 [left[0], left[1], np.where(alpha, left[2], four[2]), np.where(beta, left[3], four[3])], axis=1
             )
-            matrix = jacobian(
-                plain.y, plain.p * plain.y**2 + plain.f, s, four, plain.t_a, plain.t_b, alpha, beta, w[7], w[8], w[9]
-            )
+            T = plain.p * plain.y**2 + plain.f
+            matrix = jacobian(plain.y, T, s, four, (plain.t_a, plain.t_b), (alpha, beta), w[7:10])
             try:
                 step = -np.linalg.solve(matrix, wrong[..., None])[..., 0].T
             except np.linalg.LinAlgError:
@@ -218,10 +219,8 @@ class PhysicalTube(Physics):
         tension = own.p * y * y + own.f
         T = np.maximum(tension.value, NO_ROOM)
         w = [np.broadcast_to(one.value, n) for one in W]
-        matrix = jacobian(
-            y.value, T, np.broadcast_to(s.value, n), four, np.broadcast_to(own.t_a.value, n),
-            np.broadcast_to(own.t_b.value, n), alpha, beta, w[7], w[8], w[9],
-        )  # fmt: skip
+        tangents = [np.broadcast_to(one.value, n) for one in (own.t_a, own.t_b)]
+        matrix = jacobian(y.value, T, np.broadcast_to(s.value, n), four, tangents, (alpha, beta), w[7:10])
         count = y.parts.shape[0]
         parts = np.stack([_parts(one, count, n) for one in left], axis=-1)  # (count, n, 4)
         parts[..., 2] *= alpha

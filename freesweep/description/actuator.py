@@ -1,65 +1,27 @@
 """What a person describes: the actuator, checked, in SI units and degrees."""
 
-import math
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .along import Profile as Given
-from .along import rule_of, written
-from .elastomer import ELASTOMERS, MooneyRivlin, Yeoh
-from .families import FAMILIES, followed, given_by, is_none, is_one, threads
+from .along import rule_of
+from .elastomer import MooneyRivlin, Yeoh
+from .families import FAMILIES, followed, given_by, threads
 from .faults import ActuatorError
-from .given import numbers, read_number
-from .material_library import material as named_rubber
+from .fields import VARYING, read_fields
+from .given import numbers
+from .impossible import clamped_stretch, impossible
 from .options import read_choice
 from .profiles import Along as AlongTube
-from .profiles import ProfileError, as_profile, is_profile, together
+from .profiles import ProfileError, as_profile, is_profile
 from .quantities import Along, Quantities, Quantity
 from .revolution import inner_radius, is_body, resolved
-from .tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, SHARES, fiber_place, word_faults
-from .unit_warnings import doubts, warn_of
+from .tube_model import DEFAULT, MODELS, SHARES, fiber_place
+from .unit_warnings import design_doubts, warn_of
 
-LARGEST_ANGLE = 90.0  # [degree], excluded: the fibers would be hoops
-SMALLEST_DIFFERENCE = 0.5  # [degree] of alpha and beta: below it the locked shape has no finite size
-APART = SMALLEST_DIFFERENCE * (1.0 - 1e-9)  # what rounding may leave of it, as a search along that border needs
-LARGEST_EXTENSION = 10.0  # of fibers: a stretch, not a percentage
-ENERGIES = ("full", "principal")
 HASHED = np.linspace(0.0, 1.0, 9)  # places of profiles whose values go into a hash
-VARYING = {"alpha": "degree", "beta": "degree", "wall": "m", "radius": "m"}
-POSITIVE = ("wall", "radius")
-SHAPE = {"taper": (-10.0, math.nextafter(1.0, 0.0)), "bulge": (math.nextafter(-1.0, 0.0), 10.0)}  # least, most: no cusp
 EVENLY = np.linspace(0.0, 1.0, 257)  # places of a body at which its wall is held against its radius
-
-
-def _read_along(name, value, unit, faults):
-    """A float, pairs of floats, smooth or not, a callable or a rule; None after noting what is wrong with it."""
-    positive = name in POSITIVE
-    if text := rule_of(name, value):
-        number = read_number(name, text, unit, faults, positive=positive)
-        return None if number is None else written(name, number, unit)
-    if name in FAMILIES and is_none(value):
-        return None
-    if not is_profile(value):
-        return read_number(name, value, unit, faults, positive=positive)
-    try:
-        profile = as_profile(value, unit)
-        samples = profile.samples()
-    except ProfileError as error:
-        faults.append(f"{name}: {error}")
-        return None
-    if positive and not np.all(samples > 0.0):
-        faults.append(f"{name}: the profile falls to {samples.min():g} {unit}; it has to be above 0")
-    if callable(value):
-        return value
-    pairs = tuple(zip(profile.x.tolist(), profile.values.tolist()))
-    if name == "radius":
-        if np.any((np.diff(profile.x) == 0.0) & (np.diff(profile.values) != 0.0)):
-            faults.append("radius: it jumps; a body's radius may bend at a place, but not jump")
-        if len(set(profile.values.tolist())) == 1:
-            return pairs[0][1]  # a tube
-    return Given(pairs, smooth=True) if isinstance(value, Given) and value.smooth else pairs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,43 +95,11 @@ class Actuator:
 
     def __post_init__(self):
         faults = []
-        read = {}
-        for name in ("alpha", "beta", "length", "radius", "wall"):
-            if name in VARYING:
-                read[name] = _read_along(name, getattr(self, name), VARYING[name], faults)
-            else:
-                read[name] = read_number(name, getattr(self, name), "m", faults, positive=True)
-        for name, (least, most) in SHAPE.items():
-            read[name] = read_number(name, getattr(self, name), "1", faults, least=least, most=most)
-        if isinstance(read["radius"], float) and not (read["taper"] or read["bulge"]):  # rules follow what varies
-            for name in VARYING:
-                if text := rule_of(name, read[name]):
-                    read[name] = read_number(name, text, VARYING[name], faults)
-        read["fiber_extension"] = read_number(
-            "fiber_extension", self.fiber_extension, "1", faults, least=1.0, most=LARGEST_EXTENSION
-        )
-        if self.fiber_radius is not None and not (
-            isinstance(self.fiber_radius, str) and self.fiber_radius in FIBER_PLACES
-        ):
-            unread = []
-            read["fiber_radius"] = read_number("fiber_radius", self.fiber_radius, "m", unread, positive=True)
-            faults += [f"{fault}, or one of {', '.join(map(repr, FIBER_PLACES))}" for fault in unread]
-        if isinstance(self.material, str):
-            try:
-                read["material"] = named_rubber(self.material)
-            except ActuatorError as error:
-                faults += error.faults
-        elif not isinstance(self.material, ELASTOMERS):
-            faults.append(
-                f"material: found {type(self.material).__name__}; give MooneyRivlin(c10, c01), NeoHookean(c10) or"
-                " Yeoh(c1, c2, c3), in [Pa], or the name of a rubber in freesweep.materials"
-            )
-        faults += word_faults(self.model, self.wall_model, self.fibers, self.energy, ENERGIES)
-        for name, value in read.items():
+        for name, value in read_fields(self, faults).items():
             object.__setattr__(self, name, value)
         if not faults:
             try:
-                faults = self._impossible()
+                faults = impossible(self)
             except ProfileError as error:
                 faults = [f"alpha, beta, wall, radius: {error}"]
         if faults:
@@ -178,9 +108,8 @@ class Actuator:
         without = dict.fromkeys((name for name in FAMILIES if getattr(self, name) is None), 0.0)
         numbers = self.design() | without | {name: self.profile(name).samples() for name in varying}
         own = {name: numbers[name] for name in (*VARYING, "length", "c10")}
-        if self.is_body:
-            own["thickness"] = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY)
-        warn_of(doubts(**own, thick=self.is_thick), stacklevel=3)
+        thickness = self.profile("wall").at(EVENLY) / self.profile("radius").at(EVENLY) if self.is_body else None
+        warn_of(design_doubts(own, self.is_thick, thickness), stacklevel=3)
 
     @classmethod
     def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":
@@ -192,38 +121,9 @@ class Actuator:
         outside; where it is given, R becomes the fiber radius. ``beta`` is ``-alpha`` by default. Raises
         :class:`ActuatorError`.
         """
-        faults = []
-        read = {
-            name: read_number(name, value, unit, faults, positive=True)
-            for name, value, unit in (("cord", cord, "m"), ("turns", turns, "1"), ("length", length, "m"))
-        }
-        if not faults and read["cord"] <= read["length"]:
-            faults.append(
-                f"cord: found {read['cord']:g} m around a length of {read['length']:g} m; it has to be longer"
-            )
-        place = others.get("fiber_radius")
-        if "alpha" in others or not (place is None or place in FIBER_PLACES) or (place and "radius" in others):
-            faults.append("cord: it tells alpha and where the fibers lie; leave alpha and a fiber radius out")
-        if others.get("model", DEFAULT) not in MODELS:
-            faults += word_faults(others["model"], None, None, "full", ENERGIES)
-        if faults:
-            raise ActuatorError(faults)
-        cord, turns, length = read.values()
-        around = math.sqrt(cord**2 - length**2) / (2.0 * math.pi * turns)
-        alpha = math.degrees(math.acos(length / cord))
-        if "radius" in others:
-            others["fiber_radius"] = around
-        else:
-            place = place or MODELS[others.get("model", DEFAULT)].fiber_radius
-            thickness = (
-                read_number("wall", others.get("wall"), "m", faults, positive=True) if SHARES[place] > 0.0 else 0.0
-            )
-            if not faults and around <= SHARES[place] * thickness:
-                faults.append(f"cord: it lies at a radius of {around:g} m, which is less than the wall inside it")
-            if faults:
-                raise ActuatorError(faults)
-            others["radius"] = around - SHARES[place] * thickness
-        return cls(alpha=alpha, length=length, **({"beta": -alpha} | others))
+        from .cord import of_cord
+
+        return cls(**of_cord(cord, turns, length, others))
 
     def __hash__(self):
         fields = (
@@ -244,55 +144,6 @@ class Actuator:
         from ..notebook import of_actuator
 
         return of_actuator(self)
-
-    def _impossible(self):
-        """Faults of numbers that are each fine alone."""
-        faults = [
-            f"{name}: found {angle[np.argmax(np.abs(angle))]:g} degree; it has to lie between -90 and 90, both excluded"
-            for name, angle in ((name, self.profile(name).samples()) for name in given_by(self))
-            if not np.all(np.abs(angle) < LARGEST_ANGLE)
-        ]
-        if len(followed(self)) < 2:
-            faults += [FEW_PRINCIPAL] * (self.energy == "principal")
-        if len(given_by(self)) == 2 and not (self.is_loose and is_one(self)):
-            faults += self._too_close()
-        if self.is_body:
-            if isinstance(self.fiber_radius, float):
-                faults.append(
-                    f"fiber_radius: found {self.fiber_radius:g} m, but the radius varies; choose one of"
-                    f" {', '.join(map(repr, FIBER_PLACES))}"
-                )
-            return faults
-        outer = self.radius + float(np.min(self.profile("wall").samples()))
-        if isinstance(self.fiber_radius, float) and not self.radius <= self.fiber_radius <= outer * (1.0 + 1e-12):
-            faults.append(
-                f"fiber_radius: found {self.fiber_radius:g} m; the fibers lie between the inner and the outer radius,"
-                f" {self.radius:g} to {outer:g} m"
-            )
-        if not faults and len(followed(self)) == 2 and not self.clamped_stretch() > 0.0:
-            faults.append(
-                f"fiber_extension: with {self.fiber_extension:g} these fibers cannot meet the clamped ends, whose radius"
-                " stays; reduce it or the angles"
-            )
-        return faults
-
-    def _too_close(self):
-        """Faults of two families that are nearly one somewhere."""
-        alpha, beta = together(self.profile("alpha"), self.profile("beta"))
-        closest = np.argmin(np.abs(alpha - beta))
-        if alpha[closest] == beta[closest]:
-            return [
-                f"alpha, beta: both are {alpha[closest]:g} degree (line DF of Figure 1-2): one fiber family leaves the"
-                f" locked shape free; choose angles at least {SMALLEST_DIFFERENCE:g} degree apart, or beta=None, or loose"
-                " fibers that share the angle all along"
-            ]
-        if abs(alpha[closest] - beta[closest]) < APART or len(set(np.sign(alpha - beta))) > 1:
-            return [
-                f"alpha, beta: {alpha[closest]:g} and {beta[closest]:g} degree are less than {SMALLEST_DIFFERENCE:g} degree"
-                " apart, or cross along the tube: nearly one fiber family somewhere, without a finite locked shape;"
-                " keep alpha above beta all along, or below"
-            ]
-        return []
 
     def clamped_stretch(self) -> float:
         """Squared meridional stretch at the clamped ends [-] (G at y = 1): positive if the fibers can meet them."""
@@ -406,11 +257,3 @@ class Actuator:
             "c20": self.material.c20,
             "c30": self.material.c30,
         }
-
-
-def clamped_stretch(alpha, beta, fiber_extension):
-    """G at y = 1 [-] for fiber angles in [degree]; where it is not positive, clamped ends cannot be met."""
-    ta, tb = math.tan(math.radians(alpha)), math.tan(math.radians(beta))
-    half_sum, half_difference = 0.5 * (ta + tb), 0.5 * (ta - tb)
-    g2 = fiber_extension * fiber_extension
-    return 1.0 + (g2 - 1.0) * (1.0 + half_difference**2 - g2 * half_sum**2)

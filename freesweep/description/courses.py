@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from .actuator import APART
-from .profiles import SENSITIVITY, ProfileError, follow, together
+from .impossible import APART
+from .profiles import ProfileError, together
 from .revolution import resolved
+from .splines import SENSITIVITY, follow
 
 SHARE = 0.03  # of the accuracy that the splines of one of many courses may use: they are short, and soon made
 
@@ -18,7 +19,7 @@ def distinct(columns, names):
 
 
 def followed(tube, accuracy, ruled=False):
-    """``(course, error)`` of a tube as :func:`.profiles.follow` gives them, None of one that there is not; where its angles
+    """``(course, error)`` of a tube as :func:`.splines.follow` gives them, None of one that there is not; where its angles
     follow rules (``ruled``) they are not known to stay apart.
     """
     try:

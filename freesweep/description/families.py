@@ -16,6 +16,9 @@ from .tube_model import THREADS
 FAMILIES = ("alpha", "beta")
 OFFSET = 1.0  # of the tangent: a line at 45 degree to the axis of a balloon
 BITS = {"alpha": 1, "beta": 2}  # of ``slack_fiber``
+A_POINT = (
+    1e-6  # of the length, the accuracy of outputs: a pull that ends over less ends at a single place, or in rounding
+)
 
 
 def is_none(value) -> bool:
@@ -97,6 +100,15 @@ def told(tube, found) -> dict:
         else:
             result[name] = found[line] * (1.0 / len(given) if "tension" in name else 1.0)
     return result
+
+
+def beyond_a_point(slack_fiber, alpha, beta):
+    """``slack_fiber`` as it is told: a family has its bit where it is slack, or would have to push, over more than
+    :data:`A_POINT` of the length. ``alpha`` and ``beta`` are the shares of the length over which they are; the flags given
+    tell of single places, too.
+    """
+    points = (alpha <= A_POINT) * BITS["alpha"] | (beta <= A_POINT) * BITS["beta"]
+    return slack_fiber & ~points
 
 
 def told_slack(tube, slack_fiber):

@@ -6,7 +6,7 @@ from ..scaling import ACCURACIES
 from .actuator import Actuator
 from .faults import ActuatorError
 from .given import described, numbers, read_column, read_number
-from .unit_warnings import doubts, warn_of
+from .unit_warnings import load_doubts, warn_of
 
 STATIONS = 201
 
@@ -52,4 +52,4 @@ def warn_of_loads(tube, stacklevel=3, **loads):
     """Warn of loads that look like slips of units for this tube."""
     design = tube.design()
     own = {name: design[name] for name in ("alpha", "beta", "length", "radius", "wall", "c10")}
-    warn_of(doubts(**own, **loads), stacklevel)
+    warn_of(load_doubts(own, loads), stacklevel)

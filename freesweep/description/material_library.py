@@ -98,3 +98,8 @@ def material(name: str) -> MooneyRivlin | Yeoh:
     hint = f"did you mean {near[0]!r}? " if near else ""
     found = shown(name) if isinstance(name, str) else described(name)
     raise ActuatorError([f"material: found {found}; {hint}The library holds {', '.join(materials)}"])
+
+
+def name_of(rubber: MooneyRivlin | Yeoh) -> str:
+    """The name of a rubber in the library, or, of one that is not in it, how it is made."""
+    return next((name for name, one in materials.items() if one == rubber), repr(rubber))

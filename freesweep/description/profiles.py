@@ -1,10 +1,7 @@
-"""What varies along a tube: fiber angles and wall as profiles over x/l, and the course of dimensionless numbers from them.
+"""What varies along a tube: fiber angles, wall and radius as profiles over x/l.
 
 A profile is a list of pairs ``(x/l, value)``, linear between them, where a repeated x/l is a jump; or a callable of x/l
-(array in, array out). Between the places where some profile jumps or bends, H, D and a are smooth: cubic splines on equal
-pieces of each such segment. They are compared with the profile at many irregular places; where it changes within a few
-cells of the mesh, segments are cut, where it cannot be followed it is refused. What is narrower than 1/8000 of the tube may
-be missed in a callable: that is what pairs are for.
+(array in, array out). What is narrower than 1/8000 of the tube may be missed in a callable: that is what pairs are for.
 """
 
 import functools
@@ -15,23 +12,18 @@ import numpy as np
 from .along import Profile as Given
 from .given import numbers
 
-PIECES = (16, 64, 256, 1024, 4096)  # of a segment, until the splines fit
-FINE, FIT = 1e-12, 1e-9  # relative errors of splines that suffice, and that are allowed: they enter the bounds
-# of outputs to relative changes of H, D and a all along the tube, each with the worse sign: 45 was the most in 250 random
-# states of steep tubes (a rotation of steep fibers, an energy beside its work); close to a limit pressure it is more
-SENSITIVITY = 100.0
-LEAST = np.array([1e-6, 1e-6, 1e-6, 1.0, 1.0, 1.0])  # of H, D, a, R, R', inner: errors are relative to no less
 SAMPLES = 257  # of a profile, where its values are checked
 DENSE = 1 << 14  # of a callable along the tube: what is narrower than two gaps may be missed
-IN_EACH = 4  # places at least where each piece of a spline is checked
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)  # multiples modulo 1 are the evenest of irregular places
-SEEN = 0.05  # relative error of a spline over the cells of a base mesh: they see what is there
 MOST_SEGMENTS = 48  # into which callables are cut, each with its share of the mesh
 SHORTEST = 1e-6  # of the length: of what lies between two places where something jumps or bends
 SAME = 1e-9  # places of different profiles that only rounding parts, as 0.3 and 0.1 + 0.2
 DEGREE, CUT_OFF = 16, 1e-13  # of polynomials that a callable's slope is taken from; what they may leave
-CELLS = 240  # of a base mesh, shared by its segments, LEAST_CELLS and MOST_CELLS of each
-LEAST_CELLS, MOST_CELLS = 16, 48
+
+TOO_FAST = (
+    "a profile changes too fast to be followed, between x/l = {places}; where it jumps or bends, give pairs with a repeated"
+    " x/l instead of a callable"
+)
 
 
 class ProfileError(ValueError):
@@ -66,7 +58,7 @@ class Along:
     def samples(self):
         """Values at enough places to check them."""
         pieces = pairwise(self.breaks)
-        return np.concatenate([self.within(low, high, _shares(high - low, self)) for low, high in pieces])
+        return np.concatenate([self.within(low, high, shares_in(high - low, self)) for low, high in pieces])
 
 
 class Profile(Along):
@@ -148,7 +140,7 @@ def _derivative(function):
         if np.max(np.abs(polynomial[-3:])) <= CUT_OFF * np.max(np.abs(polynomial)):
             pieces.append((low, np.polynomial.chebyshev.chebder(polynomial) / half))
         elif len(pieces) + len(waiting) > MOST_SEGMENTS or high - low < 2.0 * SHORTEST:
-            raise ProfileError(_TOO_FAST.format(places=f"{low:.6g} and {high:.6g}"))
+            raise ProfileError(TOO_FAST.format(places=f"{low:.6g} and {high:.6g}"))
         else:
             waiting += [(middle, high), (low, middle)]
     starts = np.array([low for low, _ in pieces] + [1.0])
@@ -222,57 +214,15 @@ def _constant(value, unit):
 
 def together(first, second):
     """Values of two profiles at the same places: everywhere along the tube, both sides of each jump among them."""
-    pieces = list(pairwise(_places(first, second)))
-    inner = [_shares(high - low, first, second) for low, high in pieces]
+    pieces = list(pairwise(places_of(first, second)))
+    inner = [shares_in(high - low, first, second) for low, high in pieces]
     return tuple(
         np.concatenate([profile.within(*piece, share) for piece, share in zip(pieces, inner)])
         for profile in (first, second)
     )
 
 
-def course(tube, fine=FINE):
-    """``((course, edges, places), error)`` of a tube that varies: the first as the kernels take them, lengths in radii; the
-    largest relative error of its splines, below ``fine`` if that can be. A body's course has an axis more
-    (:mod:`freesweep.solver.numerics.properties_along`).
-
-    Raises :class:`ProfileError` where a profile changes too fast to be followed.
-    """
-    from .revolution import resolved
-
-    parts = resolved(tube)
-    profiles, numbers = parts.profiles, parts.numbers
-
-    def splines(low, high, pieces):
-        return _splines(numbers, low, high, pieces, _shares(high - low, *profiles, least=IN_EACH * pieces))
-
-    breaks = _places(*profiles, middle=0.5)
-    if any(profile.function for profile in profiles):
-        breaks = _cut(breaks, lambda low, high: splines(low, high, LEAST_CELLS)[1])
-    for pieces in PIECES:
-        segments, errors = zip(*(splines(low, high, pieces) for low, high in pairwise(breaks)))
-        if max(errors) < fine:
-            break
-    if not max(errors) < FIT:
-        raise ProfileError(_TOO_FAST.format(places=_span(breaks, int(np.argmax(errors)))))
-    each = min(max(2 * round(CELLS / len(segments) / 2), LEAST_CELLS), MOST_CELLS)
-    edges = np.arange(len(breaks), dtype=np.int64) * each
-    rows = np.stack(segments)
-    if rows.shape[2] == 6:
-        rows = rows.reshape(*rows.shape[:2], 2, 3, 4)
-    return (rows, edges, breaks * tube.length / tube.fiber_surface), max(errors)
-
-
-_TOO_FAST = (
-    "a profile changes too fast to be followed, between x/l = {places}; where it jumps or bends, give pairs with a repeated"
-    " x/l instead of a callable"
-)
-
-
-def _span(breaks, k):
-    return f"{breaks[k]:.6g} and {breaks[k + 1]:.6g}"
-
-
-def _places(*profiles, middle=None):
+def places_of(*profiles, middle=None):
     """Places x/l where some profile jumps or bends, ascending, and the ``middle``; what only rounding parts is one place."""
     found = np.unique(np.concatenate([profile.breaks for profile in profiles] + ([] if middle is None else [[middle]])))
     found = found[np.concatenate([[True], np.diff(found) > SAME])]
@@ -286,7 +236,7 @@ def _places(*profiles, middle=None):
     return found
 
 
-def _shares(width, *profiles, least=SAMPLES):
+def shares_in(width, *profiles, least=SAMPLES):
     """Places within a piece of the tube, 0 to 1, where profiles are looked at: irregular, so that nothing that repeats is
     missed, and where there is a callable so dense that nothing is that takes more than two gaps.
     """
@@ -299,44 +249,3 @@ def _irregular(count):
     places = np.concatenate([[0.0], np.sort(np.arange(1, count) * GOLDEN % 1.0), [1.0]])
     places.flags.writeable = False
     return places
-
-
-def _cut(breaks, missed):
-    """``breaks`` with pieces cut in halves until the cells of a base mesh see what is in each of them."""
-    found, ahead = [breaks[0]], list(breaks[:0:-1])
-    while ahead:
-        low, high = found[-1], ahead[-1]
-        if missed(low, high) < SEEN:
-            found.append(ahead.pop())
-        elif high - low < 2.0 * SHORTEST or len(found) + len(ahead) > MOST_SEGMENTS:
-            raise ProfileError(_TOO_FAST.format(places=_span([low, high], 0)))
-        else:
-            ahead.append(0.5 * (low + high))
-    return np.array(found)
-
-
-def _splines(numbers, low, high, pieces, between):
-    """Coefficients (pieces, n, 4) in rising powers of one segment, and the largest relative error ``between`` the nodes."""
-    from scipy.interpolate import CubicSpline
-
-    nodes = np.arange(pieces + 1) / pieces
-    spline = CubicSpline(nodes, numbers(low, high, nodes), axis=1)
-    exact = numbers(low, high, between)
-    scale = np.max(np.abs(exact), axis=1, keepdims=True) + LEAST[: len(exact), None]
-    error = float(np.max(np.abs(spline(between) - exact) / scale))
-    powers = spline.c[::-1] * (1.0 / pieces) ** np.arange(4).reshape(4, 1, 1)
-    return np.ascontiguousarray(powers.transpose(1, 2, 0)), error
-
-
-def follow(tube, accuracy, fine=FINE):
-    """What :func:`course` gives; raises :class:`ProfileError` also where the error is too large for the ``accuracy``."""
-    found, error = course(tube, fine)
-    if SENSITIVITY * error > 0.5 * accuracy:
-        least = 2.0 * SENSITIVITY * error
-        raise ProfileError(f"accuracy: found {accuracy:g}; the profiles of this tube can be followed to {least:.1g}")
-    return found, error
-
-
-def widened(values, bounds, error):
-    """Bounds of dimensionless ``values`` with what an ``error`` of the course, relative, can add to them."""
-    return bounds + SENSITIVITY * error * np.maximum(np.abs(values), 1.0)

@@ -15,27 +15,35 @@ THINNEST = 1e-4  # wall over radius
 THICKEST = {False: 1.0, True: 20.0}  # of a membrane, and of a wall that is taken for as thick as it is
 RADIANS = 0.5 * np.pi  # [degree]: if no fiber is steeper, angles are likely given in radians
 SOFTEST, HARDEST = 10.0, 1e9  # [Pa] of c10: gels, hard plastics
+RUBBERS = 5e3, 5e6  # [Pa] of c10: the softest and the hardest that tubes are made of
+PRESSURES = {"psi": 6894.757, "kPa": 1e3, "MPa": 1e6}  # [Pa] units that constants of rubbers are printed in
 USUAL = 1e-3, 1e4  # of the largest pressure over c10 wall/radius, which is a tenth to a hundred
 LOAD = 1e4  # largest force over radius^2 c10, torque over radius^3 c10
 HELD = 10.0  # times the undeformed length, or a part of it: a length that is held
 HINT = 'plain numbers are in SI units and degrees, others need theirs, as in "4.76 mm" or "0.17 MPa"'
 
 
-def doubts(
-    alpha, beta, length, radius, wall, c10, thickness=None, thick=False, pressure=None, force=0.0, torque=0.0,
-    deformed_length=None,
-) -> list:  # fmt: skip
-    """Sentences on the values of designs and loads, numbers or arrays [degree, m, Pa, N, N m]; none for most.
-
-    ``thickness`` is wall over radius of each design, where these are more than one; a wall may be taken for ``thick``.
-    Without ``pressure`` the design alone is looked at, with it the load alone.
+def design_doubts(design, thick=False, thickness=None) -> list:
+    """Sentences on the values of a ``design``: name -> number or array [degree, m, Pa], of alpha, beta, length, radius, wall
+    and c10; none for most. ``thickness`` is wall over radius of each design, where these are more than one; a wall may be
+    taken for ``thick``.
     """
-    given = {"alpha": alpha, "beta": beta, "length": length, "radius": radius, "wall": wall, "c10": c10}
-    given["thickness"] = np.divide(wall, radius) if thickness is None else thickness
-    given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in given.items()}
-    if pressure is None:
-        return _of_design(**given, thick=thick)
-    return _of_load(**given, pressure=pressure, force=force, torque=torque, held=deformed_length)
+    return _of_design(**_arrays(design, thickness), thick=thick)
+
+
+def load_doubts(design, loads, thickness=None) -> list:
+    """Sentences on the ``loads`` of a design: name -> number or array [Pa, N, N m, m], of pressure, force, torque, and a
+    deformed length that is held; none for most.
+    """
+    held = loads.get("deformed_length")
+    given = {name: loads.get(name, 0.0) for name in ("pressure", "force", "torque")}
+    return _of_load(**_arrays(design, thickness), **given, held=held)
+
+
+def _arrays(design, thickness):
+    """The values of a design, and its thickness, as arrays."""
+    thickness = np.divide(design["wall"], design["radius"]) if thickness is None else thickness
+    return {name: np.atleast_1d(np.asarray(value, float)) for name, value in {**design, "thickness": thickness}.items()}
 
 
 def warn_of(found, stacklevel):
@@ -65,8 +73,15 @@ def _of_design(alpha, beta, length, radius, wall, c10, thickness, thick):
     if 0.0 < steepest < RADIANS:
         found.append(f"no fiber angle exceeds {steepest:g} degree, as if they were radians; {HINT}")
     if c10.max() < SOFTEST or c10.min() > HARDEST:
-        found.append(f"no rubber has a c10 of {c10.max():g} Pa; {HINT}")
+        found.append(f"no rubber has a c10 of {c10.max():g} Pa{_meant(c10.max())}; {HINT}")
     return found
+
+
+def _meant(c10):
+    """The units that make a rubber of a number which is none in pascals, as part of a sentence; "" of what is one."""
+    low, high = RUBBERS
+    units = [f'"{c10:g} {unit}"' for unit, pascals in PRESSURES.items() if low <= c10 * pascals <= high]
+    return f" ({' or '.join(units)}?)" if units and not low <= c10 <= high else ""
 
 
 def _of_load(pressure, force, torque, held, length, radius, c10, thickness, **_):
@@ -77,7 +92,9 @@ def _of_load(pressure, force, torque, held, length, radius, c10, thickness, **_)
     if free and 0.0 < highest < low * softest * thickness.min():
         found.append(f"no pressure exceeds {highest:g} Pa, which hardly deforms a c10 of {softest:g} Pa; {HINT}")
     if highest > high * softest * thickness.max():
-        found.append(f"the pressure reaches {highest:g} Pa, far beyond a c10 of {softest:g} Pa; {HINT}")
+        far = f"the pressure reaches {highest:g} Pa, {highest / softest:.1g} times a c10 of {softest:g} Pa"
+        locked = "; so far beyond its rubber a tube has its locked shape (lock)" if free and held is None else ""
+        found.append(f"{far}{_meant(softest)}{locked}; {HINT}")
     if held is not None and (np.max(held) > HELD * length.max() or np.max(held) < length.min() / HELD):
         found.append(f"a held length of {np.max(held):g} m is far from the tube's {length.max():g} m; {HINT}")
     for name, values, unit, power in (("force", force, "N", 2), ("torque", torque, "N m", 3)):

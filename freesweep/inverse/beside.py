@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..description.actuator import APART
-from ..description.families import lines_of
+from ..description.families import beyond_a_point, lines_of
+from ..description.impossible import APART
 from ..query.reference import COLUMNS
 from ..scaling import ALONG as ALONG_TUBE
-from ..scaling import problem_rows
+from ..scaling import OUTPUTS, SLACK, problem_rows
 
 STEP, ALONG = 1e-5, 3e-3  # differences: of stretch and load, each by its size; along the branch, where sums are rough
 SMALLEST = 1e-4, 0.1  # sizes of a strain, and of a load by the pressure's
@@ -28,7 +28,7 @@ UNEVEN, ASTRAY = 30.0, 0.3  # times what a slope was, and of a step along: more 
 BACK = 3  # steps across to a branch beside
 PARTS = 1, 2, 4, 16  # pieces of what is summed
 VALUE = {"force": 0, "torque": 2}  # columns of what is held: half the length, half the rotation
-TOLD = 5 + len(ALONG_TUBE)  # columns of what is told
+TOLD = len(OUTPUTS) + len(ALONG_TUBE)  # columns of what is told
 
 
 class Pair(NamedTuple):
@@ -81,11 +81,12 @@ class Held:
                 by_middle.measure_physical(problems, own, given[own], 1.0 + strain[own], *kind, pieces, *parts)
                 values[own], bounds[own], told[own] = parts
         column, measure = VALUE[self.kind], self.measure[rows]
+        slack = np.nan_to_num(told[:, by_middle.SLACK])
         miss, doubt = told[:, by_middle.MISS] * strain, told[:, by_middle.DOUBT] * np.abs(strain)
         return (
             np.column_stack([miss, (values[:, column] - self.target[rows]) / measure]),
             np.column_stack([doubt, bounds[:, column] / measure]),
-            told[:, by_middle.SLACK],
+            beyond_a_point(slack.astype(np.int8), *values[:, len(OUTPUTS) : len(OUTPUTS) + len(SLACK)].T),
         )
 
 

@@ -19,6 +19,86 @@ ROUNDING = 1e-12  # relative
 DEGREES = 57.3  # what a rotation is measured by
 
 
+class _Search:
+    """The search for loads (n,) under which free tubes do what is held, each between loads that do too little and too much:
+    the best so far ``at``, by how much it is ``off``, in units of what is held, what is in ``doubt`` of that, and the
+    ``slope``; of the state there the slack families and the middle's radius, or, where there is none, its status.
+    """
+
+    def __init__(self, kind, points, free, near):
+        count, self.load, self.moved = len(points), COLUMNS.index(kind), HELD[kind][0]
+        column = {name: points[:, k] for k, name in enumerate(COLUMNS)}
+        self.points, self.free, self.near = points, free, near
+        self.unit = column["length"] if kind == "force" else np.full(count, DEGREES)
+        self.target = column["held"] * (column["length"] if kind == "force" else 1.0)
+        size = np.pi * column["fiber_radius"] ** (2 if kind == "force" else 3)
+        self.size = size * np.maximum(column["pressure"], LEAST * column["c10"])
+        self.at, self.trial = np.nan_to_num(near), np.nan_to_num(near)
+        self.off, self.doubt, self.slope, self.radii = np.full((4, count), np.nan)
+        self.slack, self.status = np.zeros(count, np.int8), np.full(count, NOT_CONVERGED, np.int8)
+        self.low, self.high, self.lost = np.full(count, -np.inf), np.full(count, np.inf), np.zeros(count, int)
+
+    def look(self, rows, loads):
+        """What free tubes under these ``loads`` are off, what is in doubt of that, their slack families and radii."""
+        own = self.points[rows].copy()
+        own[:, self.load] = loads
+        found = self.free(own)
+        names = (self.moved, f"{self.moved}_error", "slack_fiber", "mid_radius")
+        value, bound, flags, radius = (found[name] for name in names)
+        self.status[rows] = np.where(np.isin(found["status"], VALUED), NOT_CONVERGED, found["status"])
+        return (value - self.target[rows]) / self.unit[rows], bound / self.unit[rows], flags, radius
+
+    def begin(self, rows, like):
+        """Look at what is near, or at no load, and choose where to look next: ``like(points)`` is a first step."""
+        if len(rows):
+            self.off[rows], self.doubt[rows], self.slack[rows], self.radii[rows] = self.look(rows, self.at[rows])
+        self.trial = self.at + FIRST * self.size
+        if len(far := rows[np.isnan(self.near[rows])]):
+            self.trial[far] += np.nan_to_num(like(self.points[far]))
+        self.low[self.off < 0.0], self.high[self.off > 0.0] = self.at[self.off < 0.0], self.at[self.off > 0.0]
+
+    def met(self, accuracy):
+        """Where what is held is met as closely as the last step needs, (n,)."""
+        return (np.abs(self.off) <= NEAR * accuracy) & np.isfinite(self.slope)
+
+    def follow(self, rows, accuracy):
+        """Look on until all that can be is met."""
+        most = np.where(np.isfinite(self.near), LOST_NEAR, LOST)
+        for _ in range(ROUNDS if accuracy < ROUGH else FEW):
+            rows = rows[np.isfinite(self.off[rows]) & ~self.met(accuracy)[rows] & (self.lost[rows] < most[rows])]
+            if len(rows) == 0:
+                break
+            self._step(rows)
+
+    def _step(self, rows):
+        """One look at each of some rows, and the next trial by the secant, or halfway where that wins little."""
+        tried, at, off = self.trial[rows], self.at[rows], self.off[rows]
+        miss, bound, flags, radius = self.look(rows, tried)
+        self.lost[rows] = np.where(np.isfinite(miss), 0, self.lost[rows] + 1)
+        self.low[rows] = np.where(miss < 0.0, np.maximum(self.low[rows], tried), self.low[rows])
+        self.high[rows] = np.where(miss > 0.0, np.minimum(self.high[rows], tried), self.high[rows])
+        new = (miss - off) / (tried - at)
+        rises = np.isfinite(new) & (new > 0.0)
+        self.slope[rows[rises]] = new[rises]
+        slow = np.abs(miss) > SLOW * np.abs(off)
+        better = np.isfinite(miss) & (np.abs(miss) < np.abs(off))
+        won = rows[better]
+        self.at[won], self.off[won], self.doubt[won] = tried[better], miss[better], bound[better]
+        self.slack[won], self.radii[won] = flags[better], radius[better]
+        with np.errstate(invalid="ignore"):
+            ahead = self.at[rows] - self.off[rows] / self.slope[rows]
+            middle = 0.5 * (self.low[rows] + self.high[rows])
+            inside = (ahead > self.low[rows]) & (ahead < self.high[rows]) & ~(slow & np.isfinite(middle))
+        back = 0.5 * (self.at[rows] + tried)
+        ahead = np.where(inside, ahead, np.where(np.isfinite(middle), middle, back))
+        self.trial[rows] = np.where(np.isfinite(miss), ahead, back)
+
+    def loads(self):
+        """Loads and their bounds (n,): one more step of the secant."""
+        with np.errstate(invalid="ignore"):
+            return self.at - self.off / self.slope, (self.doubt + np.abs(self.off)) / np.abs(self.slope)
+
+
 def hold_by_loads(kind, points, free, like, alone, accuracy, two, near):
     """As of :func:`freesweep.query.exact.solve`: the load ``kind`` that holds what ``points`` (n, 17) say, and the middle's
     radius, NaN of tubes that stay straight.
@@ -27,69 +107,22 @@ def hold_by_loads(kind, points, free, like, alone, accuracy, two, near):
     ``alone(points)`` solves, if it is not None; ``two``: there are two families of fibers;
     ``near`` (n,): loads of designs beside these, NaN of none.
     """
-    count, load, moved = len(points), COLUMNS.index(kind), HELD[kind][0]
-    column = {name: points[:, k] for k, name in enumerate(COLUMNS)}
-    unit = column["length"] if kind == "force" else np.full(count, DEGREES)
-    target = column["held"] * (column["length"] if kind == "force" else 1.0)
-    size = np.pi * column["fiber_radius"] ** (2 if kind == "force" else 3)
-    size = size * np.maximum(column["pressure"], LEAST * column["c10"])
-    names = (moved, f"{moved}_error", "slack_fiber", "mid_radius")
-    at, off, slope = np.nan_to_num(near), np.full(count, np.nan), np.full(count, np.nan)
-    doubt, slack, status = np.full(count, np.nan), np.zeros(count, np.int8), np.full(count, NOT_CONVERGED, np.int8)
-    radii, lost = np.full(count, np.nan), np.zeros(count, int)
-    most = np.where(np.isfinite(near), LOST_NEAR, LOST)
-
+    count = len(points)
     straight = straight_loads(kind, points) if two else np.full(count, np.nan)
-    done = np.isfinite(straight)
-
-    def look(rows, loads):
-        own = points[rows].copy()
-        own[:, load] = loads
-        found = free(own)
-        value, bound, flags, radius = (found[name] for name in names)
-        status[rows] = np.where(np.isin(found["status"], VALUED), NOT_CONVERGED, found["status"])
-        return (value - target[rows]) / unit[rows], bound / unit[rows], flags, radius
-
-    rows = np.flatnonzero(~done)
-    if len(rows):
-        off[rows], doubt[rows], slack[rows], radii[rows] = look(rows, at[rows])
-    trial = at + FIRST * size
-    if len(far := rows[np.isnan(near[rows])]):
-        trial[far] += np.nan_to_num(like(points[far]))
-    low, high = np.where(off < 0.0, at, -np.inf), np.where(off > 0.0, at, np.inf)
-    for _ in range(ROUNDS if accuracy < ROUGH else FEW):
-        met = (np.abs(off[rows]) <= NEAR * accuracy) & np.isfinite(slope[rows])
-        rows = rows[np.isfinite(off[rows]) & ~met & (lost[rows] < most[rows])]
-        if len(rows) == 0:
-            break
-        tried = trial[rows]
-        miss, bound, flags, radius = look(rows, tried)
-        lost[rows] = np.where(np.isfinite(miss), 0, lost[rows] + 1)
-        low[rows] = np.where(miss < 0.0, np.maximum(low[rows], tried), low[rows])
-        high[rows] = np.where(miss > 0.0, np.minimum(high[rows], tried), high[rows])
-        new = (miss - off[rows]) / (tried - at[rows])
-        rises = np.isfinite(new) & (new > 0.0)
-        slope[rows[rises]] = new[rises]
-        slow = np.abs(miss) > SLOW * np.abs(off[rows])
-        better = np.isfinite(miss) & (np.abs(miss) < np.abs(off[rows]))
-        won = rows[better]
-        at[won], off[won], doubt[won] = tried[better], miss[better], bound[better]
-        slack[won], radii[won] = flags[better], radius[better]
-        with np.errstate(invalid="ignore"):
-            ahead, middle = at[rows] - off[rows] / slope[rows], 0.5 * (low[rows] + high[rows])
-            inside = (ahead > low[rows]) & (ahead < high[rows]) & ~(slow & np.isfinite(middle))
-        ahead = np.where(inside, ahead, np.where(np.isfinite(middle), middle, 0.5 * (at[rows] + tried)))
-        trial[rows] = np.where(np.isfinite(miss), ahead, 0.5 * (at[rows] + tried))
-    with np.errstate(invalid="ignore"):
-        value = np.where(done, straight, at - off / slope)
-        bound = np.where(done, ROUNDING * np.abs(straight), (doubt + np.abs(off)) / np.abs(slope))
-        done |= (np.abs(off) <= NEAR * accuracy) & np.isfinite(slope)
-    status[done] = OK
+    stays = np.isfinite(straight)
+    search, rows = _Search(kind, points, free, near), np.flatnonzero(~stays)
+    search.begin(rows, like)
+    search.follow(rows, accuracy)
+    value, bound = search.loads()
+    done = stays | search.met(accuracy)
     found = {
-        kind: np.where(done, value, np.nan), f"{kind}_error": np.where(done, bound, np.nan), "status": status,
-        "slack_fiber": np.where(done, slack, 0).astype(np.int8), "stable": np.full(count, UNKNOWN, np.int8),
-        "mid_radius": np.where(done & np.isnan(straight), radii, np.nan),
-    }  # fmt: skip
+        kind: np.where(done, np.where(stays, straight, value), np.nan),
+        f"{kind}_error": np.where(done, np.where(stays, ROUNDING * np.abs(straight), bound), np.nan),
+        "status": np.where(done, OK, search.status),
+        "slack_fiber": np.where(done, search.slack, 0).astype(np.int8),
+        "stable": np.full(count, UNKNOWN, np.int8),
+        "mid_radius": np.where(done & ~stays, search.radii, np.nan),
+    }
     left = np.flatnonzero(~done)
     if alone is not None and len(left):
         other = alone(points[left])

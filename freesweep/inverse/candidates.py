@@ -6,8 +6,9 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..atlas.schema import attributes as variable_attributes
+from ..description.material_library import name_of
 from ..description.python_line import python_line
-from ..status import STATUSES, VALUED
+from ..status import VALUED, status_attributes
 from .deviation import deviations
 from .misfit import Misfit
 from .predict import predict
@@ -26,6 +27,36 @@ class Found(NamedTuple):
     tubes: list
 
 
+class _Looked(NamedTuple):
+    """Designs at points ``u`` (n, p) with ``choice`` (n,), ``slopes`` of the residuals of their wishes and what is
+    ``found``: residuals, whether wishes are met as goals and kept as limits (n, wishes), all of them (n,), and whether all
+    states stand the smallest disturbance.
+    """
+
+    u: np.ndarray
+    choice: np.ndarray
+    slopes: np.ndarray
+    found: object
+    residuals: np.ndarray
+    met: np.ndarray
+    kept: np.ndarray
+    done: np.ndarray
+    stands: np.ndarray
+
+    def part(self, order):
+        """Some of them, in that order."""
+        rest = (each[order] for each in (self.residuals, self.met, self.kept, self.done, self.stands))
+        return _Looked(self.u[order], self.choice[order], self.slopes[order], self.found.part(order), *rest)
+
+
+class _Wishes(NamedTuple):
+    """A ``group`` of the wishes, "goal" or "limit", ``own`` among all, each by what says that it is ``fulfilled``."""
+
+    group: str
+    own: slice
+    fulfilled: str
+
+
 def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=0) -> Found:
     """The candidates at points u (n, p), ``near`` which that was predicted, in the order given, but without objectives those
     first that do it, and of these those in which no family is slack, or would push; without those in which some state is
@@ -33,20 +64,58 @@ def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=
     """
     import xarray as xr
 
-    space, wishes = misfit.space, misfit.wishes
+    space, asked, last = misfit.space, misfit.goals, len(misfit.wishes) - objectives
+    looked = _best_first(_looked(misfit, u, choice, near, slopes, last), objectives)
+    tubes = [space.actuator(one, k) for one, k in zip(looked.u, looked.choice)]
+    columns = space.columns(looked.u, looked.choice)
+    goals, limits = _Wishes("goal", slice(0, asked), "goal_met"), _Wishes("limit", slice(asked, last), "limit_kept")
+    groups = [goals, limits] if last > asked else [goals]
+    data = _of_designs(space, looked, columns) | _of_wishes(misfit, looked, goals)
+    data |= _of_candidates(misfit, looked, tubes, last)
+    data |= _of_wishes(misfit, looked, limits) if last > asked else {}
+    if objectives:
+        data["objective"] = (("candidate", "minimized"), looked.found.values[:, last:])
+        data["objective_error"] = (("candidate", "minimized"), looked.found.bounds[:, last:])
+    if tolerances:
+        spreads = deviations(tubes, misfit.wishes[:last], columns, tolerances)
+        about = {"long_name": "standard deviation under the given tolerances"}
+        data |= {f"{each.group}_spread": (("candidate", each.group), spreads[:, each.own], about) for each in groups}
+    coordinates = {"candidate": np.arange(len(tubes)), "parameter": list(space.names)}
+    coordinates |= {each.group: [wish.title for wish in misfit.wishes[each.own]] for each in groups}
+    if objectives:
+        coordinates["minimized"] = [wish.title for wish in misfit.wishes[last:]]
+    result = xr.Dataset(data, coordinates)
+    result.attrs = {
+        "title": f"designs from {space.template!r}",
+        "summary": sentence(misfit, result, looked.residuals[0], looked.u, looked.slopes),
+        "fibers": "loose" if space.template.is_loose else "bonded",
+    }
+    return Found(result, tubes)
+
+
+def _looked(misfit, u, choice, near, slopes, last):
+    """Designs solved and judged by their goals and limits, ``last`` wishes and what is minimized behind them."""
     found = _solved(misfit, u, choice, near)
-    asked, last = misfit.goals, len(wishes) - objectives
     residuals, met, kept = _judged(misfit, found)
-    done = np.all(met[:, :asked], axis=1) & np.all(kept[:, asked:last], axis=1)
-    stands = ~np.any(found.falls, axis=1)
-    if np.any(done):
-        order = np.arange(len(u)) if objectives else np.lexsort((done & (found.slack > 0), ~done))
-        if np.any(done & stands):  # what the smallest disturbance ends is no answer where another one is
-            order = order[(stands | ~done)[order]]
-        u, choice, slopes, found = u[order], choice[order], slopes[order], found.part(order)
-        residuals, met, kept, done, stands = (each[order] for each in (residuals, met, kept, done, stands))
-    tubes = [space.actuator(one, k) for one, k in zip(u, choice)]
-    columns, worst = space.columns(u, choice), _worst(found.status[:, :last])
+    done = np.all(met[:, : misfit.goals], axis=1) & np.all(kept[:, misfit.goals : last], axis=1)
+    return _Looked(u, choice, slopes, found, residuals, met, kept, done, ~np.any(found.falls, axis=1))
+
+
+def _best_first(looked, objectives):
+    """In the order of :func:`gather`."""
+    done, stands = looked.done, looked.stands
+    if not np.any(done):
+        return looked
+    order = np.arange(len(done)) if objectives else np.lexsort((done & (looked.found.slack > 0), ~done))
+    if np.any(done & stands):  # what the smallest disturbance ends is no answer where another one is
+        order = order[(stands | ~done)[order]]
+    return looked.part(order)
+
+
+def _of_designs(space, looked, columns):
+    """Variables that say what the candidates are: numbers that are free or not nothing, profiles by their knots, and what
+    was chosen from a list of rubbers.
+    """
     data = {
         name: ("candidate", columns[name], {"units": PARAMETERS[name].units})
         for name in FIELDS
@@ -54,64 +123,45 @@ def gather(misfit: Misfit, u, choice, near, slopes, tolerances=None, objectives=
     }
     for name, count in space.knots.items():
         own = [k for k, each in enumerate(space.names) if each.startswith(f"{name}[")]
-        data[name] = (("candidate", "knot"), space.values(u)[:, own], {"units": PARAMETERS[name].units})
+        data[name] = (("candidate", "knot"), space.values(looked.u)[:, own], {"units": PARAMETERS[name].units})
         data[f"{name}_place"] = ("knot", np.linspace(0.0, 1.0, count), {"units": "1"})
-    data |= {
-        "goal_value": (("candidate", "goal"), found.values[:, :asked]),
-        "goal_error": (("candidate", "goal"), found.bounds[:, :asked]),
-        "goal_missed": (("candidate", "goal"), np.where(np.isfinite(residuals), residuals, np.nan)[:, :asked]),
-        "goal_met": (("candidate", "goal"), met[:, :asked]),
-        "goal_low": ("goal", [wish.low for wish in wishes[:asked]]),
-        "goal_high": ("goal", [wish.high for wish in wishes[:asked]]),
-        "goal_tolerance": ("goal", misfit.tolerances[:asked]),
-        "slope": (("candidate", "goal", "parameter"), _slopes(misfit, slopes)[:, :asked]),
-        "status": (("candidate",), worst),
-        "stable": (("candidate",), (stands & (worst == 0)).astype(np.int8), variable_attributes("stable")),
-        "slack_fiber": (("candidate",), found.slack, variable_attributes("slack_fiber")),
-        "met": (("candidate",), done),
-        "misfit": (("candidate",), np.sqrt(np.sum(residuals[:, :last] ** 2, axis=1))),
-        "python": (("candidate",), [python_line(tube) for tube in tubes]),
+    if "material" in space.choices[0]:
+        data["material"] = ("candidate", [name_of(space.choices[k]["material"]) for k in looked.choice.tolist()])
+    return data
+
+
+def _of_wishes(misfit, looked, wishes):
+    """Variables of a group of wishes, but those that only goals have."""
+    group, own, fulfilled = wishes
+    dims, is_goal, known = ("candidate", group), group == "goal", misfit.wishes[own]
+    data = {
+        f"{group}_value": (dims, looked.found.values[:, own]),
+        f"{group}_error": (dims, looked.found.bounds[:, own]),
     }
-    if last > asked:
-        data |= {
-            "limit_value": (("candidate", "limit"), found.values[:, asked:last]),
-            "limit_error": (("candidate", "limit"), found.bounds[:, asked:last]),
-            "limit_kept": (("candidate", "limit"), kept[:, asked:last]),
-            "limit_low": ("limit", [wish.low for wish in wishes[asked:last]]),
-            "limit_high": ("limit", [wish.high for wish in wishes[asked:last]]),
-        }
-    if objectives:
-        data["objective"] = (("candidate", "minimized"), found.values[:, last:])
-        data["objective_error"] = (("candidate", "minimized"), found.bounds[:, last:])
-    if tolerances:
-        spreads = deviations(tubes, wishes[:last], columns, tolerances)
-        data["goal_spread"] = (("candidate", "goal"), spreads[:, :asked])
-        if last > asked:
-            data["limit_spread"] = (("candidate", "limit"), spreads[:, asked:])
-    coordinates = {
-        "candidate": np.arange(len(u)),
-        "goal": [wish.title for wish in wishes[:asked]],
-        "parameter": list(space.names),
+    if is_goal:
+        missed = np.where(np.isfinite(looked.residuals), looked.residuals, np.nan)[:, own]
+        data["goal_missed"] = (dims, missed, {"long_name": "tolerances by which a goal is missed"})
+    data[fulfilled] = (dims, (looked.met if is_goal else looked.kept)[:, own])
+    data[f"{group}_low"] = (group, [wish.low for wish in known])
+    data[f"{group}_high"] = (group, [wish.high for wish in known])
+    if is_goal:
+        about = {"long_name": "change of the goal's output by one unit of what is free"}
+        data["goal_tolerance"] = ("goal", misfit.tolerances[own])
+        data["slope"] = ((*dims, "parameter"), _slopes(misfit, looked.slopes)[:, own], about)
+    return data
+
+
+def _of_candidates(misfit, looked, tubes, last):
+    """Variables that say of each candidate as a whole what becomes of it."""
+    worst = _worst(looked.found.status[:, :last])
+    falls = {"stable": looked.stands & (worst == 0), "slack_fiber": looked.found.slack}
+    return {
+        "status": ("candidate", worst, status_attributes()),
+        **{name: ("candidate", flag.astype(np.int8), variable_attributes(name)) for name, flag in falls.items()},
+        "met": ("candidate", looked.done),
+        "misfit": ("candidate", np.sqrt(np.sum(looked.residuals[:, :last] ** 2, axis=1))),
+        "python": ("candidate", [python_line(tube) for tube in tubes]),
     }
-    if last > asked:
-        coordinates["limit"] = [wish.title for wish in wishes[asked:last]]
-    if objectives:
-        coordinates["minimized"] = [wish.title for wish in wishes[last:]]
-    result = xr.Dataset(data, coordinates)
-    result["goal_missed"].attrs["long_name"] = "tolerances by which a goal is missed"
-    result["slope"].attrs["long_name"] = "change of the goal's output by one unit of what is free"
-    for name in ("goal_spread", "limit_spread"):
-        if name in result:
-            result[name].attrs["long_name"] = "standard deviation under the given tolerances"
-    result["status"].attrs = {
-        "flag_values": [status.value for status in STATUSES], "flag_meanings": " ".join(s.meaning for s in STATUSES)
-    }  # fmt: skip
-    result.attrs = {
-        "title": f"designs from {space.template!r}",
-        "summary": sentence(misfit, result, residuals[0], u, slopes),
-        "fibers": "loose" if space.template.is_loose else "bonded",
-    }
-    return Found(result, tubes)
 
 
 def _solved(misfit, u, choice, near):

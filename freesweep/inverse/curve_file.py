@@ -5,7 +5,8 @@ from pathlib import Path
 
 from ..calibration.csv_file import KNOWN, SIGMA
 from ..description.faults import ActuatorError
-from ..table_file import TEXT, read_columns
+from ..table_file import read_columns
+from ..table_heads import TEXT
 
 
 def is_path(value) -> bool:

@@ -12,9 +12,11 @@ from ..description.given import described
 from ..description.options import read_count
 from ..description.quantities import Names
 from ..description.unit_warnings import warn_of
+from ..report import SHOWN
 from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import read_tolerances
+from .in_units import titled
 from .least import beaten, front, least, multipliers
 from .look import look, spread, with_dear
 from .misfit import make
@@ -72,8 +74,10 @@ def design(
     return find(template, free, goals, limits, minimize, count, atlas, seed, tolerances).data
 
 
-def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, seed=0, tolerances=None) -> Found:
-    """The same, with the actuators of the candidates."""
+def find(
+    template, free, goals, limits=(), minimize=None, count=10, atlas=None, seed=0, tolerances=None, shown=SHOWN
+) -> Found:  # fmt: skip
+    """The same, with the actuators of the candidates; what is said is in units as they are ``shown``."""
     faults = []
     space = freedom.read(template, free, faults)
     asked = wishes.read("goals", goals, Goal, faults)
@@ -97,7 +101,7 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
     if faults:
         raise ActuatorError(faults)
     warn_of(doubts_of(space, [*asked, *kept]), stacklevel=3)
-    misfit = make(space, asked, kept)
+    misfit = make(space, asked, kept)._replace(shown=shown)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
     made = _searched(first, objectives, count, seed, atlas, allowed)
     is_done = made is not None and np.any(made.data["met"].values)
@@ -107,7 +111,7 @@ def find(template, free, goals, limits=(), minimize=None, count=10, atlas=None, 
         if other is not None and (made is None or np.any(other.data["met"].values)):
             made = other
     if made is None:
-        titles = ", ".join(wish.title for wish in misfit.wishes)
+        titles = ", ".join(titled(wish.title, shown) for wish in misfit.wishes)
         raise ActuatorError([f"goals, limits: {NONE} has all the states in which they count: {titles}"])
     return made
 
@@ -197,5 +201,5 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
         for name in ("goal_price", "limit_price", "bound_price"):
             if name in result:
                 result[name].attrs["long_name"] = "change of what is minimized by one unit of what holds it"
-        result.attrs["prices"] = prices(result, whole.wishes, misfit.space.names)
+        result.attrs["prices"] = prices(result, whole.wishes, misfit.space.names, misfit.shown)
     return made

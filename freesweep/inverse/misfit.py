@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..report import SHOWN
 from .exact import exact_slopes, held_slopes
 from .predict import predict
 from .wishes import HELD, RELATIVE
@@ -26,6 +27,7 @@ class Misfit(NamedTuple):
     tolerances: np.ndarray
     is_dear: bool = False  # vectors tell no state of any design that is near: each is solved by itself
     left_out: list | None = None  # takes whether unstable states were taken for none; None: they count as others do
+    shown: dict = SHOWN  # units of what is said
 
     @property
     def is_quick(self) -> bool:

@@ -4,7 +4,7 @@ import csv as files
 import io
 
 from ..report import FAMILIES, SHOWN, THREADS, aligned
-from .words import unit_of
+from .in_units import shown_unit, title_parts
 
 NAMES = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "pressure", "force", "torque")
 MISSED = "!"
@@ -49,8 +49,10 @@ def table(found, shown=SHOWN) -> str:
     columns = [("", [str(k) for k in found["candidate"].values])]
     for name in NAMES:
         if name in found and name in free | tied - {"fiber_radius"} and found[name].dims == ("candidate",):
-            unit, scale = _shown(found[name].attrs["units"], shown)
+            unit, scale = shown_unit(name, shown)
             columns.append((_headed(name, unit), [f"{value * scale:.6g}" for value in found[name].values]))
+    if "material" in found:
+        columns.append(("material", found["material"].values.tolist()))
     for group, fine in (("goal", "goal_met"), ("limit", "limit_kept")):
         for k in range(found.sizes.get(group, 0)):
             heading, scale = _title(found[group].values[k], shown)
@@ -74,25 +76,16 @@ def table(found, shown=SHOWN) -> str:
     return "\n".join([*rows, f"{word}: {meaning}"] if any(families) else rows)
 
 
-def _shown(unit, shown):
-    """``(unit, scale)`` in which what is kept in a unit is shown."""
-    return shown.get(unit, (unit, 1.0))
-
-
 def _headed(name, unit):
-    return name if unit == "1" else f"{name} [{unit}]"
+    return f"{name} [{unit}]" if unit else name
 
 
 def _title(title, shown):
-    """``(heading, scale)`` of a wish's title, ``output at name value unit, ...``, with its units as they are shown."""
-    output, _, state = title.partition(" at ")
-    unit, scale = _shown(unit_of(output), shown)
-    said = []
-    for name, value, kept in (part.split(" ", 2) for part in state.split(", ") if part):
-        own, factor = _shown(kept, shown)
-        said.append(f"{name} {factor * float(value):.6g} {own}")
+    """``(heading, scale)`` of a wish's title, with its units as they are shown."""
+    output, state = title_parts(title, shown)
+    unit, scale = shown_unit(output, shown)
     heading = _headed(output, unit)
-    return f"{heading} at {', '.join(said)}" if said else heading, scale
+    return f"{heading} at {state}" if state else heading, scale
 
 
 def lines(found) -> str:

@@ -4,7 +4,7 @@ it, and what is wished for, by the size of the tubes.
 
 import numpy as np
 
-from ..description.unit_warnings import HINT, RADIANS, THICKEST, doubts
+from ..description.unit_warnings import HINT, RADIANS, THICKEST, design_doubts, load_doubts
 
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "c10")
 LOADS = ("pressure", "force", "torque")
@@ -21,13 +21,13 @@ def doubts_of(space, wishes) -> list:
     thickness = np.divide.outer(design["wall"], design["radius"])
     thickest = THICKEST[space.template.is_thick]  # of ranges, that which is doubted least
     doubted = max(thickness.min(), min(thickness.max(), thickest))
-    more = {"thickness": np.array([doubted]), "thick": space.template.is_thick}
+    doubted, is_thick = np.array([doubted]), space.template.is_thick
     own = {name: space.held.get(name, 0.0) for name in DESIGN}
-    said = doubts(**own, thick=space.template.is_thick)
-    found = [doubt for doubt in doubts(**design, **more) if doubt not in said]
+    said = design_doubts(own, is_thick)
+    found = [doubt for doubt in design_doubts(design, is_thick, doubted) if doubt not in said]
     typical = design["c10"].min() * np.sqrt(thickness.min() * thickness.max())
     for loads in _loads(space, wishes):
-        of_loads, highest = doubts(**design, **more, **loads), loads["pressure"].max()
+        of_loads, highest = load_doubts(design, loads, doubted), loads["pressure"].max()
         found += of_loads
         if not of_loads and 0.0 < highest < HARDLY * typical:
             found.append(f"no pressure exceeds {highest:g} Pa, which hardly deforms these tubes; {HINT}")
@@ -49,7 +49,7 @@ def _values(space, name):
 
 
 def _loads(space, wishes):
-    """What tubes bear, as :func:`doubts` takes it: together, and each pressure that a limit is wished for at."""
+    """What tubes bear, as :func:`load_doubts` takes it: together, and each pressure that a limit is wished for at."""
     pressures = _finite(value for wish in wishes for name, value in wish.conditions if name == "pressure")
     pressures = np.append(pressures, _values(space, "pressure"))
     if np.any(pressures > 0.0):

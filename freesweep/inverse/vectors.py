@@ -8,7 +8,7 @@ from ..derivative.request import SHAPE
 from ..description.families import given_by
 from ..description.tube_model import TubeModel
 from ..interpret import foretell
-from ..query.exact import solve
+from ..query.exact import Tubes, solve
 from ..query.reference import COLUMNS, LENGTH_HELD, LOADED, LOCKED, ROTATION_HELD
 from ..scaling import PULLS, SLACK
 from ..status import INVALID, NOT_CONVERGED, OK
@@ -92,28 +92,28 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, nea
 
 def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
     """What the exact solver tells of all points."""
-    given = {"model": own.model, "families": own.families}
+    tubes = Tubes(own.energy, own.model, own.families)
     if own.is_source and not along:
-        return solve(KINDS[kind], points, own.energy, accuracy, most, thorough=thorough, **given)
+        return solve(KINDS[kind], points, tubes, accuracy, most, thorough=thorough)
     accuracy = max(accuracy, SUMMED)
     if kind in HELD and not own.is_source:
 
         def free(points):
-            return solve(LOADED, points, own.energy, accuracy, thorough=False, **given)
+            return solve(LOADED, points, tubes, accuracy, thorough=False)
 
         two = len(own.families) == 2
 
         def like(points):
-            return solve(KINDS[kind], points, own.energy, accuracy, thorough=False)[kind] if two else 0.0
+            return solve(KINDS[kind], points, Tubes(own.energy), accuracy, thorough=False)[kind] if two else 0.0
 
         def alone(points):
-            return solve(KINDS[kind], points, own.energy, accuracy, **given)
+            return solve(KINDS[kind], points, tubes, accuracy)
 
         if sure:
             return alone(points)
 
         def stands(points):
-            return solve(KINDS[kind], points, own.energy, max(accuracy, ROUGH), thorough=False, **given)["stable"]
+            return solve(KINDS[kind], points, tubes, max(accuracy, ROUGH), thorough=False)["stable"]
 
         found = _held(kind, points, own, near, accuracy, two, free, like, alone if thorough else None)
         straight = np.flatnonzero(np.isfinite(straight_loads(kind, points))) if two else []
@@ -121,9 +121,9 @@ def _solved(own, kind, points, accuracy, most, thorough, sure, along, near):
             found["stable"][straight] = stands(points[straight])
         return found
     if own.is_source:  # the few that vectors leave are not worth it that scalar kernels are compiled for them
-        found = solve(KINDS[kind], points, own.energy, accuracy, thorough=False, along=True, **given)
+        found = solve(KINDS[kind], points, tubes, accuracy, thorough=False, along=True)
     else:
-        found = solve(KINDS[kind], points, own.energy, accuracy, thorough=thorough, **given)
+        found = solve(KINDS[kind], points, tubes, accuracy, thorough=thorough)
     if not own.model.is_thick:  # a layer without a wall around it
         found = {name: array for name, array in found.items() if not name.startswith(WORST)}
     if kind == "locked":  # that of the pressure c10

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ..atlas.schema import PARAMETERS
 from ..status import NOT_CONVERGED
-from .wishes import UNITS
+from .in_units import amount, shown_unit, titled
 
 NONE = "none of the designs that were looked at"  # more than that no search knows
 FIGHT = -0.3  # cosine of two gradients: goals that pull against each other
@@ -28,19 +27,19 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
         return f"{said}; in {pushing} of them threads would have to push (slack_fiber)"
     missed, wishes = np.nan_to_num(np.abs(residuals), nan=np.inf), misfit.wishes
     if not np.any(missed[: misfit.goals] > 1.0):
-        broken = [str(name) for name, kept in zip(result["limit"].values, result["limit_kept"].values[0]) if not kept]
+        limits = zip(result["limit"].values.tolist(), result["limit_kept"].values[0])
+        broken = [titled(name, misfit.shown) for name, kept in limits if not kept]
         return f"{NONE} meets the goals and keeps the limits: {', '.join(broken)}"
     groups = [name for name in ("goal_value", "limit_value") if name in result]
     values = np.concatenate([result[name].values[0] for name in groups])
     worst = int(np.argmax(missed[: len(values)]))
-    wish = wishes[worst]
-    said = (
-        f"{NONE} does it; the nearest one has {wish.title} of {values[worst]:.6g}"
-        f"{_unit(wish.output)} instead of {_range(wish)}"
-    )
+    wish, shown = wishes[worst], misfit.shown
+    title = titled(wish.title, shown)
+    reached = amount(values[worst], wish.output, shown)
+    said = f"{NONE} does it; the nearest one has {title} of {reached} instead of {_range(wish, shown)}"
     if np.isnan(values[worst]):
         state = "no state was found" if result["status"].values[0] == NOT_CONVERGED else "there is no state"
-        return f"{NONE} does it; of the nearest one {state} in which {wish.title} counts"
+        return f"{NONE} does it; of the nearest one {state} in which {title} counts"
     if np.all(np.abs(slopes[0][worst]) < NOTHING * max(missed[worst], 1.0)):
         if not misfit.space.names:
             return (
@@ -52,9 +51,9 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
         a, b = pulls[worst], pulls[other]
         size = np.linalg.norm(a) * np.linalg.norm(b)
         if other != worst and missed[other] > 0.0 and size > 0.0 and a @ b < FIGHT * size:
-            same = f", {_range(wishes[other])}" if wishes[other].title == wish.title else ""
-            return f"{said}: it fights with {wishes[other].title}{same}"
-    held = [f"{name} at {end:g}{_unit(name)}" for name, end, _ in _stopping(misfit, u[0], pulls[worst])]
+            same = f", {_range(wishes[other], shown)}" if wishes[other].title == wish.title else ""
+            return f"{said}: it fights with {titled(wishes[other].title, shown)}{same}"
+    held = [f"{name} at {amount(end, name, shown)}" for name, end, _ in _stopping(misfit, u[0], pulls[worst])]
     if not held:
         return said
     return f"{said}: the bounds {', '.join(held)} stop it{_bought(misfit, u[0], pulls[worst], worst)}"
@@ -74,31 +73,40 @@ def _bought(misfit, u, pulls, worst):
     """What the bound that stops a goal most would buy if it were moved."""
     space, wish = misfit.space, misfit.wishes[worst]
     name, _, i = max(_stopping(misfit, u, pulls), key=lambda one: abs(pulls[one[2]]))
-    amount = round_amount(SHARE * (space.high[i] - space.low[i]))
-    won = abs(pulls[i]) * misfit.tolerances[worst] * amount / (space.high[i] - space.low[i])
+    size = space.high[i] - space.low[i]
+    step = round_amount(SHARE * size, name, misfit.shown)
+    won = amount(abs(pulls[i]) * misfit.tolerances[worst] * step / size, wish.output, misfit.shown, 3)
     more = "more" if u[i] >= 1.0 else "less"
-    return f"; {amount:g}{_unit(name)} {more} of {name} would buy {won:.3g}{_unit(wish.output)}"
+    return f"; {amount(step, name, misfit.shown)} {more} of {name} would buy {won}"
 
 
-def prices(result, wishes, names) -> str:
+def prices(result, wishes, names, shown) -> str:
     """What holds the best candidate's minimized number, dearest first, in one sentence; "" if nothing does.
 
-    ``wishes``: goals, limits and what is minimized; ``names`` of what is free.
+    ``wishes``: goals, limits and what is minimized; ``names`` of what is free; units as they are ``shown``.
     """
     objective, found = wishes[-1], []
     held = [(wish.title, wish.output, _level(wish)) for wish in wishes[:-1]]
     costs = [result[f"{group}_price"].values[0] for group in ("goal", "limit") if f"{group}_price" in result]
     for (title, output, level), price in zip(held, np.concatenate(costs)):
-        amount = round_amount(SHARE * level)
-        found.append((abs(price) * amount, f"{amount:g}{_unit(output)} {'less' if price > 0 else 'more'} of {title}"))
+        found.append(_saved(price, level, output, titled(title, shown), shown))
     for name, price, end in zip(names, result["bound_price"].values[0], _ends(result, names)):
         if name == objective.output:
             continue  # that goes without saying
-        amount = round_amount(SHARE * abs(end))
-        found.append((abs(price) * amount, f"{amount:g}{_unit(name)} {'less' if price > 0 else 'more'} of {name}"))
-    unit, least = _unit(objective.output), NOTHING * abs(result["objective"].values[0, 0])
-    words = [f"{what} would save {won:.2g}{unit}" for won, what in sorted(found, reverse=True) if won > least]
-    return f"least {objective.title}: {'; '.join(words)}" if words else ""
+        found.append(_saved(price, abs(end), name, name, shown))
+    least = NOTHING * abs(result["objective"].values[0, 0])
+    words = [
+        f"{what} would save {amount(won, objective.output, shown, 2)}"
+        for won, what in sorted(found, reverse=True)
+        if won > least
+    ]
+    return f"least {titled(objective.title, shown)}: {'; '.join(words)}" if words else ""
+
+
+def _saved(price, level, name, title, shown):
+    """``(what it saves, words)`` of giving up a round amount of what is called by its ``title``."""
+    step = round_amount(SHARE * level, name, shown)
+    return abs(price) * step, f"{amount(step, name, shown)} {'less' if price > 0 else 'more'} of {title}"
 
 
 def _level(wish):
@@ -114,27 +122,16 @@ def _ends(result, names):
         yield float(values[int(knot[:-1])] if knot else values)
 
 
-def round_amount(size):
-    """A round number of about a size: its first digit."""
-    return float(f"{size:.0e}") if size > 0.0 else 1.0
+def round_amount(size, name, shown):
+    """About a ``size`` of a parameter or an output, which is a round number where it is shown: its first digit."""
+    _, scale = shown_unit(name, shown)
+    return float(f"{size * scale:.0e}") / scale if size > 0.0 else 1.0 / scale
 
 
-def unit_of(name) -> str:
-    """Unit of an output or a parameter; of a profile's knot, too."""
-    return UNITS.get(name) or PARAMETERS[name.partition("[")[0]].units
-
-
-def _unit(name):
-    """What stands behind a number of that name: its unit, if it has one."""
-    return "" if unit_of(name) == "1" else f" {unit_of(name)}"
-
-
-def _range(wish):
-    unit = _unit(wish.output)
+def _range(wish, shown):
+    low, high = (amount(end, wish.output, shown) for end in (wish.low, wish.high))
     if wish.low == wish.high:
-        return f"{wish.low:g}{unit}"
+        return low
     if np.isinf(wish.high):
-        return f"at least {wish.low:g}{unit}"
-    if np.isinf(wish.low):
-        return f"at most {wish.high:g}{unit}"
-    return f"{wish.low:g} to {wish.high:g}{unit}"
+        return f"at least {low}"
+    return f"at most {high}" if np.isinf(wish.low) else f"{low} to {high}"

@@ -8,10 +8,13 @@ from matplotlib.figure import Figure
 from ..report import FAMILIES, SHOWN, THREADS
 from . import style
 from .display import axis_label, shown_units
+from .labels import label_points
 
 SIZE = (style.PAGE, 120.0)  # [mm]
 MOST = 5  # candidates that have a colour of their own
 WIDTH = 100  # letters of a line
+MARGIN, AROUND = 3.0, 0.12  # around the angles of all candidates: [degree], at least, and of what they range over
+LINE = 4.5  # [mm] from one line of words to the next
 HELD = {"": "free", "force": "held in length", "torque": "held from turning"}
 
 
@@ -30,6 +33,9 @@ def draw(found, curves, shapes) -> Figure:
         figure.suptitle(
             "\n".join(textwrap.wrap(found.attrs["summary"], WIDTH)), fontsize=style.points(style.NORMAL + 1)
         )
+        if "knot" not in found.dims:
+            points, count = np.column_stack([found["alpha"].values, found["beta"].values]), found.sizes["candidate"]
+            label_points(axes["angles"], points, [str(k) for k in range(count)], [_colour(k) for k in range(count)])
     return figure
 
 
@@ -61,10 +67,10 @@ def _draw_angles(ax, found):
     for k, fine in enumerate(met):
         colour, mark = _colour(k), "s" if found["slack_fiber"].values[k] else "o"
         ax.plot(alpha[k], beta[k], mark, color=colour, markerfacecolor=colour if fine else style.PAPER, markersize=5)
-        ax.annotate(str(k), (alpha[k], beta[k]), (4, 3), textcoords="offset points", color=colour)
     ax.set(xlabel=axis_label("alpha"), ylabel=axis_label("beta"))
-    ax.set_xlim(min(0.0, alpha.min() - 5), max(alpha.max() + 8, 20))
-    ax.set_ylim(min(beta.min() - 8, -10), max(beta.max() + 8, 10))
+    for limit, angles in ((ax.set_xlim, alpha), (ax.set_ylim, beta)):
+        margin = max(MARGIN, AROUND * np.ptp(angles))
+        limit(angles.min() - margin, angles.max() + margin)
 
 
 def _draw_along(ax, found, name, k, **how):
@@ -86,7 +92,8 @@ def _draw_curve(ax, curve):
         mark = "D" if len(ends) == 2 else "^" if np.isfinite(low) else "v"
         ax.errorbar(across * at, up * np.mean(ends), yerr=0.5 * up * np.ptp(ends), fmt=mark, color=style.INK,
                     markersize=4 if mark == "D" else 6, markerfacecolor=style.PAPER,
-                    capsize=3 if mark == "D" else 0, zorder=5)  # fmt: skip
+                    elinewidth=style.THIN, capsize=3 if mark == "D" else 0, zorder=5)  # fmt: skip
+    unit = "degree" if unit == "deg" else unit  # as at the other axes
     label = f"{curve.output.replace('_', ' ')} [{unit}]".removesuffix(" [1]")
     ax.set(xlabel=axis_label(curve.along), ylabel=label)
 
@@ -94,16 +101,19 @@ def _draw_curve(ax, curve):
 def _draw_shapes(ax, shapes, found):
     """Each candidate from the side, at rest in grey and under pressure."""
     step = 0.0
+    longest = max((np.nanmax(np.append(shape.position, shape.rest[0])) * 1e3 for shape in shapes), default=0.0)
+    line = LINE * longest / SIZE[0]  # as high as a line of words, where the longest is as wide as the page
     for k, shape in enumerate(shapes):
         x, r = shape.position * 1e3, shape.radius * 1e3
-        half = 1.15 * max(np.nanmax(r, initial=0.0), shape.rest[1] * 1e3)
+        half = max(1.15 * max(np.nanmax(r, initial=0.0), shape.rest[1] * 1e3), 0.5 * line)
         step += half
         for side in (-1.0, 1.0):
             ax.plot([0.0, shape.rest[0] * 1e3], [side * shape.rest[1] * 1e3 - step] * 2, color=style.BLANK, linewidth=2)
         ax.fill_between(x, -step - r, -step + r, color=_colour(k), alpha=0.55, linewidth=0)
         end = np.nanmax(np.append(x, shape.rest[0] * 1e3))
         said = f"{k}: {shape.rotation:.0f}\u00b0".replace(": -0\u00b0", ": 0\u00b0")
-        said = ", ".join(filter(None, (said, _threads(found, k))))
+        rubber = str(found["material"].values[k]) if "material" in found else ""
+        said = ", ".join(filter(None, (said, rubber, _threads(found, k))))
         ax.annotate(said, (end, -step), (6, -3), textcoords="offset points", color=_colour(k))
         step += half
     held = HELD[shapes[0].held] if shapes else ""

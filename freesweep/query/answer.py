@@ -8,7 +8,7 @@ from . import errors, reference, spline
 from .calibration import CLEAR, FILLED, NEAR_HOLES
 from .cells import BESIDE, DOUBT, NOISE, ROUGH
 from .family import LOOSE, MIRRORED, SLACK_FLAGS, TOLD, TOLD_FROM
-from .locate import place
+from .locate import Placed, place
 from .missing_nodes import MIXED
 from .similar import at_similar
 from .slack import UNKNOWN
@@ -31,10 +31,8 @@ class Inquiry:
         self.points = np.empty((self.size, len(reference.COLUMNS)))
         self.pieces, self.shares = np.zeros((self.size, d), np.int64), np.zeros((self.size, d))
         self.marks = np.empty((self.size, 7), np.int64)
-        place(
-            asked, table.kinds, table.bounds, table.fixed, table.options, table.knots, table.shape, table.coordinates,
-            table.strides, table.codes, table.cells, self.points, self.pieces, self.shares, self.marks,
-        )  # fmt: skip
+        placed = Placed(self.points, self.pieces, self.shares, self.marks)
+        place(asked, table.columns, table.fixed, table.nodes, table.family.status is not None, table.nearest, placed)
         self.states = table.predictor.states(table.family.kind, self.points)
         self.sides = table.side_of(self.states) if len(table.sides) > 1 else None
         self.status, self.codes, self.cell = self.marks[:, 0], self.marks[:, 1], self.marks[:, 3].copy()

@@ -6,6 +6,7 @@ its corners, a line of nodes at a time. What is known of a cell is the worst of 
 
 import math
 from threading import Lock
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,22 @@ NOISE, BESIDE, DOUBT, ROUGH = range(4)  # columns of what is known of a cell; on
 WEIGHT = np.float32(0.1)  # largest weight of a node beside a piece in its slopes
 STEEPEST = 4.0 / 27.0  # largest weight of a slope in a cubic, times the width
 FIRST_ROWS = 1 << 10  # there is room for; twice as many where they are too few
+
+
+class Grid(NamedTuple):
+    """Numbers of nodes, as of :class:`Cells`, ``doubtful`` (blocks,) of the two last axes, and what is known of the axes:
+    ``shape``, ``strides`` and ``windows`` (d,), ``knots``, and ``weights`` (d, n, WINDOW) of what the next order would add.
+    """
+
+    values: np.ndarray
+    noise: np.ndarray
+    doubt: np.ndarray
+    doubtful: np.ndarray
+    shape: np.ndarray
+    strides: np.ndarray
+    windows: np.ndarray
+    knots: np.ndarray
+    weights: np.ndarray
 
 
 class Cells:
@@ -36,15 +53,15 @@ class Cells:
             own[: len(axis.nodes)] = axis.remainder
         inner = int(np.prod(shape[-2:]))  # nodes of one block of the last two axes
         doubtful = doubt.reshape(-1, inner).any(axis=1)  # few blocks are: what others hold need not be looked at
-        self._grid = values, noise, doubt, doubtful, shape, strides, windows, knots, weights
+        self._grid = Grid(values, noise, doubt, doubtful, shape, strides, windows, knots, weights)
         self._slots = np.zeros(len(values), np.int32)  # of each cell in what is known; 0: nothing yet
         self._rows, self._count = np.empty((FIRST_ROWS, ROUGH + len(axes)), np.float32), 1
         self._lock = Lock()
 
     def doubts(self, places, cell, pieces, shares, out):
         """Into ``out`` (n,) at ``places`` (k,) what :func:`.doubts.doubts_at` tells of points."""
-        _, _, doubt, _, _, strides, windows, knots, _ = self._grid
-        doubts_at(places, cell, pieces, shares, doubt, strides, windows, knots, out)
+        grid = self._grid
+        doubts_at(places, cell, pieces, shares, grid.doubt, grid.strides, grid.windows, grid.knots, out)
 
     def at(self, cells) -> np.ndarray:
         """What is known of cells (n,): (n, ROUGH + d)."""
@@ -56,7 +73,7 @@ class Cells:
 
     def _look_at(self, cells):
         rows = np.empty((len(cells), self._rows.shape[1]), np.float32)
-        _describe(cells, *self._grid, rows)
+        _describe(cells, self._grid, rows)
         with self._lock:
             begin, self._count = self._count, self._count + len(cells)
             if self._count > len(self._rows):
@@ -68,8 +85,9 @@ class Cells:
 
 
 @entry_point
-def _describe(cells, values, noise, doubt, doubtful, shape, strides, windows, knots, weights, rows):
+def _describe(cells, grid, rows):
     """Into ``rows`` (k, ROUGH + d) what is known of ``cells`` (k,)."""
+    values, noise, doubt, doubtful, shape, strides, windows, knots, weights = grid
     d = len(shape)
     lines, blocks, out = np.empty(1 << d, np.int64), np.empty(1 << d, np.int64), np.empty(ROUGH + d)
     around = np.empty((3, WINDOW + 2))

@@ -3,24 +3,28 @@
 import importlib
 import os
 from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
 
 import numpy as np
 from numba import config
 
-from ..description.actuator import APART, LARGEST_ANGLE
 from ..description.courses import distinct, followed
-from ..description.families import BITS, FAMILIES, lines_of
+from ..description.families import BITS, FAMILIES, beyond_a_point, lines_of
+from ..description.impossible import APART, LARGEST_ANGLE
 from ..description.local import COURSE
-from ..description.profiles import SENSITIVITY, widened
-from ..description.tube_model import MODELS
-from ..scaling import ALONG, OUTPUTS, output_scales, problem_rows, wall_volume_inside
+from ..description.splines import SENSITIVITY, widened
+from ..description.tube_model import MODELS, TubeModel
+from ..scaling import ALONG, OUTPUTS, SLACK, output_scales, problem_rows, wall_volume_inside
 from ..solver.status import PENDING
 from ..status import DEGENERATE, INVALID, NOT_CONVERGED, VALUED
 from . import reference
 from .reference import COLUMNS
 
+HELD_KINDS = {  # and what is told of their states
+    reference.LENGTH_HELD: ("force", "mid_radius"), reference.ROTATION_HELD: ("torque", "mid_radius")
+}  # fmt: skip
 CELLS = 24  # of the base mesh, as in sweeps: bounds decide where it is refined
-LATER = ("..solver.batch", "..solver.hold_batch", "..solver.lanes.by_middle", "..solver.lanes.held", ".physical_tube")
+LATER = ("..solver.batch", "..solver.hold_batch", "..solver.lanes.by_middle", "..solver.lanes.held", ".physical_along")
 SHARE = 512  # points that one thread solves at a time
 FEW, ROUGH = (
     (1, 3),
@@ -34,43 +38,34 @@ def load():
         importlib.import_module(name, __package__)
 
 
-def solve(
-    kind, points, energy, accuracy, largest_pressure=None, model=MODELS["source"], cells=CELLS, thorough=True, bodies=None,
-    families=FAMILIES, along=False,
-):  # fmt: skip
-    """States of a kind at points (n, 17) of tubes of a ``model``: name -> (n,) of numbers and ``_error`` bounds, ``status``
-    and flags, on base meshes of so many ``cells``.
+class Tubes(NamedTuple):
+    """What tubes points are of: their ``energy``, ``model`` and ``families``, without one of which its angle says nothing;
+    and which ``bodies``, if they are.
+    """
+
+    energy: str
+    model: TubeModel = MODELS["source"]
+    families: tuple = FAMILIES
+    bodies: object = None
+
+
+def solve(kind, points, tubes, accuracy, largest_pressure=None, cells=CELLS, thorough=True, along=False):
+    """States of a kind at points (n, 17) of ``tubes``: name -> (n,) of numbers and ``_error`` bounds, ``status`` and flags,
+    on base meshes of so many ``cells``.
 
     With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``. Not ``thorough``: what
-    vectors leave to the scalar kernels, a thousand times dearer, is left out. ``bodies``: the points are bodies'.
-    Without one of the ``families`` its angle says nothing. ``along``: of free states of the source's tubes, too, slack
-    shares and least tensions are told, which physical tubes always tell: membranes whose fibers may push are such tubes.
+    vectors leave to the scalar kernels, a thousand times dearer, is left out. ``along``: of free states of the source's
+    tubes, too, slack shares and least tensions are told, which physical tubes always tell: membranes whose fibers may push
+    are such tubes.
     """
-    from ..solver.problem import PROBLEM_SIZE
-
-    count = len(points)
     design = {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(COLUMNS)}
-    status = np.full(count, NOT_CONVERGED, np.int8)
-    lines = lines_of(design["alpha"], design["beta"], families, model.is_loose)
-    apart = np.abs(lines.alpha - lines.beta)
-    wide = np.maximum(np.abs(lines.alpha), np.abs(lines.beta)) >= LARGEST_ANGLE
-    outer = design["radius"] + design["wall"]
-    fibers = (design["fiber_radius"] < design["radius"]) | (design["fiber_radius"] > outer * (1.0 + 1e-12))
-    status[((apart < APART) & ~lines.single) | wide | fibers] = INVALID
-    status[(apart == 0.0) | (lines.single & (kind == reference.LOCKED))] = DEGENERATE
+    lines = lines_of(design["alpha"], design["beta"], tubes.families, tubes.model.is_loose)
+    status = _domain(kind, design, lines)
     good = np.flatnonzero(status == NOT_CONVERGED)
-    courses, status[good] = _courses(design, good, accuracy, cells, bodies)
+    courses, status[good] = _courses(design, good, accuracy, cells, tubes.bodies)
     good = np.flatnonzero(status == NOT_CONVERGED)
     own = {name: column[good] for name, column in design.items()}
-    of_lines = {"alpha": lines.alpha[good], "beta": lines.beta[good]}
-    rows = problem_rows(own | of_lines, energy, model.is_thick, lines.threads[good])
-    if along and rows.shape[1] == PROBLEM_SIZE:
-        rows = np.column_stack([rows, np.zeros((len(rows), 2))])  # no thick wall, two bonded families
-    held = kind in (reference.LENGTH_HELD, reference.ROTATION_HELD)
-    names = ("force", "mid_radius") if kind == reference.LENGTH_HELD else ("torque", "mid_radius") if held else OUTPUTS
-    names += ALONG if along or model.is_physical or len(families) < 2 else ()
-    found = {key: np.full(count, np.nan) for name in names for key in (name, f"{name}_error")}
-    slack, stable, limits = np.zeros(count, np.int8), np.zeros(count, np.int8), np.full((count, 2), np.nan)
+    rows, held = _problems(tubes, own, lines, good, along), kind in HELD_KINDS
     pressure = np.full(len(good), np.inf) if kind == reference.LOCKED else own["pressure"] / own["c10"]
 
     def part(some, followed):
@@ -83,31 +78,66 @@ def solve(
     order = [np.searchsorted(good, some) for some, _ in courses]
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         parts = list(pool.map(part, order, [followed for _, followed in courses]))
-    if parts:
-        good = good[np.concatenate(order)]
-        own = {name: column[good] for name, column in design.items()}
-        values, bounds, codes, flags, second = (np.concatenate(arrays) for arrays in zip(*parts))
-        status[good] = codes
-        valued = np.isin(codes, VALUED)
-        scales, inside = _scales(kind, own), wall_volume_inside(own)
-        if bodies is not None:
-            scales["mid_radius"], inside = bodies.surface(own)
-        for k, name in enumerate(names):
-            number = values[:, k] * scales[name]
-            if name == "volume":
-                number = number - inside
-            found[name][good] = np.where(valued, number, np.nan)
-            found[f"{name}_error"][good] = np.where(valued, bounds[:, k] * scales[name], np.nan)
-        slack[good] = np.where(valued, flags, 0)
-        _tell_families(found, slack, lines.single, families)
-        if held:
-            stable[good] = second
-        else:
-            stable[good] = valued
-            limits[good] = second * own["c10"][:, None]
+    names = HELD_KINDS.get(kind, OUTPUTS)
+    names += ALONG if along or tubes.model.is_physical or len(tubes.families) < 2 else ()
+    found = {key: np.full(len(points), np.nan) for name in names for key in (name, f"{name}_error")}
+    slack, stable = np.zeros((2, len(points)), np.int8)
     found |= {"status": status, "slack_fiber": slack, "stable": stable}
-    found |= {"limit_pressure": limits[:, 0], "limit_pressure_error": limits[:, 1]}
+    found |= {key: np.full(len(points), np.nan) for key in ("limit_pressure", "limit_pressure_error")}
+    if parts:
+        which = np.concatenate(order)
+        own = {name: column[which] for name, column in own.items()}
+        _put(found, names, kind, good[which], own, tubes.bodies, [np.concatenate(each) for each in zip(*parts)])
+        _tell_families(found, slack, lines.single, tubes.families)
     return found
+
+
+def _domain(kind, design, lines):
+    """Statuses (n,) of designs that are in no domain, and where one angle leaves the shape free; of others, unknown yet."""
+    status = np.full(len(lines.alpha), NOT_CONVERGED, np.int8)
+    apart = np.abs(lines.alpha - lines.beta)
+    wide = np.maximum(np.abs(lines.alpha), np.abs(lines.beta)) >= LARGEST_ANGLE
+    outer = design["radius"] + design["wall"]
+    fibers = (design["fiber_radius"] < design["radius"]) | (design["fiber_radius"] > outer * (1.0 + 1e-12))
+    status[((apart < APART) & ~lines.single) | wide | fibers] = INVALID
+    status[(apart == 0.0) | (lines.single & (kind == reference.LOCKED))] = DEGENERATE
+    return status
+
+
+def _problems(tubes, own, lines, good, along):
+    """Rows of problems of the designs that are ``good``; with ``along``, of tubes that tell what is along them."""
+    from ..solver.problem import PROBLEM_SIZE
+
+    of_lines = {"alpha": lines.alpha[good], "beta": lines.beta[good]}
+    rows = problem_rows(own | of_lines, tubes.energy, tubes.model.is_thick, lines.threads[good])
+    if along and rows.shape[1] == PROBLEM_SIZE:
+        rows = np.column_stack([rows, np.zeros((len(rows), 2))])  # no thick wall, two bonded families
+    return rows
+
+
+def _put(found, names, kind, at, own, bodies, parts):
+    """Put what the kernels found of designs ``own``, as :func:`_free` and :func:`_held` tell it, at their places."""
+    values, bounds, codes, flags, second = parts
+    found["status"][at] = codes
+    valued = np.isin(codes, VALUED)
+    scales, inside = _scales(kind, own), wall_volume_inside(own)
+    if bodies is not None:
+        scales["mid_radius"], inside = bodies.surface(own)
+    for k, name in enumerate(names):
+        number = values[:, k] * scales[name]
+        if name == "volume":
+            number = number - inside
+        found[name][at] = np.where(valued, number, np.nan)
+        found[f"{name}_error"][at] = np.where(valued, bounds[:, k] * scales[name], np.nan)
+    flags = np.where(valued, flags, 0)
+    if names[-1] in ALONG:
+        flags = beyond_a_point(flags, *(found[name][at] for name in SLACK))
+    found["slack_fiber"][at] = flags
+    if kind in HELD_KINDS:
+        found["stable"][at] = second
+    else:
+        found["stable"][at] = valued
+        found["limit_pressure"][at], found["limit_pressure_error"][at] = (second * own["c10"][:, None]).T
 
 
 def _tell_families(found, slack, single, families):

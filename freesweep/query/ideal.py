@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..description.actuator import APART, LARGEST_ANGLE
+from ..description.impossible import APART, LARGEST_ANGLE
 from ..description.tube_model import fiber_surface
 from ..ideal import ideal_blocked
 from ..status import INVALID, OK, OUTSIDE

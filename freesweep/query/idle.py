@@ -6,7 +6,8 @@ from ..atlas.schema import VARIABLES, without
 from .answer import SORTED, Inquiry
 from .family import FAMILIES, TOLD_FROM
 from .measure import measured
-from .physical_tube import MOONEY_RIVLIN, TOLD, YEOH, physical_states, slack_somewhere, worst_places
+from .physical_along import TOLD, slack_somewhere, worst_places
+from .physical_tube import MOONEY_RIVLIN, YEOH, physical_states
 from .query import Reader
 from .reference import COLUMNS, LOADED, UNIFORM
 

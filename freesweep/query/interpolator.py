@@ -126,8 +126,8 @@ class Interpolator:
             for sign in (-1.0, 1.0):
                 points = inquiry.points.copy()
                 points[:, column] += sign * steps
-                if own in ("radius", "wall") and table.options[0] >= 0.0:
-                    share = 1.0 if own == "radius" else table.options[0]
+                if own in ("radius", "wall") and table.fixed.fiber_share >= 0.0:
+                    share = 1.0 if own == "radius" else table.fixed.fiber_share
                     points[:, reference.FIBERS] += share * sign * steps
                 states = table.predictor.states(family.kind, points)
                 end = np.empty((3, inquiry.size))

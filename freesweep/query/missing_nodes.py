@@ -6,6 +6,7 @@ neighbours. It helps to weigh the cells beside it and never answers a point itse
 
 import math
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,63 +36,102 @@ def _through(xs, fs, found, x, left_out):
     return total
 
 
+class Holed(NamedTuple):
+    """A grid with holes: ``values`` (nodes,), NaN there; what numbers that were put in before may be off, ``doubts``
+    (nodes,); ``shape`` and ``strides`` (d,), ``nodes`` of the axes (d, n), and :func:`weights_beyond`.
+    """
+
+    values: np.ndarray
+    doubts: np.ndarray
+    shape: np.ndarray
+    strides: np.ndarray
+    nodes: np.ndarray
+    beyond: np.ndarray
+
+
+@kernel
+def _look_around(given, values, at, index, count, step):
+    """Put the numbers beside a node along an axis into ``given`` (2 REACH + 1,), NaN where there is none; returns how many
+    there are below and above.
+    """
+    below = above = 0
+    for far in range(1, REACH + 1):
+        given[REACH - far] = values[at - far * step] if index >= far else math.nan
+        given[REACH + far] = values[at + far * step] if index + far < count else math.nan
+        below += 1 if math.isfinite(given[REACH - far]) else 0
+        above += 1 if math.isfinite(given[REACH + far]) else 0
+    return below, above
+
+
+@kernel
+def _by_weights(given, weights, side):
+    """``(number, the same without the farthest node)`` of a node with as many numbers on one side (0: below) as there are
+    ``weights`` (2, 2, BEYOND) for.
+    """
+    value, other = 0.0, 0.0
+    for j in range(BEYOND):
+        number = given[REACH - 1 - j if side == 0 else REACH + 1 + j]
+        value += weights[side, 0, j] * number
+        other += weights[side, 1, j] * number
+    return value, other
+
+
+@kernel
+def _by_polynomial(given, nodes, index, sides, xs, fs):
+    """The same by the nearest numbers on each of its ``sides``; NaN where these are fewer than three. ``xs`` and ``fs`` take
+    them.
+    """
+    found, before = np.int64(0), np.int64(0)
+    for place in range(2 * REACH):
+        far = place // 2 + 1
+        side = -1 if place % 2 == 0 else 1
+        room = before < BETWEEN if side < 0 else found - before < BETWEEN
+        if sides == 1:  # polynomials of high degree are wild beyond their nodes
+            room = found < BEYOND
+        if room and math.isfinite(given[REACH + side * far]):
+            xs[found], fs[found] = nodes[index + side * far], given[REACH + side * far]
+            found += 1
+            before += 1 if side < 0 else 0
+    if found < 3:
+        return math.nan, math.nan
+    farthest = np.int64(0)
+    for j in range(found):
+        if abs(xs[j] - nodes[index]) > abs(xs[farthest] - nodes[index]):
+            farthest = j
+    return _through(xs, fs, found, nodes[index], -1), _through(xs, fs, found, nodes[index], farthest)
+
+
 @entry_point
-def fill_once(values, doubt_of, bad, shape, strides, nodes, beyond, numbers, doubts):
-    """Numbers for the NaN of ``values`` (nodes,) at ``bad`` (k,) that lie beside numbers, into ``numbers`` (k,).
+def fill_once(grid, bad, numbers, doubts):
+    """Numbers for the NaN of a grid that is :class:`Holed` at ``bad`` (k,), where they lie beside numbers, into ``numbers``
+    (k,).
 
     Between nodes rather than beyond them; NaN where nothing is beside. Of several axes the surer count more. ``doubts``
-    (k,): what the farthest node changes, by how much axes differ, and what is inherited of ``doubt_of`` (nodes,) numbers
-    that were put in before. ``beyond``: see :func:`weights_beyond`.
+    (k,): what the farthest node changes, by how much axes differ, and what is inherited of numbers put in before.
     """
     xs, fs, given = np.empty(2 * BETWEEN), np.empty(2 * BETWEEN), np.empty(2 * REACH + 1)
-    found_along, weights = np.empty((2, len(shape)))
+    found_along, weights = np.empty((2, len(grid.shape)))
     for k in range(len(bad)):
         at, most, many = bad[k], 0, 0
-        for a in range(len(shape)):
-            count, step = shape[a], strides[a]
+        for a in range(len(grid.shape)):
+            count, step = grid.shape[a], grid.strides[a]
             index = (at // step) % count
-            below = above = 0
-            for far in range(1, REACH + 1):
-                given[REACH - far] = values[at - far * step] if index >= far else math.nan
-                given[REACH + far] = values[at + far * step] if index + far < count else math.nan
-                below += 1 if math.isfinite(given[REACH - far]) else 0
-                above += 1 if math.isfinite(given[REACH + far]) else 0
+            below, above = _look_around(given, grid.values, at, index, count, step)
             beside = math.isfinite(given[REACH - 1]) or math.isfinite(given[REACH + 1])
             sides = (1 if below > 0 else 0) + (1 if above > 0 else 0) if beside else 0
             if sides == 0 or sides < most:
                 continue
-            value, other = 0.0, 0.0
             if sides == 1 and below + above == BEYOND:  # as most do
-                side = 0 if below > 0 else 1
-                for j in range(BEYOND):
-                    number = given[REACH - 1 - j if side == 0 else REACH + 1 + j]
-                    value += beyond[a, index, side, 0, j] * number
-                    other += beyond[a, index, side, 1, j] * number
+                value, other = _by_weights(given, grid.beyond[a, index], 0 if below > 0 else 1)
             else:
-                found, before = np.int64(0), np.int64(0)
-                for place in range(2 * REACH):
-                    far = place // 2 + 1
-                    side = -1 if place % 2 == 0 else 1
-                    room = before < BETWEEN if side < 0 else found - before < BETWEEN
-                    if sides == 1:  # polynomials of high degree are wild beyond their nodes
-                        room = found < BEYOND
-                    if room and math.isfinite(given[REACH + side * far]):
-                        xs[found], fs[found] = nodes[a, index + side * far], given[REACH + side * far]
-                        found += 1
-                        before += 1 if side < 0 else 0
-                if found < 3:
+                value, other = _by_polynomial(given, grid.nodes[a], index, sides, xs, fs)
+                if math.isnan(value):
                     continue
-                farthest = np.int64(0)
-                for j in range(found):
-                    if abs(xs[j] - nodes[a, index]) > abs(xs[farthest] - nodes[a, index]):
-                        farthest = j
-                value = _through(xs, fs, found, nodes[a, index], -1)
-                other = _through(xs, fs, found, nodes[a, index], farthest)
             inherited = 0.0
             if math.isfinite(given[REACH - 1]):
-                inherited = max(inherited, doubt_of[at - step])
+                inherited = max(inherited, grid.doubts[at - step])
             if math.isfinite(given[REACH + 1]):
-                inherited = max(inherited, doubt_of[at + step])
+                inherited = max(inherited, grid.doubts[at + step])
             many = many if sides == most else 0
             most, doubt = sides, abs(value - other) + inherited
             found_along[many], weights[many] = value, 1.0 / (doubt * doubt + LEAST)
@@ -173,11 +213,12 @@ def fill(values, shape, strides, nodes, beyond=None):
     beyond = weights_beyond(nodes, shape) if beyond is None else beyond
     seen, beside = np.zeros(len(values), bool), np.empty(len(holes), np.int64)
     bad = beside[: with_numbers_beside(values, holes, shape, strides, seen, beside)].copy()
+    grid = Holed(values, doubt, shape, strides, nodes, beyond)
     for _ in range(SWEEPS):
         if not len(bad):
             break
         numbers, doubts = np.empty((2, len(bad)))
-        fill_once(values, doubt, bad, shape, strides, nodes, beyond, numbers, doubts)
+        fill_once(grid, bad, numbers, doubts)
         put = np.isfinite(numbers)
         new, left = bad[put], bad[~put]
         values[new], doubt[new] = numbers[put], doubts[put]

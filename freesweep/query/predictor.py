@@ -93,7 +93,7 @@ class Predictor(NamedTuple):
 
     def middles(self, points, mid_radius) -> np.ndarray:
         """``(meridional stretch, stretch, twist rate)`` (n, 3) of physical tubes under pressure where they are that wide."""
-        from .physical_tube import middles
+        from .physical_along import middles
 
         found = np.empty((len(points), 3))
         for some, own, what, _ in self._kinds(points):
@@ -106,7 +106,7 @@ class Predictor(NamedTuple):
         """``(value, estimate, bound)``, (TOLD, n) each, of what :data:`.family.TOLD` names in its order, of physical tubes
         under pressure, from those of the radius in the middle.
         """
-        from .physical_tube import TOLD, worst_places
+        from .physical_along import TOLD, worst_places
 
         found, missed = np.empty((len(points), 3, TOLD)), np.empty((len(points), TOLD))
         beside = mid_radius[:, None] + np.stack([estimate, bound], axis=1)
@@ -130,7 +130,7 @@ class Predictor(NamedTuple):
         if not self.is_physical:
             slack.slack_families(points, states, mid_radius, self.shear, told)
             return told
-        from .physical_tube import slack_somewhere
+        from .physical_along import slack_somewhere
 
         for some, own, what, few in self._kinds(points):
             part = np.full(len(own), slack.UNKNOWN, np.uint8)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..description.given import numbers
+from ..report import quantity
 from .faults import QueryError, unknown
 
 MAX_POINTS = 100_000_000  # of one question: 16 GB of answers for ten variables
@@ -48,8 +49,9 @@ def read_question(given: dict, frame, needed) -> Question:
             faults.append(f"{name}: each design has its own; ask by design")
     for name in needed:
         if name not in given:
-            unit = f" [{PARAMETERS[name].units}]" if name in PARAMETERS else ""
-            faults.append(f"{name}: is missing; {_span(frame, name)}, so give a value{unit}")
+            unit = PARAMETERS[name].units if name in PARAMETERS else "1"
+            plain = "" if unit == "1" else f" (a plain number is in {unit})"
+            faults.append(f"{name}: is missing; {_span(frame, name)}, so give a value{plain}")
     arrays = {}
     for name in (name for name in given if name in frame.asked):
         array = _numbers(faults, name, given[name], frame)
@@ -62,7 +64,10 @@ def read_question(given: dict, frame, needed) -> Question:
 
 def _span(frame, name):
     values = frame.values[name]
-    return f"the atlas holds {values[0]:.6g} to {values[-1]:.6g}" if name in PARAMETERS else "the atlas holds several"
+    if name not in PARAMETERS:
+        return "the atlas holds several"
+    low, high = (quantity(values[k], PARAMETERS[name].units) for k in (0, -1))
+    return f"the atlas holds {low} to {high}"
 
 
 def _numbers(faults, name, value, frame):

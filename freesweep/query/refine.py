@@ -10,7 +10,7 @@ from ..description.local import UNITS
 from ..status import NOT_INTERPOLABLE, VALUED
 from . import reference
 from .answer import Inquiry
-from .exact import solve
+from .exact import Tubes, solve
 from .family import FAMILIES, FAMILY_OF
 from .faults import QueryError
 
@@ -58,8 +58,8 @@ def solved_states(reader, key, points, accuracy=None, thorough=True) -> dict:
     accuracy = frame.accuracy if accuracy is None else accuracy
     most = frame.ranges["pressure"][1] if limit else None
     kind = reference.LOADED if limit else FAMILIES[key].kind
-    of = {"thorough": thorough, "bodies": frame.bodies, "families": frame.families}
-    return solve(kind, points, frame.energy, accuracy, most, frame.model, **of)
+    tubes = Tubes(frame.energy, frame.model, frame.families, frame.bodies)
+    return solve(kind, points, tubes, accuracy, most, thorough=thorough)
 
 
 def told_of(reader, key, names, solved) -> dict:

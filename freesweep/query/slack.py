@@ -5,6 +5,7 @@ follows from the middle, where s^2 = G, and with it the tension of both families
 """
 
 import math
+from typing import NamedTuple
 
 from ..jit import entry_point, kernel
 from .reference import C10, EXTENSION, FIBERS, FORCE, PRESSURE, TORQUE, rubber_at
@@ -16,9 +17,26 @@ UNSURE = 2e-3  # of the load: nearer to zero than that, the stored state's own e
 UNKNOWN = 255
 
 
+class Tube(NamedTuple):
+    """Half the sum and difference of the fibers' tangents, the wall's area, and what the energy of the rubber takes; and the
+    loads.
+    """
+
+    h: float
+    d: float
+    area: float
+    gamma: float
+    rubber: tuple
+    shear: float
+    p: float
+    f: float
+    m: float
+
+
 @kernel
-def tensions(q, h, d, gamma, rubber, shear, area, p, f, m, s):
+def tensions(q, s, tube):
     """Multipliers of both families at squared stretch q and axial stretch s [pi r0^2 C10]."""
+    h, d, area, gamma, rubber, shear, p, f, m = tube
     G, _, _, psi, _, _ = kinematics(q, h, d, gamma)
     sheared = 1.0 + shear * psi * psi
     c, c2, c3 = rubber
@@ -51,7 +69,7 @@ def slack_families(points, states, mid_radius, shear, out):
         state = kinematics(q, h, d, gamma)
         w, _, _ = energy(q, state, rubber, shear)
         held = (p * q + f) * math.sqrt(state[0]) - area * w + m * state[3]
-        scale = p + abs(f)
+        scale, tube = p + abs(f), Tube(h, d, area, gamma, rubber, shear, p, f, m)
         least_alpha, least_beta = math.inf, math.inf
         for j in range(PLACES + 1):
             y = 1.0 + (y_middle - 1.0) * j / PLACES
@@ -59,7 +77,7 @@ def slack_families(points, states, mid_radius, shear, out):
             state = kinematics(q, h, d, gamma)
             w, _, _ = energy(q, state, rubber, shear)
             s = (p * q + f) * state[0] / (held + area * w - m * state[3])
-            alpha, beta = tensions(q, h, d, gamma, rubber, shear, area, p, f, m, s)
+            alpha, beta = tensions(q, s, tube)
             least_alpha, least_beta = min(least_alpha, alpha), min(least_beta, beta)
         out[k] = UNKNOWN
         if abs(least_alpha) > UNSURE * scale and abs(least_beta) > UNSURE * scale:

@@ -8,15 +8,17 @@ from typing import NamedTuple
 import numpy as np
 
 from ..atlas.schema import VARIABLES
+from ..description.families import A_POINT
 from ..status import INACCURATE, OK
 from . import reference
 from .axis import LABEL, WINDOW, bent, make_axis, part_of
 from .calibration import ranks
 from .cells import Cells
 from .family import SLACK_FLAGS, TOLD_FROM, family_of
-from .grid import GridPoints, GridStates
+from .fixed import Fixed
+from .grid import GridPoints, GridStates, Stored
 from .grid_axes import DEFAULTS
-from .locate import CLOSEST
+from .locate import CLOSEST, Columns, Nodes
 from .missing_nodes import cell_codes, fill, weights_beyond
 from .predictor import Predictor
 from .reference import COLUMNS
@@ -89,36 +91,42 @@ class Table:
         return [bent(axis, 0.0) if k < outer and axis.name in STRAIGHT else axis for k, axis in enumerate(whole)]
 
     def _place(self):
-        """What :func:`place` has to know of the columns of a question."""
+        """What :func:`.locate.place` has to know of the columns of a question."""
         frame, kind = self.frame, self.family.kind
         without = VARIABLES[next(iter(self.family.variables))].without
         self.known = [
             name for name in frame.asked
             if name in self.names or (name not in without and name != "design" and HELD_NAMES.get(name, kind) == kind)
         ]  # fmt: skip
-        self.kinds, self.bounds = np.empty((len(self.known), 3), np.int64), np.empty((len(self.known), 2))
+        kinds, bounds = np.empty((len(self.known), 3), np.int64), np.empty((len(self.known), 2))
         for j, name in enumerate(self.known):
             column = -1 if name == "design" else COLUMNS.index("held" if name in HELD_NAMES else name)
             axis = self.names.index(name) if name in self.names else -1
-            self.kinds[j] = column, axis, name in TURNED
-            self.bounds[j] = frame.ranges.get(name, (0.0, 0.0))
+            kinds[j] = column, axis, name in TURNED
+            bounds[j] = frame.ranges.get(name, (0.0, 0.0))
         designs = len(frame.values["design"]) if "design" in frame.values else 1
-        self.fixed = np.full((designs, len(COLUMNS)), np.nan)
+        fixed = np.full((designs, len(COLUMNS)), np.nan)
         for column, name in enumerate(COLUMNS):
             if name in frame.values:
                 array = frame.values[name]
-                self.fixed[:, column] = array if name in frame.by_design else array[0]
+                fixed[:, column] = array if name in frame.by_design else array[0]
             elif name in DEFAULTS:
-                self.fixed[:, column] = DEFAULTS[name]
-        self.fixed[:, reference.HELD] = 1.0 if kind == reference.LENGTH_HELD else 0.0
+                fixed[:, column] = DEFAULTS[name]
+        fixed[:, reference.HELD] = 1.0 if kind == reference.LENGTH_HELD else 0.0
         by_length = kind == reference.LENGTH_HELD and "held_length" in frame.values
-        columns = self.kinds[:, 0].tolist()
+        self.fixed = Fixed(fixed, float(frame.fiber_share), bool(by_length))
+        columns = kinds[:, 0].tolist()
         angles = [
             columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
         ]
+        self.columns = Columns(kinds, bounds, *angles)
         # of loose fibers one family holds the wall on either side of where both have one angle
-        nearest = 0.0 if frame.model.is_loose and kind == reference.LOADED else CLOSEST
-        self.options = (frame.fiber_share, by_length, self.family.status is not None, nearest, *angles)
+        self.nearest = 0.0 if frame.model.is_loose and kind == reference.LOADED else CLOSEST
+
+    @property
+    def nodes(self) -> Nodes:
+        """Its nodes, as :func:`.locate.place` takes them."""
+        return Nodes(self.knots, self.shape, self.coordinates, self.strides, self.codes, self.cells)
 
     @functools.cached_property
     def _nodes(self):
@@ -167,7 +175,7 @@ class Table:
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
             flags = self._taut_nodes()
             for name, variable in self.family.variables.items():
-                flags = flags | (self._grid(name) > 0.0) * np.uint8(SLACK_FLAGS[variable])
+                flags = flags | (self._grid(name) > A_POINT) * np.uint8(SLACK_FLAGS[variable])
             codes |= self._beyond_rest(flags) << 4
         return codes
 
@@ -303,10 +311,10 @@ class Table:
         good = self.is_number(self.codes[0])
         # a design of one angle has one family where others have two: what ends add to it says nothing of those beside it
         apart = not {"alpha", "beta"}.isdisjoint(self.names)
-        self.states().end_effects(variable, kind, terms, stored, errors, good, apart, effects, noise)
+        self.states().end_effects(variable, kind, Stored(stored, errors, good, terms), apart, effects, noise)
         return effects, noise
 
     def _points(self):
         names = ["held" if axis.name in HELD_NAMES else axis.name for axis in self.axes]
         columns = [COLUMNS.index(name) if name in COLUMNS else -1 for name in names]
-        return GridPoints(self.axes, columns, self.fixed, *self.options[:2])
+        return GridPoints(self.axes, columns, self.fixed)

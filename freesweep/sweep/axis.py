@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..atlas.schema import PARAMETERS
-from ..description.actuator import SHAPE
+from ..description.fields import SHAPE
 from ..description.units import quantity, shown
 from .faults import Faults
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..description.actuator import APART, LARGEST_ANGLE, SMALLEST_DIFFERENCE
 from ..description.families import FAMILIES, lines_of
+from ..description.impossible import APART, LARGEST_ANGLE, SMALLEST_DIFFERENCE
 from ..description.profiles import as_profile, together
 from ..scaling import problem_rows
 from ..status import DEGENERATE, INVALID, OK

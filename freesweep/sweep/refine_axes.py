@@ -15,7 +15,7 @@ from ..description.local import Bodies
 from ..description.tube_model import fiber_place
 from ..query import reference
 from ..query.axis import LABEL, make_axis
-from ..query.exact import solve
+from ..query.exact import Tubes, solve
 from ..query.family import LOOSE, family_of
 from ..query.predictor import Predictor
 from ..status import VALUED
@@ -85,9 +85,9 @@ def _failing(sweep, axes, name):
     _place_fibers(sweep, points)
     _place_fibers(sweep, around)
     bodies = Bodies(sweep.model, sweep.rules, sweep.families) if sweep.is_of_bodies else None
-    of = {"model": sweep.model, "bodies": bodies, "families": sweep.families}
-    exact = solve(reference.LOADED, points, sweep.energy, sweep.accuracy, **of)
-    nodes = solve(reference.LOADED, around, sweep.energy, sweep.accuracy, **of)
+    tubes = Tubes(sweep.energy, sweep.model, sweep.families, bodies)
+    exact = solve(reference.LOADED, points, tubes, sweep.accuracy)
+    nodes = solve(reference.LOADED, around, tubes, sweep.accuracy)
     predictor = Predictor(sweep.model, sweep.energy, bodies, sweep.families)
     variables = family_of("state", sweep.is_of_bodies).variables
     at, beside = (predictor.states(reference.LOADED, some) for some in (points, around))

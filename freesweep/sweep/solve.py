@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from ..description.profiles import SENSITIVITY, widened
+from ..description.families import beyond_a_point
+from ..description.splines import SENSITIVITY, widened
 from ..description.tube_model import THREADS as CODES
-from ..scaling import SLACK
+from ..scaling import OUTPUTS, SLACK
 from ..status import DEGENERATE, INVALID
 from .canonical_problem import PHYSICAL, THREADS
 from .records import LIMIT, state, unsolved, upward
@@ -71,13 +72,15 @@ def _solve_free(_, problems, __, first, pressures, followed, accuracy, lanes=Tru
     states = np.empty(len(pressures), state("free", is_physical(problems)))
     states["values"], states["bounds"] = walks.values, upward(widened(walks.values, walks.bounds, error))
     states["status"], states["slack"] = walks.status, walks.slack
+    if is_physical(problems):
+        shares = walks.values[:, len(OUTPUTS) : len(OUTPUTS) + len(SLACK)]
+        states["slack"] = beyond_a_point(walks.slack, *shares.T)
     found = np.empty(len(problems), LIMIT)
     found["limit"], found["bound"] = walks.limits[:, 0], widened(*walks.limits.T, error)
     return states, found
 
 
 def _solve_held(kind, problems, targets, first, pressures, followed, accuracy, lanes=True):
-    from ..solver.batch import OUTPUTS
     from ..solver.held.held_state import HELD_LENGTH, HELD_ROTATION
     from ..solver.hold_batch import hold_all
 
@@ -88,6 +91,6 @@ def _solve_held(kind, problems, targets, first, pressures, followed, accuracy, l
     states["value"], states["bound"] = found.loads, upward(widened(found.loads, found.load_bounds, error))
     states["status"], states["stable"] = found.status, found.stable
     if is_physical(problems):
-        slack, bound = (array[:, OUTPUTS : OUTPUTS + len(SLACK)] for array in found.states[:2])
+        slack, bound = (array[:, len(OUTPUTS) : len(OUTPUTS) + len(SLACK)] for array in found.states[:2])
         states["slack"], states["slack_bound"] = slack, upward(widened(slack, bound, error))
     return states, np.empty(0, LIMIT)

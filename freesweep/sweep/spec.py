@@ -39,8 +39,9 @@ from pathlib import Path
 import numpy as np
 
 from ..atlas.schema import HELD, PARAMETERS, SHAPE, YEOH
-from ..description.actuator import APART, ENERGIES, SMALLEST_DIFFERENCE
 from ..description.families import FAMILIES, is_none
+from ..description.fields import ENERGIES
+from ..description.impossible import APART, SMALLEST_DIFFERENCE
 from ..description.profiles import as_profile, together
 from ..description.tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, TubeModel, word_faults
 from ..description.units import shown

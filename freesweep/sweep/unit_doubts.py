@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..description.families import FAMILIES
-from ..description.unit_warnings import doubts
+from ..description.unit_warnings import design_doubts, load_doubts
 from .along import pairs_of
 
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "c10")
@@ -18,7 +18,7 @@ def doubts_of(sweep) -> list:
     thickness = wall / radius if {"wall", "radius"} <= set(columns) else np.divide.outer(wall, radius)
     loads = {name: _values(sweep, name) for name in LOAD}
     thick = sweep.model.is_thick
-    return doubts(**design, thickness=thickness, thick=thick) + doubts(**design, thickness=thickness, **loads)
+    return design_doubts(design, thick, thickness) + load_doubts(design, loads, thickness)
 
 
 def _values(sweep, name):

@@ -13,7 +13,7 @@ from ..description.tube_model import MODELS
 from ..holding import blocked_torque
 from ..plot import style
 from ..query import reference
-from ..query.exact import solve
+from ..query.exact import Tubes, solve
 from ..statics import inflate
 from .claims.claim import Found, holds
 from .drawing import Drawing, Numbers, key, panels
@@ -35,7 +35,7 @@ def _free(name, pressure, torque):
         "fiber_extension": 1.0, "c10": TABLE_1.c10, "c01": TABLE_1.c01, "pressure": pressure, "torque": torque,
     }  # fmt: skip
     points = np.array([list(point.values())])
-    found = solve(reference.LOADED, points, "full", 1e-6, model=MODELS["physical"], thorough=False)
+    found = solve(reference.LOADED, points, Tubes("full", MODELS["physical"]), 1e-6, thorough=False)
     return found["rotation"].item(), found["deformed_length"].item()
 
 

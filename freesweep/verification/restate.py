@@ -9,7 +9,7 @@ import numpy as np
 from ..atlas.schema import SHAPE, plain
 from ..description.tube_model import model_of
 from ..query import reference
-from ..query.exact import CELLS, solve
+from ..query.exact import CELLS, Tubes, solve
 from ..query.family import FAMILIES
 from ..scaling import ACCURACIES, ALONG
 from .cross_check import compare, ideal
@@ -23,7 +23,7 @@ FINER, SHARPER = 4, 1e-2  # times the cells, and the accuracy, of states of phys
 def faults(points) -> list:
     """Sentences on stored bounds and limit pressures that are not the solver's at ``points`` of an atlas."""
     data, found = points.data, []
-    energy, accuracy, model = data.attrs["energy"], float(data.attrs["accuracy"]), model_of(data.attrs)
+    accuracy, tubes = float(data.attrs["accuracy"]), Tubes(data.attrs["energy"], model_of(data.attrs), **points.of)
     highest = float(data["pressure"].max()) if "limit_pressure" in data else None
     for key, family in FAMILIES.items():
         # what is seen along a tube is as exact as its places are near, whatever accuracy is asked for
@@ -31,7 +31,7 @@ def faults(points) -> list:
         if key == "limit" or not names:
             continue
         most = highest if key == "state" else None
-        anew = solve(family.kind, columns(points, family.kind), energy, accuracy, most, model, **points.of)
+        anew = solve(family.kind, columns(points, family.kind), tubes, accuracy, most)
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
             found += _of_bounds(name, points, anew[of], anew[f"{of}_error"])
@@ -59,14 +59,12 @@ def finer(points):
         return [], ["no point of this atlas has a result"]
     data, found = points.data, []
     accuracy = max(SHARPER * float(data.attrs["accuracy"]), ACCURACIES[0])
+    tubes = Tubes(data.attrs["energy"], points.model, **points.of)
     for key, family in FAMILIES.items():
         names = [name for name in family.variables if name in data]
         if key == "limit" or not names:
             continue
-        anew = solve(
-            family.kind, columns(points, family.kind), data.attrs["energy"], accuracy, None, points.model,
-            FINER * CELLS, **points.of,
-        )  # fmt: skip
+        anew = solve(family.kind, columns(points, family.kind), tubes, accuracy, cells=FINER * CELLS)
         for name in names:
             of = {"blocked_force": "force", "blocked_torque": "torque"}.get(name, name.removeprefix("locked_"))
             found.append(compare(points, name, anew[of], anew[f"{of}_error"]))

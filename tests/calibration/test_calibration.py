@@ -1,5 +1,7 @@
 """Calibration: constants recovered from curves that the model made, with noise, within the uncertainty that is stated."""
 
+import html
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +20,7 @@ from freesweep import (
     inflate,
     read_measurements,
 )  # fmt: skip
+from freesweep.calibration.page import page
 
 TRUTH = {"c10": 0.15e6, "c01": 0.08e6, "fiber_extension": 1.006}
 PRESSURE = np.array([0.1, 0.2, 0.3, 0.5, 0.8, 1.1, 1.5, 2.0]) * 1e5
@@ -127,7 +130,8 @@ def test_c10_and_c01_are_hardly_separable_from_one_curve():
     found = calibrate(Measurement(tube(c10=0.4e6), PRESSURE, deformed_length=length), ["c10", "c01"])
     assert found.correlation[0, 1] < -0.95
     assert found.condition > 20
-    (note,) = found.notes
+    verdict, note = found.notes
+    assert verdict.startswith("the model fits: what is left looks like noise. Typically deformed_length is missed by ")
     assert note.startswith("c10 and c01 are hardly separable from these data (correlation -0.9")
     # what is told: a sum, far better known than either constant
     share = -found.covariance[0, 1] / found.covariance[1, 1]
@@ -145,7 +149,7 @@ def test_ideal_blocked_forces_do_not_depend_on_the_wall():
     found = calibrate(Measurement(ideal, PRESSURE, force=force), "c10")
     assert found.standard_errors.tolist() == [np.inf]
     assert found.values.tolist() == [0.15e6]  # stays where it was
-    assert "the data do not tell c10" in found.notes[0]
+    assert "the data do not tell c10" in found.notes[1]
 
 
 def test_states_that_the_model_does_not_have_are_left_out():
@@ -299,3 +303,30 @@ def test_a_bench_file_is_refused_for_what_is_wrong_with_it(text, says, never, tm
         )
     assert any(says in fault for fault in caught.value.faults)
     assert never not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("curves", "given", "begins", "ends"),
+    [
+        (1, False, "nothing speaks against the model, but too few values tell what of the misfit is noise", "range"),
+        (1, True, "the model fits: what is left looks like noise", "range (given as 3 %)"),
+        (8, False, "the model fits: what is left looks like noise", "range (replicates scatter by"),
+    ],
+)
+def test_a_verdict_tells_the_size_of_the_misfit_beside_what_tells_the_noise(curves, given, begins, ends):
+    pressure = np.tile([0.5e5, 1e5, 1.5e5], curves)
+    length = inflate(tube(), pressure, x=0.0)["deformed_length"].values
+    length = length + 0.03 * np.ptp(length) * np.random.default_rng(4).standard_normal(len(pressure))
+    sigma = {"deformed_length": 0.03 * np.ptp(length)} if given else {}
+    found = calibrate(Measurement(tube(c10=0.4e6), pressure, deformed_length=length, sigma=sigma), "c10")
+    assert found.fits
+    missed = np.sqrt(np.mean((found.predicted[0][:, 0] - length) ** 2)) / np.ptp(length)
+    assert 0.01 < missed < 0.04
+    verdict = found.notes[0]
+    assert verdict.startswith(f"{begins}. Typically deformed_length is missed by {100 * missed:.2g} % of its {ends}")
+    assert html_verdict(page(found)) == verdict[0].upper() + verdict[1:] + "."
+
+
+def html_verdict(text):
+    """The words in bold of a page."""
+    return html.unescape(re.search("<strong>(.*?)</strong>", text).group(1))

@@ -62,8 +62,8 @@ def test_the_torque_that_holds_another_rotation_under_a_force(capsys):
     assert run(*MIXED, *ROTATION, "--pressure", "30 kPa", "--at", "-4 deg", "--force", "1.5 N") == DONE
     heads, [row] = columns(capsys.readouterr().out)
     expected = blocked_torque(tube(20, -50), 3e4, -4.0, 1.5)
-    assert heads[0] == "torque [N m]"
-    assert float(row[0]) == pytest.approx(expected["torque"].item(), rel=1e-6)
+    assert heads[0] == "torque [mN m]"
+    assert float(row[0]) == pytest.approx(1e3 * expected["torque"].item(), rel=1e-6)
     assert float(row[heads.index("deformed length [mm]")]) == pytest.approx(
         expected["deformed_length"].item() * 1e3, rel=1e-6
     )

@@ -9,7 +9,8 @@ from held_tubes import by_collocation
 
 from freesweep import Actuator, ActuatorError, MooneyRivlin, blocked_force, blocked_torque, closed_form, inflate, lock
 from freesweep.atlas.schema import PROFILES
-from freesweep.description.profiles import SENSITIVITY, as_profile, widened
+from freesweep.description.profiles import as_profile
+from freesweep.description.splines import SENSITIVITY, widened
 from freesweep.statics import read_course
 from freesweep.status import OK
 

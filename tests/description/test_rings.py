@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from freesweep import Actuator, ActuatorError, MooneyRivlin, Profile, inflate
-from freesweep.description.profiles import SENSITIVITY
+from freesweep.description.splines import SENSITIVITY
 from freesweep.status import OK
 
 R = 5e-3

@@ -8,10 +8,11 @@ import xarray as xr
 from commands import run
 from grids import swept
 
-from freesweep import Actuator, MooneyRivlin, inflate
+from freesweep import Actuator, MooneyRivlin, inflate, lock
 from freesweep.closed_form import region
-from freesweep.description.unit_warnings import doubts
+from freesweep.description.unit_warnings import design_doubts, load_doubts
 from freesweep.statics import thin_wall_attributes
+from freesweep.status import NOT_CONVERGED
 from freesweep.thick_wall import grid_attributes, softer
 from freesweep.verification.verify import faults
 
@@ -37,18 +38,33 @@ USUAL = {"alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1
         ({"pressure": 1e5, "deformed_length": np.array([0.12, 0.2])}, []),
         ({"alpha": 0.52, "beta": -0.52}, ["no fiber angle exceeds 0.52 degree, as if they were radians"]),
         ({"alpha": 0.0, "beta": 30.0}, []),
-        ({"c10": 0.11}, ["no rubber has a c10 of 0.11 Pa"]),
+        ({"c10": 0.11}, ['no rubber has a c10 of 0.11 Pa ("0.11 MPa"?); plain numbers']),
+        ({"c10": 5.0}, ['no rubber has a c10 of 5 Pa ("5 psi" or "5 kPa" or "5 MPa"?); plain numbers']),
+        ({"c10": 0.11e12}, ["no rubber has a c10 of 1.1e+11 Pa; plain numbers"]),
         ({"pressure": 0.1}, ["no pressure exceeds 0.1 Pa"]),
         ({"pressure": 15.0}, ["no pressure exceeds 15 Pa"]),
         ({"pressure": [0.0, 15.0, 1e5]}, []),
         ({"pressure": 0.0}, []),
-        ({"pressure": 1e5, "c10": 11.0}, ["the pressure reaches 100000 Pa, far beyond a c10 of 11 Pa"]),
+        ({"pressure": 1e5, "c10": 11.0}, ["the pressure reaches 100000 Pa, 9e+03 times a c10 of 11 Pa"]),
+        (
+            {"pressure": 1e5, "c10": 0.17},
+            [
+                'the pressure reaches 100000 Pa, 6e+05 times a c10 of 0.17 Pa ("0.17 MPa"?); so far beyond its rubber a tube'
+            ],
+        ),
+        (
+            {"pressure": 1e10},
+            ["the pressure reaches 1e+10 Pa, 9e+04 times a c10 of 110000 Pa; so far beyond its rubber"],
+        ),
+        ({"pressure": 1e10, "force": 1.0}, ["the pressure reaches 1e+10 Pa, 9e+04 times a c10 of 110000 Pa; plain"]),
         ({"pressure": 1e5, "torque": 500.0}, ["a torque of 500 N m is far beyond"]),
         ({"pressure": 1e5, "force": [0.0, 10.0]}, []),
     ],
 )
 def test_what_looks_like_a_slip_of_units_is_told(given, says):
-    found = doubts(**USUAL | given)
+    loads = {name: given[name] for name in ("pressure", "force", "torque", "deformed_length") if name in given}
+    design = USUAL | {name: given[name] for name in given.keys() & USUAL.keys()}
+    found = load_doubts(design, loads) if loads else design_doubts(design, given.get("thick", False))
     assert (
         [sentence.startswith(start) for sentence, start in zip(found, says)]
         == [True] * len(says)
@@ -170,3 +186,16 @@ def test_the_note_of_an_atlas_is_that_of_its_worst_tube(profiles):
     ratios = np.stack([softer(alpha, beta, 5e-3, 1e-3, fibers, "full") for fibers in (5e-3, 5.5e-3)])
     worst = ratios.ravel()[np.argmax(np.abs(np.log(ratios)))]
     assert grid_attributes(data)["thin_wall_ratio"] == pytest.approx(worst, rel=1e-12)
+
+
+@pytest.mark.filterwarnings("ignore:no rubber", "ignore:the pressure reaches")
+def test_where_the_rubber_is_nothing_the_shape_is_the_locked_one_or_the_status_says_so():
+    """What a tube differs by from its locked shape falls as c10 over pressure, until digits run out."""
+    tube = {"alpha": 30, "beta": -30, "length": 0.192, "radius": 4.76e-3, "wall": 1.59e-3}
+    soft = Actuator(**tube, material=MooneyRivlin(1.0, 0.5))
+    locked = lock(soft, x=0.0)
+    near = inflate(soft, [1e3, 1e4], x=0.0)
+    apart = (near.deformed_length / locked.deformed_length - 1.0) * near.pressure
+    assert apart.values == pytest.approx([0.5722, 0.5722], abs=1e-3)
+    with pytest.warns(UserWarning, match="no state was found: where the pressure is 1e4 times the rubber"):
+        assert int(inflate(soft, 1e9, x=0.0).status) == NOT_CONVERGED

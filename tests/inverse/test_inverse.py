@@ -15,11 +15,16 @@ from grids import CHILD_ENVIRONMENT, make
 import freesweep as fs
 from freesweep.cli import main
 from freesweep.inverse import look, wish_file
+from freesweep.inverse.designing import find
 from freesweep.inverse.least import beaten
 from freesweep.inverse.predict import State
+from freesweep.inverse.report import csv as candidates_csv
+from freesweep.inverse.report import table
 from freesweep.inverse.shown import shown
 from freesweep.inverse.singles import solve_single
 from freesweep.inverse.wishes import Wish
+from freesweep.plot.candidates import draw
+from freesweep.report import shown_in
 from freesweep.sweep.spec import parse
 from freesweep.thesis.prototypes import found_rotator
 
@@ -127,7 +132,10 @@ def test_a_straight_muscle_that_shall_rotate_says_why_not():
     wish = [fs.Goal("rotation", 90, pressure=1e5, tolerance=1)]
     found = fs.design(tube(beta=-30.0), {"alpha": (10, 80), "beta": "-alpha"}, wish)
     assert not found["met"].values.any()
-    assert found.attrs["summary"].endswith("instead of 90 degree: nothing that is free changes it")
+    assert found.attrs["summary"].endswith("instead of 90 deg: nothing that is free changes it")
+    asked = shown_in([("15 psi", "Pa"), ("1 rad", "degree")])
+    result, _ = find(tube(beta=-30.0), {"alpha": (10, 80), "beta": "-alpha"}, wish, shown=asked)
+    assert "has rotation at pressure 14.5038 psi of 0 rad instead of 1.5708 rad" in result.attrs["summary"]
 
 
 def test_lists_that_were_meant_as_ranges_are_told_to_be_none():
@@ -163,7 +171,7 @@ def test_goals_that_fight_are_named():
         (
             fs.Goal("force", 500, pressure=1e5, tolerance=1),
             [fs.Limit("outer_radius", at_most=8e-3, pressure=1e5)],
-            "N instead of 500 N: it fights with outer_radius at pressure 100000 Pa",
+            "N instead of 500 N: it fights with outer_radius at pressure 100 kPa",
         ),
         (
             fs.Goal("stroke", 0.1, pressure=1e5),
@@ -171,7 +179,7 @@ def test_goals_that_fight_are_named():
                 fs.Limit("deformed_length", at_most=0.1, pressure=1e5),
                 fs.Limit("deformed_length", at_least=0.2, pressure=1e5),
             ],
-            "m instead of at most 0.1 m: it fights with deformed_length at pressure 100000 Pa, at least 0.2 m",
+            "mm instead of at most 100 mm: it fights with deformed_length at pressure 100 kPa, at least 200 mm",
         ),
     ],
 )
@@ -438,10 +446,11 @@ def test_what_a_bound_or_a_limit_costs_is_said():
     muscle = tube(beta=-30.0)
     least = fs.design(muscle, bounds("radius"), fs.Goal("force", at_least=60, pressure=2e5), minimize="radius", count=1)
     saved = least["radius"].item() / 120 * 6
-    assert least.attrs["prices"].startswith("least radius: 6 N less of force at pressure 200000 Pa would save")
-    assert float(least.attrs["prices"].split()[-2]) == pytest.approx(saved, rel=0.05)
+    assert least.attrs["prices"].startswith("least radius: 6 N less of force at pressure 200 kPa would save")
+    assert least.attrs["prices"].endswith(" mm")
+    assert float(least.attrs["prices"].split()[-2]) == pytest.approx(1e3 * saved, rel=0.05)
     short = fs.design(muscle, {"radius": (3e-3, 4e-3)}, fs.Goal("force", at_least=60, pressure=2e5), count=1)
-    assert "0.0001 m more of radius would buy" in short.attrs["summary"]
+    assert "0.1 mm more of radius would buy" in short.attrs["summary"]
 
 
 def test_a_limit_is_a_range():
@@ -493,6 +502,25 @@ def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, cap
         assert float(line.split()[3]) == pytest.approx(1e3 * float(one["radius [m]"]), rel=1e-5)
         assert line.split()[-1] == ("-", "alpha", "beta")[int(one["slack_fiber"])]
     assert picture.stat().st_size > 20_000
+
+
+def test_a_rubber_that_was_chosen_has_its_name_in_table_file_and_picture():
+    own = fs.NeoHookean(1e5)
+    goals = [fs.Goal("stroke", at_least=0.1, pressure=1e5)]
+    free = {"alpha": (20, 40), "beta": "-alpha", "material": ["dragon-skin-30", fs.materials["natural-latex"], own]}
+    result, tubes = find(tube(30.0, -30.0), free, goals, count=6)
+    names = {"dragon-skin-30": "dragon-skin-30", "natural-latex": "natural-latex", repr(own): own}
+    chosen = result["material"].values.tolist()
+    assert set(chosen) == {*names}
+    assert [fs.materials.get(name, own) for name in chosen] == [one.material for one in tubes]
+    heading, *rows = table(result).splitlines()
+    assert "  material  " in heading
+    assert all(name in row for name, row in zip(chosen, rows))
+    header, *rows = csv.reader(candidates_csv(result).splitlines())
+    assert [row[header.index("material")] for row in rows] == chosen
+    figure = draw(result, *shown(result, tubes, goals))
+    said = [text.get_text() for text in figure.axes[-1].texts]
+    assert [text.split(", ", 1)[1] for text in said] == chosen[:5]
 
 
 def test_shapes_are_shown_in_the_state_that_is_asked_for():

@@ -323,6 +323,12 @@ def test_one_point_on_the_screen(made, capsys):
     value = made.query(**POINT, variables="deformed_length")["deformed_length"].item()
     assert f"{1e3 * value:.7g}"[:6] in out
     assert "stated error" in out
+    flags = dict(line.split(maxsplit=1) for line in out.splitlines() if line.split()[0] in ("stable", "slack_fiber"))
+    assert flags == {"stable": "stable", "slack_fiber": "none"}
+    slack = ("query", str(made.path), "--alpha", "10", "--beta", "-20", "--length", "0.1 m", "--pressure")
+    assert run(*slack, "100 Pa", "--variable", "rotation", "--refine") == DONE
+    (line,) = (line for line in capsys.readouterr().out.splitlines() if "slack_fiber" in line)
+    assert line.split() == ["slack_fiber", "alpha", "family"]
 
 
 def test_a_csv_of_points_in_their_own_units(made, tmp_path, capsys):
@@ -361,7 +367,9 @@ def test_faults_of_a_question_are_listed(made, tmp_path, capsys):
     )
     assert "--alpha: expects an angle" in text
     assert "there is no file" in text
-    assert "pressure: is missing" in refused(capsys, "query", name, "--alpha", "24deg", "--beta", "-43deg")
+    text = refused(capsys, "query", name, "--alpha", "24deg", "--beta", "-43deg")
+    assert "pressure: is missing; the atlas holds 0 kPa to " in text
+    assert "so give a value (a plain number is in Pa)" in text
     bad = tmp_path / "bad.csv"
     bad.write_text("alpha [deg], pressur\n24\n25, 3\n")
     text = refused(capsys, "query", name, "--points", str(bad))

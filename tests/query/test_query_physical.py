@@ -9,7 +9,7 @@ from freesweep.closed_form import uniform_state
 from freesweep.description.tube_model import MODELS, TubeModel
 from freesweep.query import reference
 from freesweep.query.cells import DOUBT
-from freesweep.query.exact import solve
+from freesweep.query.exact import Tubes, solve
 from freesweep.query.family import TOLD
 from freesweep.query.missing_nodes import fill
 from freesweep.query.predictor import Predictor
@@ -70,7 +70,7 @@ def test_the_force_that_holds_a_thick_tube_s_length_stretches_it_to_that_length(
 def test_far_from_its_ends_a_long_physical_tube_is_uniform(model):
     here = points(24, length=0.8)
     uniform = Predictor(model, "full").states(reference.LOADED, here)
-    solved = solve(reference.LOADED, here, "full", 1e-6, model=model)
+    solved = solve(reference.LOADED, here, Tubes("full", model), 1e-6)
     stretch = solved["mid_radius"] / here[:, reference.FIBERS]
     known = np.isfinite(stretch)
     assert known.mean() > 0.9
@@ -83,7 +83,7 @@ def test_far_from_its_ends_a_long_physical_tube_is_uniform(model):
 
 def test_which_threads_are_slack_follows_from_the_stretch_in_the_middle():
     here = points(60)
-    solved = solve(reference.LOADED, here, "full", 1e-6, model=PHYSICAL)
+    solved = solve(reference.LOADED, here, Tubes("full", PHYSICAL), 1e-6)
     known = np.flatnonzero(np.isfinite(solved["mid_radius"]))
     predictor = Predictor(PHYSICAL, "full")
     states = predictor.states(reference.LOADED, here[known])
@@ -199,7 +199,7 @@ def test_vectors_hold_physical_tubes_as_their_own_way_does():
     """Prototype B's: the source's closed form is eight times what loose threads give."""
     here = points(4, alpha=0.0, beta=30.0, pressure=3e4)
     found, own = (
-        solve(reference.ROTATION_HELD, here, "full", 1e-6, model=PHYSICAL, thorough=thorough)
+        solve(reference.ROTATION_HELD, here, Tubes("full", PHYSICAL), 1e-6, thorough=thorough)
         for thorough in (False, True)
     )
     assert set(found["status"]) == {status.OK}
@@ -261,7 +261,7 @@ def test_the_middle_tells_what_is_worst_along_the_tube(model):
     here[:, reference.FIBERS] = here[:, reference.RADIUS]
     if model.is_loose:  # two families of one angle share what it bears
         here[:5, reference.BETA] = here[:5, reference.ALPHA]
-    solved = solve(reference.LOADED, here, "full", 1e-6, model=model)
+    solved = solve(reference.LOADED, here, Tubes("full", model), 1e-6)
     known = np.isfinite(solved["mid_radius"])
     nothing = np.zeros(known.sum())
     told, missed, _ = Predictor(model, "full").worst_places(here[known], solved["mid_radius"][known], nothing, nothing)
@@ -279,7 +279,7 @@ def test_a_tension_may_be_least_just_before_the_middle():
         here[:, getattr(reference, column)] = value
     here[:, reference.RADIUS] = 7.1863e-3
     here[:, reference.FIBERS] = 7.1863e-3 + 1.59e-3
-    solved = solve(reference.LOADED, here, "full", 1e-8, model=model)
+    solved = solve(reference.LOADED, here, Tubes("full", model), 1e-8)
     sizes = {"alpha": 18.2487, "beta": 69.2368, "length": 0.144391, "radius": 7.1863e-3, "wall": 1.59e-3}
     tube = Actuator(**sizes, material=MooneyRivlin(0.17e6, 0.08e6), model="physical")
     along = inflate(tube, 133680.8, x=np.linspace(0.0, 0.072, 2001))["fiber_tension_alpha"].values.ravel()

@@ -125,7 +125,7 @@ def test_what_a_coarse_mesh_does_not_tell_is_looked_for_on_a_finer_one(design, s
     assert (np.diff(steps) < 0).all()
 
 
-@pytest.mark.filterwarnings("ignore:a defect of the solver")
+@pytest.mark.filterwarnings("ignore:no state was found")
 def test_above_the_critical_pressure_it_is_never_said_that_there_is_none():
     """SciPy's collocation follows this one to 2.0 times, where it is .6595 of its length, with a neck of .067 radii."""
     actuator = slender(6.2853, -8.3234, 43.719, 0.3507, 0.478, "full")

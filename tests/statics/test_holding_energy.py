@@ -13,7 +13,7 @@ from freesweep import (
 from freesweep.status import COMPRESSED, OK
 
 
-@pytest.mark.filterwarnings("ignore:a defect of the solver")
+@pytest.mark.filterwarnings("ignore:no state was found")
 @pytest.mark.parametrize("count", [20, pytest.param(1000, marks=pytest.mark.long)])
 def test_held_energy_changes_by_the_work_of_the_multiplier(count):
     """E = P V - W + (other load) x (its displacement) at a held length: dE = -F dl; at a held rotation dE = -M d(delta)."""

@@ -105,3 +105,49 @@ def test_where_there_is_no_state_there_is_no_number():
     state = fs.inflate(fs.Actuator(alpha=30, beta=-30, length=0.1, **SECTION), 1e4, force=-1000.0)
     assert int(state.status) != 0
     assert all(np.isnan(float(state[name])) for name in NAMES)
+
+
+POINTS = {  # of which kernels say that a family pulls nowhere, at some place, and how they are asked
+    "of loose threads, beside straight ones": ({"alpha": 55, "beta": 0, "length": 0.425, "fibers": "loose"}, "inflate"),
+    "the same, of physical tubes": ({"alpha": 0, "beta": -10, "length": 0.234, "model": "physical"}, "inflate"),
+    "one that varies": ({"alpha": [(0, 25), (1, 35)], "beta": 0, "length": 0.2, "fibers": "loose"}, "inflate"),
+    "a locked one": ({"alpha": [(0, 25), (1, 35)], "beta": 0, "length": 0.2, "fibers": "loose"}, "lock"),
+    "a held one": ({"alpha": 0, "beta": -10, "length": 0.234, "model": "physical"}, "blocked_force"),
+    "what ends within a micrometre": ({"alpha": 5, "beta": 80, "length": 0.161, "wall_model": "thick"}, "inflate"),
+}
+ASKED = {
+    "inflate": lambda tube: fs.inflate(tube, [0.0, 1e-3, 10.0, 1e4, 1e5], x=0.0),
+    "lock": lambda tube: fs.lock(tube, x=0.0).expand_dims("pressure"),
+    "blocked_force": lambda tube: fs.blocked_force(tube, [1e4, 1e5], 0.97 * tube.length, x=0.0),
+}
+
+
+def told(states):
+    """Flags of both families, and their shares, (2, n) each."""
+    shares = np.array([states.slack_alpha.values, states.slack_beta.values])
+    return np.array([states.slack_fiber.values & 1, states.slack_fiber.values & 2]) > 0, shares
+
+
+@pytest.mark.parametrize(("design", "asked"), POINTS.values(), ids=POINTS)
+def test_a_family_is_called_slack_where_it_is_so_over_more_than_a_point(design, asked):
+    section = {"radius": 5e-3, "wall": 0.8e-3, "material": fs.MooneyRivlin(0.11e6, 0.06e6)}
+    flags, shares = told(ASKED[asked](fs.Actuator(**design, **section)))
+    np.testing.assert_array_equal(flags, shares > 1e-6)
+
+
+def test_an_atlas_its_exact_answers_and_wishes_call_slack_what_single_tubes_do(tmp_path):
+    fixed = {"length": 0.234, "radius": 5e-3, "wall": 0.8e-3, "model": "physical", "c10": 0.11e6, "c01": 0.06e6}
+    grid = {"alpha": [0.0, 10.0], "beta": [-10.0, 40.0], "pressure": [1e4, 1e5]}
+    atlas = fs.sweep(**grid, **fixed, out=tmp_path / "points.nc")
+    flags, shares = told(atlas.data)
+    np.testing.assert_array_equal(flags, shares > 1e-6)
+    assert flags.any()
+    assert not flags.all()
+    solved = atlas.query(alpha=0.0, beta=-12.5, pressure=[1e4, 1e5], refine=True)
+    flags, shares = told(solved)
+    np.testing.assert_array_equal(flags, shares > 1e-6)
+    muscle = fs.Actuator(alpha=0, beta=-12, length=0.234, radius=5e-3, wall=0.8e-3, model="physical",
+                         material=fs.MooneyRivlin(0.11e6, 0.06e6))  # fmt: skip
+    for goal in (fs.Goal("rotation", 30, pressure=1e5), fs.Goal("force", 0.0, pressure=1e5, deformed_length=0.23)):
+        found = fs.design(muscle, {"beta": (-15, -5)}, [goal], count=1)
+        assert found.slack_fiber.values.tolist() == [0]

@@ -9,7 +9,7 @@ import freesweep as fs
 from freesweep import interpret
 from freesweep.cli import parser
 from freesweep.cli.single import tube_of
-from freesweep.description import courses, profiles
+from freesweep.description import courses, splines
 from freesweep.description.local import Bodies
 from freesweep.description.profiles import as_profile
 from freesweep.description.revolution import resolved, wall_volume_inside
@@ -221,7 +221,7 @@ def test_words_and_smooth_knots_are_read_as_a_single_actuator_reads_them():
         alpha="geodesic 10 deg", beta="geodesic -45 deg", wall="constant volume 1 mm", length=0.06, radius=knots,
         material=fs.NeoHookean(1e5),
     )  # fmt: skip
-    course = profiles.follow(single, 1e-6, courses.SHARE * 1e-6 / profiles.SENSITIVITY)[0][0]
+    course = splines.follow(single, 1e-6, courses.SHARE * 1e-6 / splines.SENSITIVITY)[0][0]
     assert tubes[0][0][0].shape == course.shape
     assert np.allclose(tubes[0][0][0], course, rtol=1e-14, atol=1e-15)
 

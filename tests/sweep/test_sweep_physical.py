@@ -11,7 +11,7 @@ from shards import same_bits
 from freesweep import Actuator, Atlas, MooneyRivlin, blocked_force, blocked_torque, inflate, status
 from freesweep.atlas.content import dimensions, faults
 from freesweep.description.tube_model import MODELS, attributes_of, model_of
-from freesweep.query.exact import solve
+from freesweep.query.exact import Tubes, solve
 from freesweep.query.reference import COLUMNS, LOADED
 from freesweep.scaling import ALONG, OUTPUTS
 from freesweep.sweep import run
@@ -169,7 +169,7 @@ def test_exact_answers_of_thick_and_loose_tubes_are_those_of_single_ones():
         alpha=25, beta=-45, length=0.1, radius=5e-3, wall=1.5e-3, material=MooneyRivlin(0.2e6, 0.1e6), model="physical"
     )
     point = tube.design() | {"force": 0.5, "torque": 0.0, "pressure": 3e4, "held": 1.0}
-    found = solve(LOADED, np.array([[point[name] for name in COLUMNS]]), "full", 1e-6, model=MODELS["physical"])
+    found = solve(LOADED, np.array([[point[name] for name in COLUMNS]]), Tubes("full", MODELS["physical"]), 1e-6)
     alone = inflate(tube, 3e4, force=0.5, x=0.0)
     for name in ("deformed_length", "rotation", "strain_energy"):
         both = float(alone[f"{name}_error"]) + found[f"{name}_error"][0]
