@@ -134,26 +134,14 @@ def _hold(rows, targets, kind, pressures, course, accuracy, stations):
 
 def _hold_buckled(rows, targets, kind, pressures, course, accuracy, stations):
     """The same of the states beside the straight cylinder."""
-    from .interpret import run
-    from .solver.along.profile import FIELDS
-    from .solver.held.held_states import hold_many
+    from .solver.by_waves.states import find_buckled
     from .solver.hold_batch import HOLDER
-    from .solver.problem import FORCE, wall_columns
-    from .solver.status import PENDING
 
-    count = len(pressures)
-    values, bounds = np.full((2, count, HOLDER + 1), np.nan)
-    status, least = np.full(count, PENDING), np.full((count, 2), np.nan)
-    stable, slack, paths = np.zeros((3, count), np.int64)
-    fields = np.full((count, FIELDS, len(stations)), np.nan)
-    run(
-        hold_many, count, True, rows[:1], wall_columns(rows), np.array([0, count]), pressures, rows[:, FORCE].copy(),
-        targets, kind, True, *course, accuracy, values, bounds, status, stable, slack, paths, least, stations, fields,
-    )  # fmt: skip
+    found = find_buckled(rows, pressures, targets, accuracy, stations)
     return {
-        "status": status, "stable": stable, "slack_fiber": slack, "values": values[:, :HOLDER],
-        "bounds": bounds[:, :HOLDER], "fields": fields, "loads": values[:, HOLDER], "load_bounds": bounds[:, HOLDER],
-        "least_buckled_pressure": least,
+        "status": found.status, "stable": found.stable, "slack_fiber": found.slack, "values": found.values[:, :HOLDER],
+        "bounds": found.bounds[:, :HOLDER], "fields": found.profiles, "loads": found.values[:, HOLDER],
+        "load_bounds": found.bounds[:, HOLDER], "least_buckled_pressure": found.least,
     }  # fmt: skip
 
 
