@@ -75,7 +75,7 @@ def _solve(tube, held, accuracy):
     from .solver.status import OK
 
     r, c10, of_length = tube.fiber_surface, tube.material.c10, held.name == "deformed_length"
-    whole, (course, error) = tube.varies or held.buckled, _course(tube, held.buckled, accuracy)
+    whole, (course, error) = tube.varies or held.buckled, _course(tube, accuracy)
     every = with_own(tube, held.stations)
     unique, index = near_stations(tube, every, whole)
     pressures, others, targets = (array.ravel() for array in held.states)
@@ -96,14 +96,11 @@ def _solve(tube, held, accuracy):
     )
 
 
-def _course(tube, buckled, accuracy):
+def _course(tube, accuracy):
     """``(course, its error)``, as the kernels take them."""
     from .solver.batch import uniform
-    from .solver.halves import in_two_halves
 
-    if tube.varies:
-        return read_course(tube, accuracy)
-    return in_two_halves(_problems(tube, "force", np.zeros(1))[0], HALF_CELLS) if buckled else uniform(HALF_CELLS), 0.0
+    return read_course(tube, accuracy) if tube.varies else (uniform(HALF_CELLS), 0.0)
 
 
 def _problems(tube, load, others):

@@ -12,6 +12,7 @@ AMPLITUDES = 3e-3, 1e-3, 3e-4, 1e-4, 3e-5  # of the smaller wave, tried in turn:
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP, MOST_STEPS = 0.05, 0.5, 1e-6, 2000
 SHORTER, LONGER = 0.4, 1.6
 EVEN, BENT = 0.99, 0.9  # cosines of the angle by which a branch turns on a step that may be longer next, or is too long
+FIRST_PART, SMALLEST_PART = 0.05, 1e-5  # of fiber extension and rotation, by which they are raised at once
 ASIDE = 0.3  # of a step: how far from its tangent it may end
 FAINTEST = 1e-6  # a wave that is none: here the branch comes back to the straight tube
 ALONG, FINEST = 4, 256  # pieces in which a wave is summed along the branch, at first and at most
@@ -31,30 +32,59 @@ class Point(NamedTuple):
 
 
 def critical(asked):
-    """``(center, pressure, torque)`` of the uniform tube of the rotation held that a wave as long as the tube makes
-    unstable; a pressure that is not positive: never.
+    """``(center, pressure)`` of the uniform tube of the rotation held that a wave as long as the tube makes unstable; a
+    pressure that is not positive: never.
     """
     problem = asked.problem
     center = problem[GAMMA] / np.sqrt(1.0 + 2.0 * asked.turn / (problem[H] * problem[LENGTH]))
     told = asked.ask(np.array([[p, center, center, np.nan] for p in (1.0, 2.0)]), 1)
     lost = told[:, waves.BEND] + told[:, waves.STIFFNESS] * (2.0 * np.pi / problem[LENGTH]) ** 2  # linear in the pressure
-    pressure = 1.0 - lost[0] / (lost[1] - lost[0])
-    torque = told[0, waves.TORQUE] + (pressure - 1.0) * (told[1, waves.TORQUE] - told[0, waves.TORQUE])
-    return center, pressure, torque
+    return center, 1.0 - lost[0] / (lost[1] - lost[0])
 
 
-def begin(asked, center, pressure):
-    """The first :class:`Point`: where the smaller wave is next to none; None where that is not met."""
-    off, small = abs(center - 1.0), 1 if center >= 1.0 else 0
-    for amplitude in AMPLITUDES:
-        numbers = np.array([np.log(amplitude), np.log(amplitude), center, np.log(pressure)])
-        numbers[1 - small] = np.log(amplitude + 2.0 * off)
-        along = np.zeros(4)
-        along[small] = 1.0
-        solved = asked.solve(Pair(numbers, np.zeros(2, bool), np.ones(2)), along, numbers[small], ALONG)
+def begin(asked, center):
+    """The first :class:`Point`: where the smaller wave is next to none; None where that is not met.
+
+    Without fiber extension, and with no rotation, both waves are next to none where the straight cylinder is lost. From
+    there both are raised, while the smaller wave stays: to where the center lies elsewhere.
+    """
+    small = 1 if center >= 1.0 else 0
+    along = np.zeros(4)
+    along[small] = 1.0
+    straight = asked.part(0.0)
+    _, pressure = critical(straight)
+    for amplitude in AMPLITUDES if pressure > 0.0 else ():
+        number = np.log(amplitude)
+        pair = Pair(np.array([number, number, 1.0, np.log(pressure)]), np.zeros(2, bool), np.ones(2))
+        solved = straight.solve(pair, along, number, ALONG)
+        if solved is not None and center != 1.0:
+            solved = raised(asked, solved[0], along, number)
         if solved is not None:
             return Point(solved[0], toward(solved[0], along))
     return None
+
+
+def raised(asked, look, along, number):
+    """What :meth:`.waves.Waves.solve` finds of the whole fiber extension and rotation, from a look at the tube without."""
+    share, step, before, solved = 0.0, FIRST_PART, None, None
+    while share < 1.0:
+        ahead = min(share + step, 1.0)
+        pair = look.pair
+        if before is not None:
+            pair = pair.moved((pair.numbers - before[1].pair.numbers) * (ahead - share) / (share - before[0]))
+        solved = asked.part(ahead).solve(pair, along, number, ALONG)
+        if solved is None:
+            step *= SHORTER
+            if step < SMALLEST_PART:
+                return None
+            continue
+        before, look, share, step = (share, look), solved[0], ahead, LONGER * step
+        pair = asked.part(share).retold(look)
+        if pair is not look.pair:  # of one of which the numbers are others
+            before, look = None, asked.part(share).look(pair, ALONG)
+            if look is None:
+                return None
+    return look, None
 
 
 def toward(look, before):

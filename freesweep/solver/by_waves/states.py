@@ -58,13 +58,14 @@ def find_buckled(problems, pressures, targets, accuracy, stations) -> Buckled:
 
 def walk(asked, rows, pressures, accuracy, stations, found):
     """Write the ``rows`` of one branch."""
-    center, first, _ = critical(asked)
-    waiting = {i: pressures[i] for i in rows.tolist()}
-    point = begin(asked, center, first) if first > 0.0 and first + asked.problem[FORCE] > 0.0 else None
-    if point is None:
-        found.status[rows] = NOT_CONVERGED if first > 0.0 and first + asked.problem[FORCE] > 0.0 else HELD_IMPOSSIBLE
+    center, critical_pressure = critical(asked)
+    if not critical_pressure > 0.0 or not critical_pressure + asked.problem[FORCE] > 0.0:
+        found.status[rows] = HELD_IMPOSSIBLE
         return
-    least = min(first, point.pressure), abs(first - point.pressure)
+    point = begin(asked, center)
+    if point is None:
+        return
+    waiting, least = {i: pressures[i] for i in rows.tolist()}, (point.pressure, doubt_of_beginning(point))
     for step in follow(asked, point):
         for here, length, there, pieces, turns in parts(asked, *step):
             if turns and there.pressure < least[0]:
@@ -76,7 +77,7 @@ def walk(asked, rows, pressures, accuracy, stations, found):
                     found.least[i] = least
                     del waiting[i]
         point = there
-        if not waiting or point.pressure > FARTHEST * max(first, *waiting.values()):
+        if not waiting or point.pressure > FARTHEST * max(critical_pressure, *waiting.values()):
             break
     for i, p in waiting.items():
         found.least[i] = least
@@ -107,6 +108,13 @@ def doubts(look):
     out[HALF] = told[:, waves.DOUBT].sum()
     out[TURN] = told[:, waves.BOUNDS + 2].sum()
     return out
+
+
+def doubt_of_beginning(point):
+    """How far off the pressure is at which there is no smaller wave, where the logarithm of that falls forever."""
+    small = np.argmin(point.look.pair.numbers[:2])
+    by_number = point.toward / point.look.pair.weights
+    return point.pressure * abs(by_number[PRESSURE] / by_number[small])
 
 
 def doubt_of_turn(look):

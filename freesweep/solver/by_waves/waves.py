@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..lanes import waves
-from ..problem import LENGTH, MOONEY_RIVLIN, SECOND, THIRD, YEOH
+from ..problem import GAMMA, LENGTH, MOONEY_RIVLIN, SECOND, THIRD, YEOH
 
 LEVEL, HALF, TURN = range(3)  # conditions: of levels, of half the length, of half the twist
 CENTER, PRESSURE = 2, 3  # among the numbers, behind those of the middles
@@ -114,6 +114,12 @@ class Waves:
     def __init__(self, problem, target):
         self.problem, self.half, self.turn = problem, 0.5 * problem[LENGTH], 0.5 * target
         self.constants = YEOH if np.any(problem[[SECOND, THIRD]] != 0.0) else MOONEY_RIVLIN
+
+    def part(self, share):
+        """The same tube with that share of its fiber extension and of the rotation held."""
+        problem = self.problem.copy()
+        problem[GAMMA] = 1.0 + share * (problem[GAMMA] - 1.0)
+        return Waves(problem, 2.0 * share * self.turn)
 
     def ask(self, given, pieces):
         """Rows (n, COUNT) of what is told of halves of waves."""

@@ -29,7 +29,8 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 # stretch and depth of the middle
 BOUNDS, FLOORS = OUTPUTS, 2 * OUTPUTS
 X, DOUBT, LEVEL, RISE, UNIFORM, DEPTH, TORQUE = range(3 * OUTPUTS, 3 * OUTPUTS + 7)
-BEND, STIFFNESS, SLACK = TORQUE + 1, TORQUE + 2, TORQUE + 3  # L_yy and L_vv of the center; families that would have to push
+# L_yy and L_vv of the center; G at the clamped ends, positive where fibers meet them; families that would have to push
+BEND, STIFFNESS, CLAMPED, SLACK = range(TORQUE + 1, TORQUE + 5)
 COUNT = SLACK + 1
 LAST_DIGITS, FAINTEST = 17.0, 1e-6  # depth of a layer as high as 1 whose stretch has eight digits; the least height
 ROUNDING = 3e-9  # of a layer: what that of R - T makes of its length
@@ -76,7 +77,8 @@ def measure(first, depth, cell, load, quarter, pieces, rows, ends, starts, edges
     by_depth = 2.0 * mid.q * (1.0 - mid.q * mid.q) * mid.whole * mid.whole * get(scratch, 0)
     put(told, RISE, abs(mid.rise) * mid.s * select(known, abs(1.0 - mid.u) * by_depth, 1.0))
     put(told, X, x)
-    put(told, DOUBT, get(numbers[1], WITHIN) + ROUNDING / mid.rate)
+    strain = mid.q * (mid.u - 1.0)
+    put(told, DOUBT, get(numbers[1], WITHIN) + ROUNDING / mid.rate * min(ROUNDING / (2.0 * strain * strain), 1.0))
     put(told, LEVEL, mid.level)
     put(told, UNIFORM, mid.u)
     put(told, DEPTH, mid.depth)
@@ -111,6 +113,7 @@ def measure_many(problem, given, constants, walls, pieces, told):
         put(own, TORQUE, load.m)
         put(own, BEND, L_yy)
         put(own, STIFFNESS, L_vv)
+        put(own, CLAMPED, lagrangian.clamped(cell, load.gamma, load.wall))
         for lane in range(count):
             row = group + lane
             for k in range(SLACK):
