@@ -14,7 +14,7 @@ SHORTER, LONGER = 0.4, 1.6
 EVEN, BENT = 0.99, 0.9  # cosines of the angle by which a branch turns on a step that may be longer next, or is too long
 FIRST_PART, SMALLEST_PART = 0.05, 1e-5  # of fiber extension and rotation, by which they are raised at once
 ASIDE = 0.3  # of a step: how far from its tangent it may end
-FAINTEST = 1e-6  # a wave that is none: here the branch comes back to the straight tube
+FAINTEST, FAINT = 1e-6, 1e-3  # a wave that is none: here the branch comes back to the straight tube; one that is next to none
 ALONG, FINEST = 4, 256  # pieces in which a wave is summed along the branch, at first and at most
 ROUGH = 1e-4  # of the length: sums that are known no better need more pieces
 HALVINGS, MET = 60, 1e-9  # of a step, to a place on it, and the share of the step that is none
@@ -43,36 +43,60 @@ def critical(asked):
 
 
 def begin(asked, center):
-    """The first :class:`Point`: where the smaller wave is next to none; None where that is not met.
+    """The first :class:`Point`; None where that is not met.
 
     Without fiber extension, and with no rotation, both waves are next to none where the straight cylinder is lost. From
-    there both are raised, while the smaller wave stays: to where the center lies elsewhere.
+    there, or from farther on, both are raised, while the smaller wave stays, to where the center lies elsewhere; and the
+    branch is gone back to where one wave is next to none.
     """
-    small = 1 if center >= 1.0 else 0
+    straight, small = asked.part(0.0), 1 if center >= 1.0 else 0
+    point = straighten(straight, small)
+    if point is None or center == 1.0:
+        return point
+    for _, _, point, _ in follow(straight, point):
+        along = np.zeros(4)
+        along[small] = 1.0
+        look = raised(asked, point.look, along) if point.look.pair.near > FAINT else None
+        if look is not None:
+            return turned_round(asked, Point(look, toward(look, along)))
+    return None
+
+
+def straighten(straight, small):
+    """The first :class:`Point` of a tube whose center is y = 1."""
     along = np.zeros(4)
     along[small] = 1.0
-    straight = asked.part(0.0)
     _, pressure = critical(straight)
     for amplitude in AMPLITUDES if pressure > 0.0 else ():
         number = np.log(amplitude)
         pair = Pair(np.array([number, number, 1.0, np.log(pressure)]), np.zeros(2, bool), np.ones(2))
         solved = straight.solve(pair, along, number, ALONG)
-        if solved is not None and center != 1.0:
-            solved = raised(asked, solved[0], along, number)
         if solved is not None:
             return Point(solved[0], toward(solved[0], along))
     return None
 
 
-def raised(asked, look, along, number):
-    """What :meth:`.waves.Waves.solve` finds of the whole fiber extension and rotation, from a look at the tube without."""
-    share, step, before, solved = 0.0, FIRST_PART, None, None
+def turned_round(asked, point):
+    """The last :class:`Point` before a wave is next to none, where the branch is followed back from this one."""
+    last = point._replace(toward=-point.toward)
+    for _, _, ahead, _ in follow(asked, last):
+        if ahead.look.pair.near < FAINT:
+            break
+        last = ahead
+    return last._replace(toward=-last.toward)
+
+
+def raised(asked, look, along):
+    """The look at the tube with the whole fiber extension and rotation, from one without, along numbers that keep the one
+    that ``along`` says; None where that is not come to.
+    """
+    share, step, before = 0.0, FIRST_PART, None
     while share < 1.0:
         ahead = min(share + step, 1.0)
         pair = look.pair
         if before is not None:
             pair = pair.moved((pair.numbers - before[1].pair.numbers) * (ahead - share) / (share - before[0]))
-        solved = asked.part(ahead).solve(pair, along, number, ALONG)
+        solved = asked.part(ahead).solve(pair, along, along @ look.pair.numbers, ALONG)
         if solved is None:
             step *= SHORTER
             if step < SMALLEST_PART:
@@ -80,11 +104,11 @@ def raised(asked, look, along, number):
             continue
         before, look, share, step = (share, look), solved[0], ahead, LONGER * step
         pair = asked.part(share).retold(look)
-        if pair is not look.pair:  # of one of which the numbers are others
+        if pair is not look.pair:  # whose numbers are others
             before, look = None, asked.part(share).look(pair, ALONG)
             if look is None:
                 return None
-    return look, None
+    return look
 
 
 def toward(look, before):
