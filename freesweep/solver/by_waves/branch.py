@@ -6,18 +6,21 @@ import numpy as np
 
 from ..lanes import waves
 from ..problem import GAMMA, LENGTH, H
-from .waves import CENTER, PRESSURE, Look, Pair
+from .waves import PRESSURE, Look, Pair
 
 AMPLITUDES = 3e-3, 1e-3, 3e-4, 1e-4, 3e-5  # of the smaller wave, tried in turn: steep fibers soon leave the sine
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP, MOST_STEPS = 0.05, 0.5, 1e-6, 2000
 SHORTER, LONGER = 0.4, 1.6
 EVEN, BENT = 0.99, 0.9  # cosines of the angle by which a branch turns on a step that may be longer next, or is too long
-FIRST_PART, SMALLEST_PART = 0.05, 1e-5  # of fiber extension and rotation, by which they are raised at once
+FIRST_PART, SMALLEST_PART = 0.05, 1e-3  # of fiber extension and rotation, by which they are raised at once
+APART = 1.2  # times as far from 1 are middles from which it is tried again
 ASIDE = 0.3  # of a step: how far from its tangent it may end
-FAINTEST, FAINT = 1e-6, 1e-3  # a wave that is none: here the branch comes back to the straight tube; one that is next to none
+FAINTEST, FAINT = (
+    1e-6,
+    1e-3,
+)  # a wave that is none: here the branch comes back to the straight tube; one that is next to none
 ALONG, FINEST = 4, 256  # pieces in which a wave is summed along the branch, at first and at most
 ROUGH = 1e-4  # of the length: sums that are known no better need more pieces
-HALVINGS, MET = 60, 1e-9  # of a step, to a place on it, and the share of the step that is none
 
 
 class Point(NamedTuple):
@@ -32,14 +35,16 @@ class Point(NamedTuple):
 
 
 def critical(asked):
-    """``(center, pressure)`` of the uniform tube of the rotation held that a wave as long as the tube makes unstable; a
-    pressure that is not positive: never.
+    """``(center, pressure, whether longer fibers meet the clamped ends)`` of the uniform tube of the rotation held that a
+    wave as long as the tube makes unstable; a pressure that is not positive: never.
     """
     problem = asked.problem
     center = problem[GAMMA] / np.sqrt(1.0 + 2.0 * asked.turn / (problem[H] * problem[LENGTH]))
     told = asked.ask(np.array([[p, center, center, np.nan] for p in (1.0, 2.0)]), 1)
-    lost = told[:, waves.BEND] + told[:, waves.STIFFNESS] * (2.0 * np.pi / problem[LENGTH]) ** 2  # linear in the pressure
-    return center, 1.0 - lost[0] / (lost[1] - lost[0])
+    lost = (
+        told[:, waves.BEND] + told[:, waves.STIFFNESS] * (2.0 * np.pi / problem[LENGTH]) ** 2
+    )  # linear in the pressure
+    return center, 1.0 - lost[0] / (lost[1] - lost[0]), told[0, waves.CLAMPED] > 0.0
 
 
 def begin(asked, center):
@@ -53,12 +58,14 @@ def begin(asked, center):
     point = straighten(straight, small)
     if point is None or center == 1.0:
         return point
-    for _, _, point, _ in follow(straight, point):
-        along = np.zeros(4)
-        along[small] = 1.0
-        look = raised(asked, point.look, along) if point.look.pair.near > FAINT else None
-        if look is not None:
-            return turned_round(asked, Point(look, toward(look, along)))
+    tried, along = FAINT, np.zeros(4)
+    along[small] = 1.0
+    for _, _, there, _ in follow(straight, point):
+        if there.look.pair.near > tried:
+            tried = APART * there.look.pair.near
+            look = raised(asked, there.look, along)
+            if look is not None:
+                return turned_round(asked, Point(look, toward(look, along)))
     return None
 
 
@@ -66,7 +73,7 @@ def straighten(straight, small):
     """The first :class:`Point` of a tube whose center is y = 1."""
     along = np.zeros(4)
     along[small] = 1.0
-    _, pressure = critical(straight)
+    _, pressure, _ = critical(straight)
     for amplitude in AMPLITUDES if pressure > 0.0 else ():
         number = np.log(amplitude)
         pair = Pair(np.array([number, number, 1.0, np.log(pressure)]), np.zeros(2, bool), np.ones(2))
@@ -161,33 +168,3 @@ def follow(asked, point):
             if look is not None:
                 ahead = Point(look, toward(look, ahead.toward))
         point = ahead
-
-
-def met(asked, here, length, pieces, missed):
-    """The :class:`Point` of a step at which ``missed(point)`` changes its sign, by the regula falsi of Illinois; None where
-    the step has none.
-    """
-    low, high, point, kept = (0.0, missed(here)), None, None, 0
-    point = step(asked, here, length, pieces)
-    if point is None:
-        return None
-    high = length, missed(point)
-    if high[1] == 0.0 or low[1] == 0.0:
-        return point if high[1] == 0.0 else here
-    if high[1] * low[1] > 0.0:
-        return None
-    weights = [1.0, 1.0]
-    for _ in range(HALVINGS):
-        below, above = weights[0] * low[1], weights[1] * high[1]
-        at = (low[0] * above - high[0] * below) / (above - below)
-        point = step(asked, here, at, pieces)
-        if point is None:
-            return None
-        miss = missed(point)
-        if miss * low[1] > 0.0:
-            low, weights, kept = (at, miss), [1.0, 0.5 * weights[1] if kept == 1 else 1.0], 1
-        else:
-            high, weights, kept = (at, miss), [0.5 * weights[0] if kept == -1 else 1.0, 1.0], -1
-        if miss == 0.0 or abs(high[0] - low[0]) < MET * length:
-            break
-    return point

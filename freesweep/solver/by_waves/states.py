@@ -13,14 +13,16 @@ from ..physics.membrane import ROUNDING
 from ..problem import FORCE, LENGTH
 from ..problem import TORQUE as OWN_TORQUE
 from ..stability import PUSHED
-from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
-from .branch import begin, critical, follow, met
-from .waves import HALF, LEVEL, PRESSURE, SIDES, TORQUE, TURN, Waves
+from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, INVALID, NOT_CONVERGED, OK
+from .branch import begin, critical, follow
+from .on_step import at_pressure, parts
+from .waves import HALF, LEVEL, PRESSURE, TORQUE, TURN, Waves
 
 FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
 FINENESS = 4, 16, 64, 256  # pieces, one try after the other
 NUMBERS = 6  # length, volume, twist, energy of half the tube, stretch in the middle, torque
-NOISE = 1e-14  # of a level: its rounding
+NOISE, SURE = 1e-14, 1e-9  # of a level, its rounding; how well a pressure is known, whatever the waves
+OWN_SHARE = 0.3  # of the accuracy: what profiles of known waves may miss
 ROUGH, FAINT = 1e-2, 1e-9  # a scaled bound of what is not known; the least energy, of the work of the loads
 
 
@@ -58,7 +60,10 @@ def find_buckled(problems, pressures, targets, accuracy, stations) -> Buckled:
 
 def walk(asked, rows, pressures, accuracy, stations, found):
     """Write the ``rows`` of one branch."""
-    center, critical_pressure = critical(asked)
+    center, critical_pressure, is_clamped = critical(asked)
+    if not is_clamped:
+        found.status[rows] = INVALID
+        return
     if not critical_pressure > 0.0 or not critical_pressure + asked.problem[FORCE] > 0.0:
         found.status[rows] = HELD_IMPOSSIBLE
         return
@@ -67,9 +72,9 @@ def walk(asked, rows, pressures, accuracy, stations, found):
         return
     waiting, least = {i: pressures[i] for i in rows.tolist()}, (point.pressure, doubt_of_beginning(point))
     for step in follow(asked, point):
-        for here, length, there, pieces, turns in parts(asked, *step):
-            if turns and there.pressure < least[0]:
-                least = there.pressure, doubt_of_turn(there.look)
+        for here, length, there, pieces, stands_out in parts(asked, *step):
+            if stands_out is not None and there.pressure < least[0]:
+                least = there.pressure, doubt_of_turn(there.look) + (stands_out + SURE) * there.pressure
             low, high = sorted((here.pressure, there.pressure))
             for i in [i for i, p in waiting.items() if low <= p <= high]:
                 states = state_at(asked, here, length, pieces, waiting[i])
@@ -89,16 +94,6 @@ def lost(asked, point):
     pair, neck = point.look.pair, point.look.told[1, 4]
     part, force = pair.pressure * neck * neck, asked.problem[FORCE]
     return COMPRESSED if part + force < PUSHED * max(part, abs(force)) else NOT_CONVERGED
-
-
-def parts(asked, here, length, there, pieces):
-    """The step, or, where the pressure turns on it, both its parts, and whether they end at the turn."""
-    if here.toward[PRESSURE] * there.toward[PRESSURE] < 0.0:
-        turn = met(asked, here, length, pieces, lambda point: point.toward[PRESSURE])
-        if turn is not None:
-            passed = (turn.look.pair.numbers - here.look.pair.numbers) @ (here.toward * here.look.pair.weights)
-            return (here, passed, turn, pieces, True), (turn, length - passed, there, pieces, False)
-    return ((here, length, there, pieces, False),)
 
 
 def doubts(look):
@@ -139,12 +134,12 @@ def scales_of(asked, look):
 
 
 def state_at(asked, here, length, pieces, pressure):
-    """``(pieces, look, how far off its numbers may be (3,), bounds (5,))`` of the stable state at a pressure on a step, finer
-    and finer; nothing where there is none.
+    """``(pieces, look, how far off its numbers may be (3,), bounds (5,))`` of the stable state at a pressure on a step,
+    finer and finer; nothing where there is none.
     """
     along, number, before = np.zeros(4), np.log(pressure), None
     along[PRESSURE] = 1.0
-    point = met(asked, here, length, pieces, lambda point: point.look.pair.numbers[PRESSURE] - number)
+    point = at_pressure(asked, here, length, pieces, pressure)
     if point is None:
         return
     pair = point.look.pair
@@ -167,8 +162,8 @@ def state_at(asked, here, length, pieces, pressure):
 
 
 def write(asked, states, i, accuracy, stations, found):
-    """Write the first of the ``states``, finer and finer, that is as accurate as asked for, or the last that is known at all,
-    to row i; whether there is one.
+    """Write the first of the ``states``, finer and finer, that is as accurate as asked for, or the last that is known at
+    all, to row i; whether there is one.
     """
     for pieces, look, shifts, bounds in states:
         scales, floors = scales_of(asked, look)
@@ -212,7 +207,7 @@ def shape(asked, look, stations, accuracy):
     """
     fields, good, start, passed = np.empty((FIELDS, len(stations))), True, 0.0, np.zeros(2)
     pair, ends = look.pair, 2.0 * look.told[:, waves.X]
-    for wave, (end, side) in enumerate(zip(ends, SIDES)):
+    for wave, end in enumerate(ends):
         own = stations <= ends[0] if wave == 0 else stations > ends[0]
         x = stations[own] - start
         mirrored = x > 0.5 * end
@@ -223,7 +218,7 @@ def shape(asked, look, stations, accuracy):
         middle = (look.told[wave, waves.UNIFORM], depth) if pair.deep[wave] else (look.told[wave, 4], np.nan)
         drawn = np.empty((1, FIELDS, len(x)))
         states = problem[None], np.array([0]), np.array([pair.pressure]), np.array([middle]), np.array([0])
-        good = len(x) == 0 or (bool(draw(*states, x, accuracy, drawn, True)[0]) and good)
+        good = len(x) == 0 or (bool(draw(*states, x, OWN_SHARE * accuracy, drawn, True)[0]) and good)
         drawn, totals = drawn[0][:, index], 2.0 * look.told[wave, [0, 2]]
         drawn[1:3] = passed[:, None] + np.where(mirrored, totals[:, None] - drawn[1:3], drawn[1:3])
         fields[:, own] = drawn

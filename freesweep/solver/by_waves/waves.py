@@ -21,10 +21,18 @@ CENTER, PRESSURE = 2, 3  # among the numbers, behind those of the middles
 TORQUE = 4  # among the values, behind length, volume, twist and energy
 SIDES = (1.0, -1.0)  # of the swollen wave, and of the thinned one
 SIGNS = np.array([-1.0, 1.0, 1.0])  # of what the second wave adds to the conditions
-SHALLOW_STEP, DEEP_STEP = 1e-6, 3e-5  # for slopes: little of a deep middle's length is known better than to 1e-8 of a layer
+SHALLOW_STEP, DEEP_STEP = (
+    1e-6,
+    3e-5,
+)  # for slopes: little of a deep middle's length is known better than to 1e-8 of a layer
 OFF_CENTER = 100.0  # times more is the center moved, of the way from it to the middles
 DEEP_ENOUGH, TOO_SHALLOW = 3.0, 1.5  # depths from which on a middle is told by its depth, and by its stretch again
-TRIES, CLOSE, STILL, FAR = 12, 1e-10, 1e-4, 1.0  # Newton's steps: where they end; end, if they no longer get shorter; are lost
+TRIES, CLOSE, STILL, FAR = (
+    12,
+    1e-10,
+    1e-4,
+    1.0,
+)  # Newton's steps: where they end; end, if they no longer get shorter; are lost
 SHORTER, SLIGHT = 0.3, 1e-3
 DEPTHS, MANY = 3.0, 10.0  # weight of a depth, which counts by itself from there on
 COUNTED = [waves.LEVEL, waves.X, 2]  # in the conditions, of what is told
@@ -75,8 +83,8 @@ class Pair(NamedTuple):
 
 
 class Look(NamedTuple):
-    """What is known of a pair: by how much it misses the conditions (3,), what that rises by with the numbers (3, 4); length,
-    volume, twist and energy of half the tube, and the torque, (5,) and (5, 4); what is told of both waves (2, COUNT).
+    """What is known of a pair: by how much it misses the conditions (3,), what that rises by with the numbers (3, 4);
+    length, volume, twist and energy of half the tube, and the torque, (5,) and (5, 4); what is told of both waves (2, COUNT).
     """
 
     pair: Pair
@@ -101,9 +109,7 @@ class Look(NamedTuple):
         return (1 if longer > 0.0 else 2) - (1 if turns < 0.0 else 0)
 
     def given(self, weights):
-        """What the middles' numbers, the center's and the pressure's may change together: the direction (4,) of the branch,
-        times the ``weights``.
-        """
+        """How the numbers may change together: the direction (4,) of the branch, times the ``weights``."""
         slopes = self.slopes / weights
         return np.linalg.svd(slopes / np.abs(slopes).max(axis=1)[:, None])[2][-1]
 
@@ -199,4 +205,3 @@ class Waves:
                 if 0.0 < part < 1.0 / np.cosh(TOO_SHALLOW):
                     deep[wave], numbers[wave], uniform[wave] = True, np.arccosh(1.0 / part), about
         return Pair(numbers, deep, uniform) if np.any(deep != look.pair.deep) else look.pair
-

@@ -1,9 +1,10 @@
 """Halves of waves of tubes that are the same all along, each told by its middle, for a vector of them: how long it is,
 its level, and all that it adds to a tube. What buckled tubes are made of (:mod:`..by_waves`).
 
-A half-wave runs from y = 1 to its middle and back. A deep middle is told by its depth (:mod:`meridian`), which may be any
-number: from where a layer has no digits left on, what it has more is uniform. A shallow one is told by its stretch. The torque is told by its center:
-the stretch between those of both middles at which a uniform tube is one under it, if not a stable one.
+A wave runs from y = 1 to its middle and back. A deep middle is told by its depth (:mod:`meridian`), which may be any
+number: from where a layer has no digits left on, what it has more is uniform. A shallow one is told by its stretch. The
+torque is told by its center: the stretch between those of both middles at which a uniform tube is one under it, if not a
+stable one.
 """
 
 from math import exp
@@ -22,7 +23,7 @@ from .pack import COLUMNS, LENGTH, OUTPUTS, PRESSURE, aligned, enter, loads
 from .profile import chosen
 from .quadrature import between_ends, scan, stationary
 from .rule import LAST
-from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
+from .vector import WIDTH, bits, get, isnt, put, select, spread
 
 # what is told of half a wave: outputs, their bounds, and how much of these is rounding; its length, and what may be missing
 # of that; level of the first integral, and how fast it rises with the middle's number, the depth or the stretch; uniform
