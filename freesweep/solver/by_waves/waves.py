@@ -84,7 +84,7 @@ class Pair(NamedTuple):
 
 class Look(NamedTuple):
     """What is known of a pair: by how much it misses the conditions (3,), what that rises by with the numbers (3, 4);
-    length, volume, twist and energy of half the tube, and the torque, (5,) and (5, 4); what is told of both waves (2, COUNT).
+    length, volume, twist and energy of half the tube, and the torque, (5,) and (5, 4); what is told of both waves (2, n).
     """
 
     pair: Pair
