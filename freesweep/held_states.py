@@ -75,7 +75,7 @@ def _solve(tube, held, accuracy):
     from .solver.status import OK
 
     r, c10, of_length = tube.fiber_surface, tube.material.c10, held.name == "deformed_length"
-    whole, (course, error) = tube.varies or held.buckled, _course(tube, held.buckled, accuracy)
+    whole, (course, error) = tube.varies or held.buckled, _course(tube, accuracy)
     every = with_own(tube, held.stations)
     unique, index = near_stations(tube, every, whole)
     pressures, others, targets = (array.ravel() for array in held.states)
@@ -96,14 +96,11 @@ def _solve(tube, held, accuracy):
     )
 
 
-def _course(tube, buckled, accuracy):
+def _course(tube, accuracy):
     """``(course, its error)``, as the kernels take them."""
     from .solver.batch import uniform
-    from .solver.halves import in_two_halves
 
-    if tube.varies:
-        return read_course(tube, accuracy)
-    return in_two_halves(_problems(tube, "force", np.zeros(1))[0], HALF_CELLS) if buckled else uniform(HALF_CELLS), 0.0
+    return read_course(tube, accuracy) if tube.varies else (uniform(HALF_CELLS), 0.0)
 
 
 def _problems(tube, load, others):
@@ -134,26 +131,14 @@ def _hold(rows, targets, kind, pressures, course, accuracy, stations):
 
 def _hold_buckled(rows, targets, kind, pressures, course, accuracy, stations):
     """The same of the states beside the straight cylinder."""
-    from .interpret import run
-    from .solver.along.profile import FIELDS
-    from .solver.held.held_states import hold_many
+    from .solver.by_waves.states import find_buckled
     from .solver.hold_batch import HOLDER
-    from .solver.problem import FORCE, wall_columns
-    from .solver.status import PENDING
 
-    count = len(pressures)
-    values, bounds = np.full((2, count, HOLDER + 1), np.nan)
-    status, least = np.full(count, PENDING), np.full((count, 2), np.nan)
-    stable, slack, paths = np.zeros((3, count), np.int64)
-    fields = np.full((count, FIELDS, len(stations)), np.nan)
-    run(
-        hold_many, count, True, rows[:1], wall_columns(rows), np.array([0, count]), pressures, rows[:, FORCE].copy(),
-        targets, kind, True, *course, accuracy, values, bounds, status, stable, slack, paths, least, stations, fields,
-    )  # fmt: skip
+    found = find_buckled(rows, pressures, targets, accuracy, stations)
     return {
-        "status": status, "stable": stable, "slack_fiber": slack, "values": values[:, :HOLDER],
-        "bounds": bounds[:, :HOLDER], "fields": fields, "loads": values[:, HOLDER], "load_bounds": bounds[:, HOLDER],
-        "least_buckled_pressure": least,
+        "status": found.status, "stable": found.stable, "slack_fiber": found.slack, "values": found.values[:, :HOLDER],
+        "bounds": found.bounds[:, :HOLDER], "fields": found.profiles, "loads": found.values[:, HOLDER],
+        "load_bounds": found.bounds[:, HOLDER], "least_buckled_pressure": found.least,
     }  # fmt: skip
 
 

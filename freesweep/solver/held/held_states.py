@@ -27,7 +27,6 @@ from ..status import (
     OK,
     PENDING,
 )
-from .buckled import find_buckled
 from .held_state import find
 from .sought import HELD_LENGTH, HELD_ROTATION, Found, failed, load_of, unit_of, valued
 from .ways import cylinder_multiplier, make_room
@@ -126,21 +125,6 @@ def find_on_some_mesh(problem, walls, p, other, target, kind, tube, accuracy, ro
 
 
 @kernel
-def find_buckled_on_some_mesh(problem, walls, p, other, target, tube, accuracy, room, out, least):
-    """As :func:`.buckled.find_buckled`, on finer base meshes where it is not certain that there is none; returns also the
-    tube and the room that were used.
-    """
-    base, half, varies = tube.edges[len(tube.edges) - 1], tube.half, len(tube.cells) > 1
-    own, own_room, finer = tube, room, 1
-    while True:
-        found = find_buckled(problem, walls, p, other, target, own, accuracy, own_room, out, least)
-        finer *= FINER
-        if valued(found.status) or found.sure or finer * base > FINEST:
-            return found, own, own_room
-        own, own_room = made_finer(tube, finer), make_room(finer * base, half, varies)
-
-
-@kernel
 def as_limit(found):
     """The same, whose end is a limit."""
     status = BEYOND_LIMIT if found.status == NOT_CONVERGED else found.status
@@ -165,7 +149,6 @@ class States(NamedTuple):
     stable: np.ndarray
     slack: np.ndarray
     paths: np.ndarray
-    least: np.ndarray
     stations: np.ndarray
     profiles: np.ndarray
 
@@ -228,30 +211,25 @@ def ends_last(problem, walls, tube):
 
 
 @kernel
-def hold(states, i, problem, walls, p, other, target, kind, buckled, tube, accuracy, room, out):
+def hold(states, i, problem, walls, p, other, target, kind, tube, accuracy, room, out):
     """Hold one state."""
     natural = target == (problem[LENGTH] if kind == HELD_LENGTH else 0.0)
     if not ends_last(problem, walls, tube):
         states.status[i] = INVALID
-    elif p == 0.0 and other == 0.0 and natural and not buckled:
+    elif p == 0.0 and other == 0.0 and natural:
         leave_at_rest(states, i, problem, walls, tube)
     elif kind == HELD_ROTATION and not (turns(tube.course) or may_go_slack(wall_of(problem, walls))):
         states.status[i] = HELD_IMPOSSIBLE
     else:
         own_target = 0.5 * target if tube.half else target
-        if buckled:
-            found, tube, room = find_buckled_on_some_mesh(
-                problem, walls, p, other, own_target, tube, accuracy, room, out, states.least[i]
-            )
-        else:
-            found, tube, room = find_on_some_mesh(problem, walls, p, other, own_target, kind, tube, accuracy, room, out)
+        found, tube, room = find_on_some_mesh(problem, walls, p, other, own_target, kind, tube, accuracy, room, out)
         record(states, i, found, tube, room.space, accuracy, out)
 
 
 @entry_point
 def hold_many(
-    problems, walls, first, pressures, others, targets, kind, buckled, course, edges, places, accuracy, values, bounds,
-    status, stable, slack, paths, least, stations, profiles,
+    problems, walls, first, pressures, others, targets, kind, course, edges, places, accuracy, values, bounds, status,
+    stable, slack, paths, stations, profiles,
 ):  # fmt: skip
     """Held states of designs, each for pressures, the load that is not unknown, and what is held (``kind`` HELD_LENGTH, or
     HELD_ROTATION).
@@ -259,11 +237,10 @@ def hold_many(
     ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of
     :func:`..free.free_states.follow_many`. The n-th entries of ``pressures``, ``others`` and ``targets`` belong together;
     those whose status is not PENDING are passed over, and where no value is found none is written. ``targets`` are in radii
-    (deformed length) or radians, of the whole tube; a tube that is the same all along is solved by half, unless ``buckled``:
-    then ``course`` is its own, of two halves. ``values`` and ``bounds`` are (n, 6): length, volume, twist, energy of half
-    the tube, stretch in the middle, multiplier; of physical tubes (n, 12), if the numbers of :mod:`..along.places` are
-    asked for. ``paths`` (n,) takes the way by which a state was found, ``least`` (n, 2) the least pressure of the
-    ``buckled`` branch and its bound.
+    (deformed length) or radians, of the whole tube; a tube that is the same all along is solved by half. ``values`` and
+    ``bounds`` are (n, 6): length, volume, twist, energy of half the tube, stretch in the middle, multiplier; of physical
+    tubes (n, 12), if the numbers of :mod:`..along.places` are asked for. ``paths`` (n,) takes the way by which a state was
+    found.
     """
     alike, base = course.shape[0] == 0, edges[len(edges) - 1]
     own_course, own_places = of_problems(course) if alike else course, np.zeros(2) if alike else places.copy()
@@ -271,7 +248,7 @@ def hold_many(
     middle = base if alike else edges[np.argmin(np.abs(own_places - 0.5 * whole))]
     tube = Tube(own_course, edges, cells_for(base, not alike, own_course), alike, middle, own_places)
     room, out = make_room(base, alike, not alike), np.zeros((4, nested.OUTPUTS))
-    states = States(values, bounds, status, stable, slack, paths, least, stations, profiles)
+    states = States(values, bounds, status, stable, slack, paths, stations, profiles)
     for k in range(len(problems)):
         if alike:
             own_places[1] = 0.5 * problems[k, LENGTH]
@@ -279,6 +256,5 @@ def hold_many(
         for i in range(first[k], first[k + 1]):
             if status[i] == PENDING:
                 hold(
-                    states, i, problems[k], walls, pressures[i], others[i], targets[i], kind, buckled, tube, accuracy, room,
-                    out,
-                )  # fmt: skip
+                    states, i, problems[k], walls, pressures[i], others[i], targets[i], kind, tube, accuracy, room, out
+                )

@@ -78,12 +78,6 @@ def failed(status, load):
 
 
 @kernel
-def unsure(status, load):
-    """No state on this mesh."""
-    return Found(status, 0, 0, load, 0.0, False, FROM_REST)
-
-
-@kernel
 def longest_along(tube, load):
     """The largest meridional stretch that the fibers allow, which no finite force reaches: of straight fibers that of the
     undeformed length (the pole of Eq. 2.16). Infinite where it varies along the tube, or the meridian is longer than that.

@@ -190,7 +190,7 @@ def tell(x, left, mid, cell, load, half, placed, at, moved, near, scratch, out):
         get(moved, 1)
         + placed * abs(get(at, 1))
         + abs(s * here.cosine - mid.s) * off
-        + abs(sqrt(1.0 + G_1) - mid.s) * left
+        + select(left > 0.0, abs(sqrt(1.0 + G_1) - mid.s) * left, 0.0)  # else u is but a number
         + ROUNDING * half,
     )
     put(
@@ -199,7 +199,7 @@ def tell(x, left, mid, cell, load, half, placed, at, moved, near, scratch, out):
         get(moved, 2)
         + placed * abs(get(at, 2))
         + abs(level.psi - mid.psi) * off
-        + abs(psi - mid.psi) * left
+        + select(left > 0.0, abs(psi - mid.psi) * left, 0.0)
         + ROUNDING * max(1.0, abs(turn)),
     )
     for k in range(4):

@@ -124,17 +124,6 @@ def adapt(density, integrands, x, y, n, tube, load, work):
 
 
 @kernel
-def regrade(density, integrands, x, y, n, tube, load, work):
-    """:func:`adapt`, unless that would leave the solution inadmissible."""
-    old_x, old_y = work[10], work[11]
-    for i in range(n + 1):
-        old_x[i], old_y[i] = x[i], y[i]
-    if not adapt(density, integrands, x, y, n, tube, load, work):
-        for i in range(n + 1):
-            x[i], y[i] = old_x[i], old_y[i]
-
-
-@kernel
 def split(x, n, edges, factor, out):
     """A finer mesh: each cell of the base mesh in ``factor``, smoothly within each segment."""
     for s in range(len(edges) - 1):

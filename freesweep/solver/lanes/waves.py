@@ -1,0 +1,128 @@
+"""Halves of waves of tubes that are the same all along, each told by its middle, for a vector of them: how long it is,
+its level, and all that it adds to a tube. What buckled tubes are made of (:mod:`..by_waves`).
+
+A wave runs from y = 1 to its middle and back. A deep middle is told by its depth (:mod:`meridian`), which may be any
+number: from where a layer has no digits left on, what it has more is uniform. A shallow one is told by its stretch. The
+torque is told by its center: the stretch between those of both middles at which a uniform tube is one under it, if not a
+stable one.
+"""
+
+from math import exp
+
+import numpy as np
+
+from ...jit import entry_point, kernel
+from ..load import under
+from ..numerics.nested import SMALLEST_TOLERANCE
+from ..physics import lagrangian
+from ..problem import SOURCE
+from . import slack_ends
+from .meridian import DEEPEST, logarithm, middle, middle_at
+from .outputs import DX, FLOOR, WITHIN, finish
+from .pack import COLUMNS, LENGTH, OUTPUTS, PRESSURE, aligned, enter, loads
+from .profile import chosen
+from .quadrature import between_ends, scan, stationary
+from .rule import LAST
+from .vector import WIDTH, bits, get, isnt, put, select, spread
+
+# what is told of half a wave: outputs, their bounds, and how much of these is rounding; its length, and what may be missing
+# of that; level of the first integral, and how fast it rises with the middle's number, the depth or the stretch; uniform
+# stretch and depth of the middle
+BOUNDS, FLOORS = OUTPUTS, 2 * OUTPUTS
+X, DOUBT, LEVEL, RISE, UNIFORM, DEPTH, TORQUE = range(3 * OUTPUTS, 3 * OUTPUTS + 7)
+# L_yy and L_vv of the center; G at the clamped ends, positive where fibers meet them; families that would have to push
+BEND, STIFFNESS, CLAMPED, SLACK = range(TORQUE + 1, TORQUE + 5)
+COUNT = SLACK + 1
+LAST_DIGITS, FAINTEST = 17.0, 1e-6  # depth of a layer as high as 1 whose stretch has eight digits; the least height
+ROUNDING = 3e-9  # of a layer: what that of R - T makes of its length
+NEXT_TO_NOTHING = 300.0  # depth at which a layer is a number still
+
+
+@kernel
+def balanced(center, cell, load):
+    """The load with the torque that makes a uniform tube of that stretch one."""
+    free = under(load, load.p, load.f, 0.0 * center)
+    _, L_y, _, _, _, _ = lagrangian.density(center, 0.0 * center, cell, free)
+    return under(load, load.p, load.f, -L_y / lagrangian.kinematics(center, cell, load)[1])
+
+
+@kernel
+def measure(first, depth, cell, load, quarter, pieces, rows, ends, starts, edges, numbers, scratch, counts, out, told):
+    """Tell halves of waves, whose middles have about the uniform stretch ``first`` and that ``depth``, or, where it is NaN,
+    the stretch ``first``; ``quarter`` is about how long they are. Returns masks: (it is one, alpha pushed somewhere, beta).
+    """
+    zero = spread(0.0)
+    known = depth == depth
+    u, met = stationary(first, cell, load, known)
+    deepest = min(LAST_DIGITS + logarithm(max(abs(1.0 - u), FAINTEST), scratch), DEEPEST)
+    given = select(known, depth, deepest)
+    shallow, driven, _ = middle_at(first, cell, load, quarter, scratch)
+    mid = chosen(known, middle(u, min(given, deepest), cell, load, scratch), shallow)
+    _, _, limp, doubts, fine, short = scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch)
+    valid = ((known & met) | (isnt(known) & driven)) & fine & (short <= 0.0)
+    put(edges, 0, zero)
+    put(edges, 1, spread(1.0))
+    fine, (alpha, beta) = between_ends(1, pieces, edges, mid, cell, load, rows, numbers, scratch)
+    rest = max(given - deepest, 0.0) / mid.rate
+    x = get(numbers[0], DX) + rest
+    finish(mid, rest, zero, zero, rest, cell, load, x, limp, doubts, zero, numbers, scratch, out)
+    outputs = get(out[0], 0), get(out[0], 1), get(out[0], 2), get(out[0], 3), get(out[0], 4)
+    _, rounding = lagrangian.scales(outputs, cell, load, x, SMALLEST_TOLERANCE)
+    for k in range(OUTPUTS):
+        put(told, k, outputs[k])
+        put(told, BOUNDS + k, get(out[1], k))
+        put(told, FLOORS + k, FLOOR * rounding[k])
+    put(scratch, 0, min(2.0 * max(given - deepest, 0.0), NEXT_TO_NOTHING))
+    for lane in range(WIDTH):
+        scratch[0, lane] = exp(-scratch[0, lane])
+    by_depth = 2.0 * mid.q * (1.0 - mid.q * mid.q) * mid.whole * mid.whole * get(scratch, 0)
+    put(told, RISE, abs(mid.rise) * mid.s * select(known, abs(1.0 - mid.u) * by_depth, 1.0))
+    put(told, X, x)
+    strain = mid.q * (mid.u - 1.0)
+    put(told, DOUBT, get(numbers[1], WITHIN) + ROUNDING / mid.rate * min(ROUNDING / (2.0 * strain * strain), 1.0))
+    put(told, LEVEL, mid.level)
+    put(told, UNIFORM, mid.u)
+    put(told, DEPTH, mid.depth)
+    return valid & fine, alpha, beta
+
+
+@kernel
+def measure_many(problem, given, constants, walls, pieces, told):
+    """:func:`measure` halves of waves of the tube of one ``problem``, in so many ``pieces``. Rows of ``given`` (n, 4) are
+    pressure, center, stretch, and depth or NaN; those of ``told`` (n, COUNT) take what is told, NaN where it is none.
+    """
+    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
+    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(4, COLUMNS + COUNT)
+    columns, start, scratch, own = small[0], small[1], small[2], small[3]
+    counts = np.zeros(WIDTH, np.int64)
+    for group in range(0, len(given), WIDTH):
+        count = min(WIDTH, len(given) - group)
+        for lane in range(WIDTH):
+            row = group + min(lane, count - 1)
+            enter(lane, problem, columns)
+            columns[PRESSURE, lane] = given[row, 0]
+            for k in range(3):
+                start[k, lane] = given[row, 1 + k]
+        cell, _, load = loads(columns, constants, walls, 1)
+        center = get(start, 0)
+        load = balanced(center, cell, load)
+        valid, alpha, beta = measure(
+            get(start, 1), get(start, 2), cell, load, 0.5 * get(columns, LENGTH), pieces, room, ends[:5], ends[5:], edges,
+            numbers[:2], scratch, counts, numbers[2:], own,
+        )  # fmt: skip
+        _, _, _, L_yy, _, L_vv = lagrangian.density(center, spread(0.0), cell, load)
+        put(own, TORQUE, load.m)
+        put(own, BEND, L_yy)
+        put(own, STIFFNESS, L_vv)
+        put(own, CLAMPED, lagrangian.clamped(cell, load.gamma, load.wall))
+        for lane in range(count):
+            row = group + lane
+            for k in range(SLACK):
+                told[row, k] = own[k, lane] if k >= TORQUE or (bits(valid) >> lane) & 1 else np.nan
+            told[row, SLACK] = ((bits(alpha) >> lane) & 1) | (((bits(beta) >> lane) & 1) << 1)
+
+
+@entry_point
+def measure_waves(problem, given, constants, pieces, told):
+    """:func:`measure_many` of the source's tubes."""
+    measure_many(problem, given, constants, SOURCE, pieces, told)
