@@ -24,7 +24,7 @@ from .vector import WIDTH, get, put, select, spread
 
 DEEPEST = 24.0  # where nothing is left of the layer
 EVEN, LEAST_EVEN = 6.0, 0.15  # depth up to which equal steps do; the least share of equal steps
-CERTAIN, NOISE = 3e-8, 1e-10  # shares of R, and of what it is the difference of, from which R - T is more than rounding
+CERTAIN, NOISE = 1e-8, 1e-10  # shares of R, and of what it is the difference of, from which R - T is more than rounding
 APART = 1e-6  # of 2 q |u - 1|: difference of two stretches that has digits
 MEETS = 1e-9  # of q: as near to the middle as counts as there
 LEAST_RATE = 1e-12
