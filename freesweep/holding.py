@@ -90,7 +90,7 @@ def blocked_torque(
         unstable; True gives the stable, shorter, antisymmetric state beside it: the source's "blocked deformation". Many
         tubes have one below the critical pressure, too, which a disturbance may lead to: a safe limit is
         ``least_buckled_pressure`` [Pa], the least at which the buckled branch has a state. Below it there is none: status
-        4. With a strong rotation held its beginning may not be met: status 6 (7 of 110 random tubes, 0 of 150 without)
+        4. With a strong rotation held its beginning may not be met: status 6 (4 of 110 random tubes, 0 of 150 without)
     x, accuracy, derivatives : as in :func:`freesweep.lock`; of ``pressure``, ``force`` and ``rotation``, too
 
     Returns a Dataset with ``torque`` [N m], positive toward growing rotation, on the coordinate ``rotation``. ``stable``

@@ -34,7 +34,7 @@ X, DOUBT, LEVEL, RISE, UNIFORM, DEPTH, TORQUE = range(3 * OUTPUTS, 3 * OUTPUTS +
 BEND, STIFFNESS, CLAMPED, SLACK = range(TORQUE + 1, TORQUE + 5)
 COUNT = SLACK + 1
 LAST_DIGITS, FAINTEST = 17.0, 1e-6  # depth of a layer as high as 1 whose stretch has eight digits; the least height
-ROUNDING = 3e-9  # of a layer: what that of R - T makes of its length
+ROUNDING = 1e-8  # of a layer: what that of R - T makes of its length
 NEXT_TO_NOTHING = 300.0  # depth at which a layer is a number still
 
 
