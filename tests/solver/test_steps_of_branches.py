@@ -11,7 +11,7 @@ from freesweep.census.designs import BLOCK, COLUMNS, Drawn, draw, with_pressures
 from freesweep.description.tube_model import MODELS
 from freesweep.solver import batch, hold_batch
 from freesweep.solver.held.sought import HELD_LENGTH
-from freesweep.solver.problem import FORCE, LENGTH
+from freesweep.solver.problem import FORCE, GAMMA, LENGTH, TORQUE
 from freesweep.status import BEYOND_LIMIT, HELD_IMPOSSIBLE, INACCURATE, OK
 
 ACCURACY = 1e-6
@@ -36,6 +36,27 @@ def test_branch_whose_meridians_end_is_not_left_for_another():
 def test_snap_that_bends_between_two_looks_is_seen():
     """At .245 of its loads the branch falls back by 7e-5 of them, within one step of .05."""
     assert walked(*of_census(1002, 1478)).status.tolist() == [BEYOND_LIMIT] * 4
+
+
+@pytest.mark.parametrize(("column", "load", "limit"), [
+    (TORQUE, 0.0, 0.088962666), (TORQUE, 1e-12, 0.088962666), (TORQUE, 1e-4, 0.0895045764), (GAMMA, 1e-9, 0.088962666),
+])  # fmt: skip
+def test_snap_beside_the_chord_of_a_step_is_seen(column, load, limit):
+    """The branch runs level from .165 of the way on and rises again behind that; its chord led on, and from loads of any
+    smallness. A load that strains a tube less than can be told is none.
+    """
+    problems, _ = of_census(77, 658)
+    problems[:, FORCE], problems[:, TORQUE], problems[:, GAMMA] = 0.0, 0.0, 1.0
+    problems[:, column] += load
+    walks = walked(problems, np.array([0.05, 0.088, 0.09, 0.1, 1.0]))
+    assert walks.status.tolist() == [OK, OK, *[BEYOND_LIMIT] * 3]
+    assert walks.limits[0, 0] == pytest.approx(limit, rel=1e-5)
+
+
+@pytest.mark.parametrize("number", [137, 340, 666])
+def test_steep_loose_fibers_at_little_pressure_are_not_beyond_a_limit(number):
+    """Their density had another maximum by mistake, and so a corner, at which the branch turned."""
+    assert walked(*of_census(77, number, "physical")).status.tolist() == [OK] * 4
 
 
 @pytest.mark.parametrize(("seed", "number", "model", "middles"), [

@@ -78,7 +78,7 @@ def test_jump_of_the_miss_is_no_state():
 def test_smooth_branch_takes_few_questions():
     what, _, seen, count = branch(lambda middle, share: share - 2.0 * (middle - 1.0))
     assert what == ARRIVED
-    assert count < 5 * len(seen)
+    assert count < 6 * len(seen)  # two of them beside its middle
 
 
 @pytest.mark.parametrize("gap", [0.02, 2e-3])

@@ -22,6 +22,7 @@ SHARP, EXACT = 1e-3, 1e-8  # of a step: how well a point, or a first load, need 
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
 BENT = 0.2  # from one step to the next [radian], from which on a snap may hide in it
+ASIDE = 0.1  # of a step: where its middle has the branch between
 LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; parts that are looked at
 UNEVEN = 4.0  # times what the share changes on another part
 NOTHING_LESS = 1e-8  # of a step: by how much a branch need fall back to turn
@@ -155,23 +156,18 @@ def goes_on(points, sense):
 
 
 def looked_between(points):
-    """The last step of a branch that hardly leads on, or bends, as points of the branch beside even ones of its chord,
-    in which a small snap would show; else its two ends; one end alone where the branch does not run beside the chord.
+    """The last step of a branch that hardly leads on, bends, or does not run beside its chord, as points of the branch
+    beside even ones of that, in which a small snap would show; else its two ends; one end alone where it has none beside.
     """
     here, there = points[-2:]
-    if abs(there.share - here.share) > LEVEL * there.step and not abs(there.chord - here.chord) > BENT:
+    plain = abs(there.share - here.share) > LEVEL * there.step and not abs(there.chord - here.chord) > BENT
+    if plain and (yield from runs_beside(here, there)):
         return points[-2:]
     points[-2], points[-1] = here, there = (yield from sharpened(here)), (yield from sharpened(there))
-    wide, high = log(there.middle / here.middle), there.share - here.share
-    inner, length = [here], hypot(wide, high)
+    length = hypot(*apart(here, there))
+    inner = [here]
     for k in range(1, LOOKS):
-        part = k / LOOKS
-        bulge = 0.5 * there.turn * part * (1.0 - part) * length**2  # of an even turn, to the right of the chord
-
-        def place(t, part=part, bulge=bulge):
-            off = (t - bulge) / length
-            return here.middle * exp(part * wide - off * high), here.share + part * high + off * wide
-
+        place = place_beside(here, there, k / LOOKS)
         distances = widening(SHARP * length, STRAY * length)
         met = yield from beside(place, there.left, distances, EXACT * length, SHARPLY)
         if met is None:
@@ -179,6 +175,34 @@ def looked_between(points):
         middle, share = place(met[0])
         inner.append(there._replace(middle=middle, share=share))
     return [*inner, there]
+
+
+def apart(here, there):
+    """How far apart two points are: logarithm of the stretch, share."""
+    return log(there.middle / here.middle), there.share - here.share
+
+
+def place_beside(here, there, part):
+    """A stretch and a share, by how far they lie to the left of where an even turn passes a part of the chord."""
+    wide, high = apart(here, there)
+    length = hypot(wide, high)
+    bulge = 0.5 * there.turn * part * (1.0 - part) * length**2  # to the right
+
+    def place(t):
+        off = (t - bulge) / length
+        return here.middle * exp(part * wide - off * high), here.share + part * high + off * wide
+
+    return place
+
+
+def runs_beside(here, there):
+    """Whether the branch passes between two places to both sides of the middle of its last step."""
+    place, aside = place_beside(here, there, 0.5), ASIDE * there.step
+    for t in (aside, -aside):
+        answer = yield from ask(*place(t))
+        if answer.miss * there.left * t < 0.0:
+            return False
+    return True
 
 
 def turns_between(inner, sense):
