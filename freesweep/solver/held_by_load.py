@@ -16,7 +16,7 @@ import numpy as np
 from ..interpret import run
 from .batch import OUTPUTS, PIECES, kinds_of
 from .lanes import held
-from .lanes.held import AT_CYLINDER, BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH, TRIALS
+from .lanes.held import AT_CYLINDER, AT_OPPOSITE, BEGINNING, HELD, LONGEST, LOST, MULTIPLIER, RISE, STRETCH, TRIALS
 from .physics.lagrangian import ROUNDING
 from .physics.wall import LOOSE
 from .problem import AREA, FORCE, PHYSICAL, THREADS, TORQUE, wall_columns
@@ -124,18 +124,19 @@ def hold_by_load(problems, pressures, targets, unknown, accuracy, found, soon=Fa
             rows, begun = np.flatnonzero((found.status == PENDING) & fresh), beginnings[:, MULTIPLIER]
             if len(rows):
                 found.paths[rows] = (beginnings[rows, LOST] != 0.0) | (trial != AT_CYLINDER)
-                Way(search, rows, beginnings).go(found)
+                Way(search, rows, beginnings, trial != AT_OPPOSITE).go(found)
 
 
 class Way:
     """Where the search stands, of the rows that are left: the state last come to, and the nearest on both sides of the
-    target (multiplier, uniform stretch); between those the uniform tube needs no carrying.
+    target (multiplier, uniform stretch); between those the uniform tube needs no carrying. What began with a push, not
+    ``pulled``, tells nothing of states that a pull leads to.
     """
 
-    def __init__(self, search, rows, beginnings):
+    def __init__(self, search, rows, beginnings, pulled):
         n, own = len(search.problems), beginnings[rows]
         self.search, self.rows, self.states = search, rows, room_for(n, search.columns)
-        self.begun = rows
+        self.begun, self.pulled = rows, pulled
         self.at, self.stretch, self.first = (beginnings[:, k].copy() for k in (MULTIPLIER, STRETCH, HELD))
         self.origin, self.longest = self.at.copy(), beginnings[:, LONGEST]
         self.before, self.sides = np.full((2, n), np.nan), np.full((2, 2, n), np.nan)
@@ -238,7 +239,8 @@ class Way:
         too_long, fresh = c - self.search.targets[rows], np.isnan(self.first[rows])
         self.first[rows[fresh]] = c[fresh]
         limp = self.at[rows] <= -(1.0 - 2.0 * NEAREST) * self.search.pressures[rows]
-        found.status[rows[limp & (too_long > UNSURE * np.abs(self.first[rows] - c))]] = COMPRESSED
+        if self.pulled:
+            found.status[rows[limp & (too_long > UNSURE * np.abs(self.first[rows] - c))]] = COMPRESSED
         return limp & (too_long > 0.0)
 
     def settle(self, rows, found):

@@ -19,6 +19,7 @@ class Load(NamedTuple):
     e: float
 
 
+SPARED = 0.2  # of the pressure: what a push leaves it
 NO_CHANGE = Load(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 

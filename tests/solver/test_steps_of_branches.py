@@ -140,3 +140,30 @@ def test_length_that_a_pull_only_nears_is_impossible():
         problems, target, HELD_LENGTH, np.array([0, 1]), pressures[-1:], batch.uniform(24), ACCURACY
     )
     assert held.status.tolist() == [HELD_IMPOSSIBLE]
+
+
+def held_at_its_length(number):
+    """``(problems, pressure, what is found)`` of one design of a census, held at its undeformed length."""
+    problems, pressures = of_census(11, number)
+    problems[:, FORCE] = 0.0
+    lengths, last = problems[:, LENGTH].copy(), pressures[-1:]
+    found = hold_batch.hold_all(problems, lengths, HELD_LENGTH, np.array([0, 1]), last, batch.uniform(24), ACCURACY)
+    return problems, last, found
+
+
+@pytest.mark.parametrize("number", [91, 2846, 4736])
+def test_undeformed_lengths_that_a_strong_pull_leads_to(number):
+    """They were pushed, or lost, by what was told; under the force found the free tube has that length."""
+    problems, pressure, found = held_at_its_length(number)
+    assert found.status.tolist() == [OK]
+    problems[:, FORCE] = found.loads
+    free = walked(problems, pressure)
+    assert free.status.tolist() == [OK]
+    assert 2.0 * free.values[0, 0] == pytest.approx(problems[0, LENGTH], rel=1e-7)
+
+
+def test_a_way_that_begins_with_a_push_refuses_nothing():
+    """A pull leads to this length, through a snap that holding keeps from it; the force is that of meshes."""
+    _, _, found = held_at_its_length(4468)
+    assert found.status.tolist() == [OK]
+    assert found.loads[0] == pytest.approx(-1.46060373772, abs=1e-6)

@@ -15,10 +15,8 @@ EVEN, BENT = 0.99, 0.9  # cosines of the angle by which a branch turns on a step
 FIRST_PART, SMALLEST_PART = 0.05, 1e-3  # of fiber extension and rotation, by which they are raised at once
 APART = 1.2  # times as far from 1 are middles from which it is tried again
 ASIDE = 0.3  # of a step: how far from its tangent it may end
-FAINTEST, FAINT = (
-    1e-6,
-    1e-3,
-)  # a wave that is none: here the branch comes back to the straight tube; one that is next to none
+# a wave that is none: here the branch comes back to the straight tube; one that is next to none
+FAINTEST, FAINT = 1e-6, 1e-3
 ALONG, FINEST = 4, 256  # pieces in which a wave is summed along the branch, at first and at most
 ROUGH = 1e-4  # of the length: sums that are known no better need more pieces
 

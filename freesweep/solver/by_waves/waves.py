@@ -21,18 +21,12 @@ CENTER, PRESSURE = 2, 3  # among the numbers, behind those of the middles
 TORQUE = 4  # among the values, behind length, volume, twist and energy
 SIDES = (1.0, -1.0)  # of the swollen wave, and of the thinned one
 SIGNS = np.array([-1.0, 1.0, 1.0])  # of what the second wave adds to the conditions
-SHALLOW_STEP, DEEP_STEP = (
-    1e-6,
-    3e-5,
-)  # for slopes: little of a deep middle's length is known better than to 1e-8 of a layer
+# for slopes: little of a deep middle's length is known better than to 1e-8 of a layer
+SHALLOW_STEP, DEEP_STEP = 1e-6, 3e-5
 OFF_CENTER = 100.0  # times more is the center moved, of the way from it to the middles
 DEEP_ENOUGH, TOO_SHALLOW = 3.0, 1.5  # depths from which on a middle is told by its depth, and by its stretch again
-TRIES, CLOSE, STILL, FAR = (
-    12,
-    1e-10,
-    1e-4,
-    1.0,
-)  # Newton's steps: where they end; end, if they no longer get shorter; are lost
+# Newton's steps: their number, where they end; end, if they no longer get shorter; are lost
+TRIES, CLOSE, STILL, FAR = 12, 1e-10, 1e-4, 1.0
 SHORTER, SLIGHT = 0.3, 1e-3
 DEPTHS, MANY = 3.0, 10.0  # weight of a depth, which counts by itself from there on
 COUNTED = [waves.LEVEL, waves.X, 2]  # in the conditions, of what is told

@@ -16,6 +16,7 @@ branch turns back, at most designs for good: BEYOND_LIMIT.
 """
 
 from ...jit import kernel
+from ..load import SPARED
 from ..physics import lagrangian
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from . import ways
@@ -36,7 +37,6 @@ from .sought import (  # noqa: F401
 from .ways import EVERY, cylinder_multiplier, held_at
 
 PULLS = 0.0, 1.0, -1.0, 4.0, -4.0, 16.0, -16.0  # of the load that holds, as others rise: a tube may snap without it
-GENTLE = -0.8  # of the pressure: a push
 
 
 @kernel
@@ -73,9 +73,11 @@ def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
 
 @kernel
 def borne(pull, sought):
-    """The same pull, in units of what holds, or as much of a push as the pressure bears."""
+    """The same pull, in units of what holds; of pushes as much as the pressure bears, and the less is left of it the
+    stronger they are.
+    """
     unit = sought.unit.f
-    return max(pull, GENTLE * sought.with_pressure.p / unit) if unit > 0.0 else pull
+    return -(1.0 + SPARED / pull) * sought.with_pressure.p / unit if pull < 0.0 < unit else pull
 
 
 @kernel

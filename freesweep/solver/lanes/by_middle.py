@@ -2,8 +2,6 @@
 of it. What branches are made of (:mod:`..by_middle`).
 """
 
-from math import exp
-
 import numpy as np
 
 from ...jit import entry_point, kernel
@@ -11,7 +9,7 @@ from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
 from ..problem import FORCE, GAMMA, PHYSICAL, SOURCE, TORQUE
 from . import slack_ends
-from .meridian import ALMOST, DEEPEST, middle_at
+from .meridian import ALMOST, DEEPEST, fallen, middle_at
 from .outputs import DX, FLOOR, WITHIN, finish, unmet
 from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
 from .quadrature import between_ends, find_ends, scan
@@ -46,11 +44,9 @@ def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numb
     if len(load.wall) == 1:
         alpha, beta = limps
     miss = half - get(numbers[0], DX)
-    put(scratch, 0, min(max(min(mid.rate * miss, DEEPEST - mid.depth), -DEEPEST), DEEPEST))
-    for lane in range(WIDTH):
-        scratch[0, lane] = exp(scratch[0, lane])
+    grown = fallen(-min(max(min(mid.rate * miss, DEEPEST - mid.depth), -DEEPEST), DEEPEST), scratch)
     deep = (mid.depth >= DEEPEST) & (miss >= 0.0)  # what is left of the tube is as its middle
-    lack = select(driven, select(short > 0.0, -1.0 - short, select(deep, 0.0, get(scratch, 0) - 1.0)), min(lack, -1.0))
+    lack = select(driven, select(short > 0.0, -1.0 - short, select(deep, 0.0, grown - 1.0)), min(lack, -1.0))
     put(told, MISS, select(driven & isnt(valid), np.nan, lack))
     doubt = select(deep, 0.0, unmet(mid, zero, get(numbers[1], WITHIN)) * mid.rate + ROUNDING / (mid.q * abs(1.0 - y)))
     doubt = select(fine, doubt, np.inf)

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from ..cells import nothing_yet
-from ..load import Load, under
+from ..load import SPARED, Load, under
 from ..physics import lagrangian, membrane, physical
 from ..physics.lagrangian import ROUNDING
 from ..physics.wall import may_go_slack, with_bonded_fibers
@@ -29,7 +29,7 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
 LONGER = 1e-9  # relative: more than rounding
-STRONG, STRONGER, GENTLE = 4.0, 32.0, -0.8  # pulls, to pressure and torque; a push, to the pressure
+STRONG, STRONGER = 4.0, 32.0  # pulls, to pressure and torque
 # of a beginning: stretch and multiplier, length or rotation C of half the tube (NaN: not known yet), dC/dmu of a cylinder,
 # the longest half tube that the fibers allow, and whether the way from rest with C held is gone
 STRETCH, MULTIPLIER, HELD, RISE, LONGEST, LOST = range(6)
@@ -89,7 +89,7 @@ def free_start(cell, load, half, length_held, toward, trial, asked):
     opposite = trial > AT_STRONGER
     strength = select((trial > AT_STRONG) & isnt(opposite), spread(STRONGER), spread(STRONG))
     if length_held:
-        pull = select(opposite, GENTLE * load.p, strength * max(load.p, abs(load.m)))
+        pull = select(opposite, (SPARED - 1.0) * load.p, strength * max(load.p, abs(load.m)))
     else:
         pull = strength * select(opposite, -toward, toward) * max(load.p, abs(load.f))
     other, pulled = carried_from_rest(cell, holding(load, length_held, pull), half, asked & isnt(came))

@@ -29,10 +29,8 @@ APART = 1e-6  # of 2 q |u - 1|: difference of two stretches that has digits
 MEETS = 1e-9  # of q: as near to the middle as counts as there
 LEAST_RATE = 1e-12
 ALMOST = 0.99  # of one
-SHALLOW, DEPTHS = (
-    0.01,
-    30.0,
-)  # depths of a middle that is given: behind a turning point of the uniform tube there is none
+# depths of a middle that is given: behind a turning point of the uniform tube there is none
+SHALLOW, DEPTHS = 0.01, 30.0
 
 
 class Middle(NamedTuple):

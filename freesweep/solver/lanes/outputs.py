@@ -14,12 +14,9 @@ from .pack import OUTPUTS
 from .vector import get, put, select, spread
 
 SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
-SLACK, WORST, WITHIN = (
-    5,
-    7,
-    11,
-)  # behind the SUMS: lengths without a pull of both families, the largest of four rows, and
-# what the length summed up to any place may miss
+# behind the SUMS: lengths without a pull of both families, the largest of four rows, and what the length summed up to any
+# place may miss
+SLACK, WORST, WITHIN = 5, 7, 11
 STEEPEST = 3.0  # how much faster than evenly the depth may grow with its share
 FLOOR = 200.0  # times the rounding of a mesh: sums along few places, of which some hardly know R - T
 FAINT = 1e-8  # of a layer: what the rounding of R - T makes of its length

@@ -15,10 +15,8 @@ from .vector import get, put, select, spread
 
 OUTPUTS = LOADS + 1
 TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
-UNIFORM, SHALLOW = (
-    17.0,
-    12.0,
-)  # depth from which on the middle is the uniform tube's; times what is left of a layer there
+# depth from which on the middle is the uniform tube's; times what is left of a layer there
+UNIFORM, SHALLOW = 17.0, 12.0
 SAFETY, ALIKE = 0.25, 0.03  # of what FEWER bubbles lose; and of the most that this may be of a push in the middle
 FORCED, ROUGH = 10.0, 4.0  # times the force that is left; and what is not smooth
 ENDS, ROUNDING, FAINT = 3e-9, 1e-11, 1e-14  # of where ends of slack lie, of numbers, and of the drive of the middle

@@ -7,8 +7,6 @@ torque is told by its center: the stretch between those of both middles at which
 stable one.
 """
 
-from math import exp
-
 import numpy as np
 
 from ...jit import entry_point, kernel
@@ -17,7 +15,7 @@ from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
 from ..problem import SOURCE
 from . import slack_ends
-from .meridian import DEEPEST, logarithm, middle, middle_at
+from .meridian import DEEPEST, fallen, logarithm, middle, middle_at
 from .outputs import DX, FLOOR, WITHIN, finish
 from .pack import COLUMNS, LENGTH, OUTPUTS, PRESSURE, aligned, enter, loads
 from .profile import chosen
@@ -72,10 +70,8 @@ def measure(first, depth, cell, load, quarter, pieces, rows, ends, starts, edges
         put(told, k, outputs[k])
         put(told, BOUNDS + k, get(out[1], k))
         put(told, FLOORS + k, FLOOR * rounding[k])
-    put(scratch, 0, min(2.0 * max(given - deepest, 0.0), NEXT_TO_NOTHING))
-    for lane in range(WIDTH):
-        scratch[0, lane] = exp(-scratch[0, lane])
-    by_depth = 2.0 * mid.q * (1.0 - mid.q * mid.q) * mid.whole * mid.whole * get(scratch, 0)
+    left = fallen(min(2.0 * max(given - deepest, 0.0), NEXT_TO_NOTHING), scratch)
+    by_depth = 2.0 * mid.q * (1.0 - mid.q * mid.q) * mid.whole * mid.whole * left
     put(told, RISE, abs(mid.rise) * mid.s * select(known, abs(1.0 - mid.u) * by_depth, 1.0))
     put(told, X, x)
     strain = mid.q * (mid.u - 1.0)
