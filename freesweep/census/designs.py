@@ -6,7 +6,7 @@ import numpy as np
 
 from ..description.tube_model import MODELS, SHARES
 
-BLOCK = 256  # designs that are drawn, solved and counted together
+BLOCK = 256  # designs that are drawn together
 PRESSURES = 4  # of each design, beside its locked shape
 COLUMNS = (
     "alpha", "beta", "length/radius", "wall/radius", "fiber_extension", "c01/c10", "force", "torque", "pressure", "full",
@@ -51,6 +51,11 @@ def draw(count, seed, block, model=MODELS["source"]) -> Drawn:
     ]  # fmt: skip
     pressures = np.sort(_spread(rng, 0.003, 10.0, (BLOCK, PRESSURES)), axis=1)
     return Drawn(np.column_stack(columns)[:count], pressures[:count])
+
+
+def together(several) -> Drawn:
+    """All that was drawn, in this order."""
+    return Drawn(*(np.concatenate(arrays) for arrays in zip(*several)))
 
 
 def _spread(rng, low, high, shape=BLOCK):

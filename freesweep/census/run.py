@@ -7,9 +7,10 @@ import numpy as np
 from ..description.tube_model import DEFAULT, MODELS, word_faults
 from .audit import FINER, HELD
 from .count import Census
-from .designs import BLOCK, COLUMNS, PRESSURES, draw, with_pressures
+from .designs import BLOCK, COLUMNS, PRESSURES, draw, together, with_pressures
 
 HELD_EVERY = 16  # one design in that many is also held at its length and at its rotation
+BLOCKS = 8  # solved together: where branches have to be followed, many are as quick as few
 ACCURACY, AUDIT_ACCURACY = 1e-6, 1e-10
 
 
@@ -32,14 +33,15 @@ def census(count, seed=0, *, audit=1000, threads=None, progress=True, model=DEFA
     model = MODELS[model]
     found = Census(count, seed, model)
 
-    def run(block):
-        size = min(BLOCK, count - block * BLOCK)
-        return size, *_solve(draw(size, seed, block, model), min(size, audited), model)
+    def run(first):
+        sizes = [min(BLOCK, count - block * BLOCK) for block in range(first, min(first + BLOCKS, blocks))]
+        drawn = together([draw(size, seed, first + k, model) for k, size in enumerate(sizes)])
+        return sum(sizes), *_solve(drawn, np.concatenate([np.arange(size) < audited for size in sizes]), model)
 
-    _solve(draw(1, seed, 0, model), 0, model)  # compiles, or loads what is compiled
+    _solve(draw(1, seed, 0, model), np.zeros(1, bool), model)  # compiles, or loads what is compiled
     with ThreadPoolExecutor(threads or cores()) as pool, _bar(count, progress) as bar:
-        for first in range(0, blocks, 64):  # a few at a time: what is done is counted and let go
-            for size, counted, compared in pool.map(run, range(first, min(first + 64, blocks))):
+        for first in range(0, blocks, 16 * BLOCKS):  # a few at a time: what is done is counted and let go
+            for size, counted, compared in pool.map(run, range(first, min(first + 16 * BLOCKS, blocks), BLOCKS)):
                 for kind, designs, status in counted:
                     found.add(kind, designs, status)
                 for kind, *pair in compared:
@@ -49,8 +51,8 @@ def census(count, seed=0, *, audit=1000, threads=None, progress=True, model=DEFA
 
 
 def _solve(drawn, audited, model):
-    """Of all states of a block ``(kind, designs with pressures, status)``, and of some ``(kind, designs with pressures,
-    records, those of a finer mesh)``.
+    """Of all states of blocks ``(kind, designs with pressures, status)``, and of those of the ``audited`` designs (n,)
+    ``(kind, designs with pressures, records, those of a finer mesh)``.
     """
     from ..sweep.plan import FREE, Job
     from ..sweep.solve import solve_shard
@@ -66,11 +68,9 @@ def _solve(drawn, audited, model):
     rows = with_pressures(drawn.designs, drawn.pressures)
     counted.append(("free", rows.reshape(-1, len(COLUMNS)), grid[:, :-1].ravel()))
     counted.append(("locked", rows[:, -1], grid[:, -1]))
-    if audited:
-        part = first[audited]
-        locked = np.full((count, 1), np.inf)
-        every = with_pressures(drawn.designs, np.column_stack([drawn.pressures, locked])).reshape(-1, len(COLUMNS))
-        compared.append((FREE, every[:part], states[:part], _finer(job, audited)))
+    if np.any(audited):
+        every = with_pressures(drawn.designs[audited], pressures[audited]).reshape(-1, len(COLUMNS))
+        compared.append((FREE, every, states.reshape(count, -1)[audited].ravel(), _finer(job, audited)))
     some = slice(0, count, HELD_EVERY)
     for kind, load, target in zip(HELD, (6, 7), (problems[:, 8], nothing)):
         held, unloaded = problems[some].copy(), drawn.designs[some].copy()
@@ -80,21 +80,22 @@ def _solve(drawn, audited, model):
         designs = with_pressures(unloaded, drawn.pressures[some, -1:])[:, 0]
         states, _ = solve_shard(job, ACCURACY)
         counted.append((kind, designs, states["status"]))
-        if audited:
-            compared.append((kind, designs[:audited], states[:audited], _finer(job, audited)))
+        if np.any(audited[some]):
+            compared.append((kind, designs[audited[some]], states[audited[some]], _finer(job, audited[some])))
     return counted, compared
 
 
-def _finer(job, count):
-    """Records of a job's first so many problems, by meshes, and those finer ones."""
+def _finer(job, audited):
+    """Records of the ``audited`` of a job's problems (n,), by meshes, and those finer ones."""
     from ..sweep import solve
     from ..sweep.plan import FREE
 
-    first = job.first[: count + 1]
+    each = np.diff(job.first)
+    first = np.concatenate([[0], np.cumsum(each[audited])])
     edges = np.array([0, FINER * solve.BASE_CELLS])
     exact = (solve.UNIFORM[0], edges, solve.UNIFORM[2]), 0.0  # no profile, no error of one
     of_kind = solve._solve_free if job.kind == FREE else solve._solve_held
-    problems, targets, pressures = job.problems[:count], job.targets[:count], job.pressures[: first[-1]]
+    problems, targets, pressures = job.problems[audited], job.targets[audited], job.pressures[np.repeat(audited, each)]
     return of_kind(job.kind, problems, targets, first, pressures, exact, AUDIT_ACCURACY, lanes=False)[0]
 
 

@@ -7,7 +7,7 @@ questions answered together. To each pair of numbers belongs by how much it miss
 the middle, a smooth number: a branch is where that is none.
 """
 
-from math import isnan
+from math import copysign, isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -72,6 +72,15 @@ def ask(middle, share, tries=ALONG):
             break
     strain = middle - 1.0
     return answer._replace(miss=answer.miss * strain, doubt=answer.doubt * abs(strain))
+
+
+def sign_of(middle, share):
+    """The sign of the miss, from the first try that leaves no doubt of it; 0 where none does, NaN where there is no tube."""
+    for fineness in range(TRIES):
+        answer = yield from ask(middle, share, (range(fineness, fineness + 1), np.inf))
+        if not abs(answer.miss) <= answer.doubt:
+            return copysign(1.0, answer.miss) if answer.miss == answer.miss else np.nan
+    return 0.0
 
 
 def crossing(place, low, high, width=0.0, tries=ALONG):

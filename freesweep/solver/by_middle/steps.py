@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import atan2, cos, exp, hypot, log, pi, sin
 from typing import NamedTuple
 
-from .question import SHARPLY, WIDER, ask, beside, crossing, widening
+from .question import SHARPLY, WIDER, ask, beside, crossing, sign_of, widening
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
 SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
@@ -22,8 +22,8 @@ SHARP, EXACT = 1e-3, 1e-8  # of a step: how well a point, or a first load, need 
 FLAT = 4.0  # times what a point may be off: a change of the share that says nothing
 MOST_STEPS = 2000
 BENT = 0.2  # from one step to the next [radian], from which on a snap may hide in it
-ASIDE = 0.1  # of a step: where its middle has the branch between
 LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; parts that are looked at
+ASIDE, BARELY = 0.1, 1 / 16  # how far beside a step it has the branch between: of the step, and of what the share changes
 UNEVEN = 4.0  # times what the share changes on another part
 NOTHING_LESS = 1e-8  # of a step: by how much a branch need fall back to turn
 BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed
@@ -156,13 +156,12 @@ def goes_on(points, sense):
 
 
 def looked_between(points):
-    """The last step of a branch that hardly leads on, bends, or does not run beside its chord, as points of the branch
-    beside even ones of that, in which a small snap would show; else its two ends; one end alone where it has none beside.
+    """The last step of a branch, as its two ends where nothing hides between; else as points of the branch beside even ones
+    of its chord, in which a small snap would show; one end alone where it has none beside.
     """
-    here, there = points[-2:]
-    plain = abs(there.share - here.share) > LEVEL * there.step and not abs(there.chord - here.chord) > BENT
-    if plain and (yield from runs_beside(here, there)):
+    if (yield from runs_beside(*points[-2:])):
         return points[-2:]
+    here, there = points[-2:]
     points[-2], points[-1] = here, there = (yield from sharpened(here)), (yield from sharpened(there))
     length = hypot(*apart(here, there))
     inner = [here]
@@ -196,12 +195,19 @@ def place_beside(here, there, part):
 
 
 def runs_beside(here, there):
-    """Whether the branch passes between two places to both sides of the middle of its last step."""
-    place, aside = place_beside(here, there, 0.5), ASIDE * there.step
-    for t in (aside, -aside):
-        answer = yield from ask(*place(t))
-        if answer.miss * there.left * t < 0.0:
-            return False
+    """Whether a snap has no room in the last step: the branch passes between two places to both sides of its middle; where
+    it hardly leads on or bends, of each of its parts, so close that the share changes on all of them.
+    """
+    rise = abs(there.share - here.share)
+    plain = rise > LEVEL * there.step and not abs(there.chord - here.chord) > BENT
+    aside = ASIDE * there.step if plain else min(ASIDE * there.step, BARELY * rise)
+    if aside < SHARP * there.step:  # by which its ends may be off
+        return False
+    for part in (0.5,) if plain else (k / LOOKS for k in range(1, LOOKS)):
+        place = place_beside(here, there, part)
+        for t in (aside, -aside):
+            if there.left * t * (yield from sign_of(*place(t))) <= 0.0:
+                return False
     return True
 
 
