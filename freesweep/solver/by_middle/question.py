@@ -71,7 +71,7 @@ def ask(middle, share, tries=ALONG):
         if not answer.doubt > tries[1]:
             break
     strain = middle - 1.0
-    return answer._replace(miss=answer.miss * strain, doubt=answer.doubt * abs(strain))
+    return Answer(answer.miss * strain, answer.doubt * abs(strain), answer.fineness, answer.told, answer.row)
 
 
 def sign_of(middle, share):
