@@ -42,18 +42,24 @@ def largest_share(y, tangent, last):
 def load_slope(density, conjugate, x, y, n, cells, path, mu, b, spare):
     """``b = dg/dmu``: how the gradient of -J changes along the path; returns what C and its target do, ``C_mu - T'``."""
     step = DIFFERENCE * (abs(mu) + path.floor)
-    low, high = load_at(path, y, n, mu - step), load_at(path, y, n, mu + step)
+    low, here, high = load_at(path, y, n, mu - step), load_at(path, y, n, mu), load_at(path, y, n, mu + step)
     b[0] = 0.0
     for j in range(n):
-        h = x[j + 1] - x[j]
+        h, width = x[j + 1] - x[j], 2.0 * step
         middle, v = 0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h
         cell = of_length(cell_at(cells, j), h)
-        _, below_y, below_v, _, _, _ = density(middle, v, cell, low)
-        _, above_y, above_v, _, _, _ = density(middle, v, cell, high)
-        half, turn = 0.5 * h * (above_y - below_y), above_v - below_v
-        b[j] = (b[j] - half + turn) / (2.0 * step)
+        room_below, below_y, below_v, _, _, _ = density(middle, v, cell, low)
+        room_above, above_y, above_v, _, _, _ = density(middle, v, cell, high)
+        if not (room_below > 0.0 and room_above > 0.0):  # a meridian all but upright: one side of the load has no room
+            width = step
+            _, now_y, now_v, _, _, _ = density(middle, v, cell, here)
+            if room_above > room_below:
+                below_y, below_v = now_y, now_v
+            else:
+                above_y, above_v = now_y, now_v
+        half, turn = 0.5 * h * (above_y - below_y) / width, (above_v - below_v) / width
+        b[j] += turn - half
         b[j + 1] = -half - turn
-    b[n] /= 2.0 * step
     if not path.held.any:
         return 0.0
     below, _ = hold(conjugate, x, y, n, cells, low, path.held.unit, spare)
@@ -156,6 +162,8 @@ def correct(density, conjugate, track, y, mu, n, cells, path, normal_mu, tangent
         now, held_row = load_at(path, y, n, mu), (0.0, 0.0, 0.0)
         if not assemble(density, track.x, y, n, cells, now, False, least, room, g, d, e):
             return LOST, 0, mu, 0.0
+        for i in range(n):  # one step must not use up a cell's room: next to none it is so stiff that it seems to have come
+            least[i] = room[i]
         by_mu = load_slope(density, conjugate, track.x, y, n, cells, path, mu, b, of_k)
         if held.any:
             total, by_held = hold(conjugate, track.x, y, n, cells, now, held.unit, c)
