@@ -23,7 +23,7 @@ from freesweep.solver.numerics.continuation import CHANGE, FIRST_STEP, advance, 
 from freesweep.solver.numerics.path import NOTHING
 from freesweep.solver.numerics.path import Path as Loads
 from freesweep.solver.numerics.properties_along import Tube
-from freesweep.solver.physics import lagrangian
+from freesweep.solver.of_tube import of_tube
 from freesweep.solver.problem import SOURCE, rubber_of, wall_of
 
 CELLS, BEHIND = 48, 17  # of half the tube; steps that are drawn behind the fold
@@ -47,17 +47,17 @@ def branch():
     rest = Load(1.0, rubber_of(problem), wall_of(problem, SOURCE), 0.0, 0.0, 0.0, 1.0)
     path = Loads(rest, by(1.0, 0.0, 0.0), 0.0, False, NOTHING)
     space, track = make_space(CELLS, 1), make_track(CELLS, True, False)
-    how = lagrangian.density, lagrangian.conjugate, track, CELLS, cells, path
+    how = of_tube(), track, CELLS, cells, path
     _, mu, slope = begin(track, space, tube, path)
     states, step, before, fold = [(track.y[-1], mu)], FIRST_STEP * CHANGE, None, None
     while before is None or len(states) < before + BEHIND:
-        status, negative, ahead, next_slope, made, step = advance(*how, mu, slope, step, space.work)
+        status, negative, ahead, next_slope, made, step = advance(*how, (mu, slope), step, space.work)
         if status != FOLLOWED:
             break
         if before is None and not is_stable(negative, next_slope, 1.0):
-            top, _, _ = last_alike(*how, mu, slope, made, 1.0, True, space.work)
+            top, _, _ = last_alike(*how, (mu, slope), made, 1.0, True, space.work)
             fold, before = (track.next_y[-1], top), len(states)
-            advance(*how, mu, slope, made, space.work)
+            advance(*how, (mu, slope), made, space.work)
         mu, slope = take(track, tube, path, ahead, next_slope, space.work)
         states.append((track.y[-1], mu))
     unit = np.array([1.0, TUBE.material.c10])

@@ -8,7 +8,7 @@ from ..load import loaded
 from ..numerics.bordered import FOLLOWED
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
 from ..numerics.properties_along import fill
-from ..physics import lagrangian
+from ..of_tube import of_tube
 from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from .fold import locate
@@ -103,9 +103,7 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
     here, first = (mu, tangent_mu), mu
     for _ in range(MOST_STEPS):
         own = fill(course, edges, track.x, n, n, cells)
-        status, negative, mu, tangent_mu, made, step = advance(
-            lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], step, space.work
-        )
+        status, negative, mu, tangent_mu, made, step = advance(of_tube(), track, n, own, path, here, step, space.work)
         ahead = (mu, tangent_mu, made)
         lost = status != FOLLOWED
         if lost and not is_flat(here[0], here[1], path):
@@ -117,20 +115,7 @@ def follow(track, roomy, space, tube, path, mu, tangent_mu, far, rows, limit, ac
                 for i in range(len(track.y)):
                     track.next_y[i], track.next_tangent[i] = track.y[i], track.tangent[i]
             else:
-                ahead = last_alike(
-                    lagrangian.density,
-                    lagrangian.conjugate,
-                    track,
-                    n,
-                    own,
-                    path,
-                    here[0],
-                    here[1],
-                    made,
-                    sense,
-                    True,
-                    space.work,
-                )
+                ahead = last_alike(of_tube(), track, n, own, path, here, made, sense, True, space.work)
             passed = (ahead[0] - far) * sense >= 0.0
             if sense < 0.0 or (passed and len(rows.pressures) == 0):  # a limit pressure is one of rising pressures
                 answer(track, space, tube, path, first, here, ahead, rows, accuracy)

@@ -10,8 +10,8 @@ from ..numerics.path import Track
 
 
 class Space(NamedTuple):
-    """Scratch: of :func:`..numerics.nested.solve`, a mesh and shape of its own (n + 1,), and uniform stretches along
-    the tube.
+    """Scratch: a :class:`..numerics.nested.Room`, with a mesh and shape of its own (n + 1,); and curves, and uniform
+    stretches along the tube.
     """
 
     fine: np.ndarray

@@ -6,10 +6,11 @@ from ..free.fold import locate
 from ..load import loaded
 from ..numerics import nested, newton
 from ..numerics.continuation import is_flat
+from ..numerics.held import Target
 from ..numerics.path import load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
-from ..physics import lagrangian
+from ..of_tube import of_tube
 from ..stability import pushed, unstable_directions
 from ..status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 from . import near_turn, ways
@@ -81,10 +82,11 @@ def on_meshes(track, space, tube, end, sought, path, accuracy, out):
     n, load, unit = len(track.x) - 1, sought.load, sought.unit
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.y[i]
-    status, unstable, doublings, _ = nested.solve(
-        lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, space.x, space.y, tube, load,
-        nested.HELD, unit, sought.wanted, track.y[n + 1], 1, accuracy, space.fine, space.work, space.table, out,
-    )  # fmt: skip
+    target, own = (
+        Target(unit, sought.wanted, True),
+        nested.Room(space.x, space.y, space.fine, space.work, space.table, out),
+    )
+    status, unstable, doublings, _ = nested.solve(of_tube(), own, tube, load, target, track.y[n + 1], 1, accuracy)
     if status == newton.CONVERGED or status == nested.UNREACHED:
         if not differ(extremes(track.y[: n + 1], tube.middle), extremes(space.y, tube.middle)):
             now = loaded(load, unit, out[0, nested.MULTIPLIER])

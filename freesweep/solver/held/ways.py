@@ -18,6 +18,7 @@ from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_fla
 from ..numerics.path import NOTHING, Held, Path, Track, load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
+from ..of_tube import of_tube
 from ..physics import lagrangian
 from ..physics.wall import may_go_slack, with_bonded_fibers
 from ..stability import pushed
@@ -142,18 +143,14 @@ def follow(room, tube, path, mu, tangent_mu, until):
     n, here, step = len(track.x) - 1, (mu, tangent_mu), FIRST_STEP * CHANGE
     for _ in range(MOST_STEPS):
         own = fill(course, edges, track.x, n, n, cells)
-        status, negative, mu, tangent_mu, made, step = advance(
-            lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], step, work
-        )
+        status, negative, mu, tangent_mu, made, step = advance(of_tube(), track, n, own, path, here, step, work)
         if status != FOLLOWED:
             gone = pushed(track.y[: n + 1], own, load_at(path, track.y, n, here[0]))
             flat = is_flat(here[0], here[1], path)  # no step leads round so sharp a fold
             return stopped(COMPRESSED if gone else BEYOND_LIMIT if flat else NOT_CONVERGED, path, here[0], here[1])
         ahead, ends = (mu, tangent_mu, made), not is_stable(negative, tangent_mu, 1.0)
         if ends:
-            ahead = last_alike(
-                lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], made, 1.0, True, work
-            )
+            ahead = last_alike(of_tube(), track, n, own, path, here, made, 1.0, True, work)
         if ahead[0] >= until:
             return land(room, tube, path, here, ahead, until)
         if ends:
