@@ -16,7 +16,7 @@ from freesweep.plot import style
 from freesweep.scaling import problem_rows
 from freesweep.solver.free.branch import begin
 from freesweep.solver.free.meshes import take
-from freesweep.solver.free.space import make_space, make_track
+from freesweep.solver.free.space import make_room
 from freesweep.solver.load import Load, by
 from freesweep.solver.numerics.bordered import FOLLOWED
 from freesweep.solver.numerics.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike
@@ -46,9 +46,10 @@ def branch():
     tube = Tube(course, edges, cells, True, CELLS, places)
     rest = Load(1.0, rubber_of(problem), wall_of(problem, SOURCE), 0.0, 0.0, 0.0, 1.0)
     path = Loads(rest, by(1.0, 0.0, 0.0), 0.0, False, NOTHING)
-    space, track = make_space(CELLS, 1), make_track(CELLS, True, False)
+    room = make_room(CELLS, True, False, 1)
+    space, track = room.space, room.track
     how = of_tube(), track, CELLS, cells, path
-    _, mu, slope = begin(track, space, tube, path)
+    _, mu, slope = begin(room, tube, path)
     states, step, before, fold = [(track.y[-1], mu)], FIRST_STEP * CHANGE, None, None
     while before is None or len(states) < before + BEHIND:
         status, negative, ahead, next_slope, made, step = advance(*how, (mu, slope), step, space.work)

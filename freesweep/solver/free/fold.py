@@ -80,11 +80,11 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
 
 
 @kernel
-def locate(track, roomy, space, tube, path, here, ahead, sense):
-    """The load at which the branch ends, from the state ``here`` in ``track``; ``ahead`` is where the base mesh has that
-    edge. ``(load, bound)``, NaN where some mesh has none near, or they do not agree; ``roomy`` is a track for the finest.
+def locate(room, tube, path, here, ahead, sense):
+    """The load at which the branch ends, from the state ``here`` in the room's track; ``ahead`` is where the base mesh has
+    that edge. ``(load, bound)``, NaN where some mesh has none near, or they do not agree.
     """
-    n = len(track.x) - 1
+    space, track, n = room.space, room.track, len(room.track.x) - 1
     course, edges, cells, free, _, _ = tube
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.next_y[i]
@@ -95,7 +95,7 @@ def locate(track, roomy, space, tube, path, here, ahead, sense):
     loads, doubt = space.table[0], 0.0
     for k in range(len(COUNTS)):
         count = n * COUNTS[k] // 2
-        own = nodes_of(roomy, count, free)
+        own = nodes_of(room.roomy, count, free)
         if COUNTS[k] == 1:
             for i in range(count + 1):
                 own.x[i] = space.x[2 * i]

@@ -55,11 +55,11 @@ def plain(space, tube, load, accuracy):
 
 
 @kernel
-def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
-    """The state at ``pressure``, between one at the pressure ``first``, in ``track``, and a fold at ``limit`` whose shape is
-    a step ahead there; as :func:`plain`. The error of the pressure that was met enters the bounds.
+def near_fold(room, tube, path, pressure, first, limit, accuracy):
+    """The state at ``pressure``, between one at the pressure ``first``, in the room's track, and a fold at ``limit`` whose
+    shape is a step ahead there; as :func:`plain`. The error of the pressure that was met enters the bounds.
     """
-    n = len(space.x) - 1
+    space, track, n = room.space, room.track, len(room.space.x) - 1
     course, edges, cells, _, _, _ = tube
     own = fill(course, edges, track.x, n, n, cells)
     direction = by(pressure, 0.0, 0.0)

@@ -8,14 +8,12 @@ from typing import NamedTuple
 from ...jit import kernel
 from .. import guide
 from ..free.branch import begin
-from ..free.fold import FINEST
 from ..free.meshes import stand, take
-from ..free.space import Space, make_space, make_track
 from ..load import NO_CHANGE, Load, by, loaded
 from ..numerics import held
 from ..numerics.bordered import FOLLOWED
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
-from ..numerics.path import NOTHING, Held, Path, Track, load_at
+from ..numerics.path import NOTHING, Held, Path, load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
 from ..of_tube import of_tube
@@ -31,14 +29,6 @@ HALVINGS = 60  # of its load, until that holds
 LEAST_SHARE = 1e-6  # of the loads: all but none
 
 
-class Room(NamedTuple):
-    """What a way is followed with: scratch, the branch, and one on finer meshes."""
-
-    space: Space
-    track: Track
-    roomy: Track
-
-
 class End(NamedTuple):
     """Where a way was left: OK at its end, BEYOND_LIMIT where it turns back or becomes unstable; (mu, the tangent's mu) of
     the state in the track, and (mu, the tangent's mu, step) of the last one ahead of it.
@@ -48,14 +38,6 @@ class End(NamedTuple):
     path: Path
     here: tuple
     ahead: tuple
-
-
-@kernel
-def make_room(base, half, varying):
-    """Scratch for a base mesh of so many cells."""
-    return Room(
-        make_space(base, guide.PLACES if varying else 1), make_track(base, half, True), make_track(FINEST * base, half, True)
-    )  # fmt: skip
 
 
 @kernel
@@ -214,7 +196,7 @@ def from_free(room, tube, load, unit, pull, target):
     n = len(track.x) - 1
     course, edges, cells, _, _, _ = tube
     track.y[n + 1] = track.next_y[n + 1] = 0.0
-    status, mu, tangent_mu = begin(track, room.space, tube, path)
+    status, mu, tangent_mu = begin(room, tube, path)
     if status != FOLLOWED:
         return stopped(NOT_CONVERGED, path, 0.0, 1.0)
     if mu < 1.0:

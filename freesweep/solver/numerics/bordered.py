@@ -62,6 +62,7 @@ def largest_share(y, tangent, last):
 @kernel
 def load_slope(functional, x, y, n, cells, path, mu, b, spare):
     """``b = dg/dmu``: how the gradient of -J changes along the path; returns what C and its target do, ``C_mu - T'``."""
+    density, conjugate = functional.density, functional.conjugate
     step = DIFFERENCE * (abs(mu) + path.floor)
     low, high = load_at(path, y, n, mu - step), load_at(path, y, n, mu + step)
     b[0] = 0.0
@@ -69,16 +70,16 @@ def load_slope(functional, x, y, n, cells, path, mu, b, spare):
         h = x[j + 1] - x[j]
         middle, v = 0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h
         cell = of_length(cell_at(cells, j), h)
-        _, below_y, below_v, _, _, _ = functional.density(middle, v, cell, low)
-        _, above_y, above_v, _, _, _ = functional.density(middle, v, cell, high)
+        _, below_y, below_v, _, _, _ = density(middle, v, cell, low)
+        _, above_y, above_v, _, _, _ = density(middle, v, cell, high)
         half, turn = 0.5 * h * (above_y - below_y), above_v - below_v
         b[j] = (b[j] - half + turn) / (2.0 * step)
         b[j + 1] = -half - turn
     b[n] /= 2.0 * step
     if not path.held.any:
         return 0.0
-    below, _ = hold(functional.conjugate, x, y, n, cells, low, path.held.unit, spare)
-    above, _ = hold(functional.conjugate, x, y, n, cells, high, path.held.unit, spare)
+    below, _ = hold(conjugate, x, y, n, cells, low, path.held.unit, spare)
+    above, _ = hold(conjugate, x, y, n, cells, high, path.held.unit, spare)
     return (above - below) / (2.0 * step) - path.held.change
 
 
