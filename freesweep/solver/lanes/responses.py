@@ -144,9 +144,10 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
 
 
 @entry_point
-def differentiate_lanes(problems, pressures, middles, limp, order, constants, layers, used, pieces, values, bounds):
-    """Values and bounds (rows, OUTPUTS, TOLD) of the rows in the given ``order``, WIDTH at a time: of the outputs, of their
-    derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where vectors cannot.
+def differentiate_lanes(problems, pressures, middles, limp, order, constants, layers, used, pieces, told):
+    """Values and bounds, ``told`` (2, rows, OUTPUTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
+    outputs, of their derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where
+    vectors cannot.
 
     Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
     where some family goes slack along a part of it. ``used`` are the numbers that there are, all LOADS among them.
@@ -187,5 +188,5 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
             for i in range(OUTPUTS):
                 for j in range(TOLD):
                     k = TOLD * i + j
-                    values[row, i, j] = out[0, k, lane] if (met >> lane) & 1 else np.nan
-                    bounds[row, i, j] = out[1, k, lane]
+                    told[0, row, i, j] = out[0, k, lane] if (met >> lane) & 1 else np.nan
+                    told[1, row, i, j] = out[1, k, lane]
