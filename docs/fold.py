@@ -16,14 +16,14 @@ from freesweep.plot import style
 from freesweep.scaling import problem_rows
 from freesweep.solver.free.branch import begin
 from freesweep.solver.free.meshes import take
-from freesweep.solver.free.space import make_space, make_track
+from freesweep.solver.free.space import make_room
 from freesweep.solver.load import Load, by
 from freesweep.solver.numerics.bordered import FOLLOWED
 from freesweep.solver.numerics.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike
 from freesweep.solver.numerics.path import NOTHING
 from freesweep.solver.numerics.path import Path as Loads
 from freesweep.solver.numerics.properties_along import Tube
-from freesweep.solver.physics import lagrangian
+from freesweep.solver.of_tube import of_tube
 from freesweep.solver.problem import SOURCE, rubber_of, wall_of
 
 CELLS, BEHIND = 48, 17  # of half the tube; steps that are drawn behind the fold
@@ -46,18 +46,19 @@ def branch():
     tube = Tube(course, edges, cells, True, CELLS, places)
     rest = Load(1.0, rubber_of(problem), wall_of(problem, SOURCE), 0.0, 0.0, 0.0, 1.0)
     path = Loads(rest, by(1.0, 0.0, 0.0), 0.0, False, NOTHING)
-    space, track = make_space(CELLS, 1), make_track(CELLS, True, False)
-    how = lagrangian.density, lagrangian.conjugate, track, CELLS, cells, path
-    _, mu, slope = begin(track, space, tube, path)
+    room = make_room(CELLS, True, False, 1)
+    space, track = room.space, room.track
+    how = of_tube(), track, CELLS, cells, path
+    _, mu, slope = begin(room, tube, path)
     states, step, before, fold = [(track.y[-1], mu)], FIRST_STEP * CHANGE, None, None
     while before is None or len(states) < before + BEHIND:
-        status, negative, ahead, next_slope, made, step = advance(*how, mu, slope, step, space.work)
+        status, negative, ahead, next_slope, made, step = advance(*how, (mu, slope), step, space.work)
         if status != FOLLOWED:
             break
         if before is None and not is_stable(negative, next_slope, 1.0):
-            top, _, _ = last_alike(*how, mu, slope, made, 1.0, True, space.work)
+            top, _, _ = last_alike(*how, (mu, slope), made, 1.0, True, space.work)
             fold, before = (track.next_y[-1], top), len(states)
-            advance(*how, mu, slope, made, space.work)
+            advance(*how, (mu, slope), made, space.work)
         mu, slope = take(track, tube, path, ahead, next_slope, space.work)
         states.append((track.y[-1], mu))
     unit = np.array([1.0, TUBE.material.c10])

@@ -94,13 +94,13 @@ def _time(run, *arguments):
 @kernel
 def passes(count, x, y, cells, load, work):
     """That many Newton passes at the same state."""
-    n = len(x) - 1
+    n, own = len(x) - 1, newton.system_in(work)
     total = 0.0
     for _ in range(count):
-        newton.assemble(lagrangian.density, x, y, n, cells, load, False, work[7], work[6], work[0], work[1], work[2])
-        newton.factor(work[1], work[2], 1, n, work[3])
-        newton.substitute(work[3], work[2], 1, n, work[0], work[4])
-        total += work[4, n]
+        newton.assemble(lagrangian.density, x, y, n, cells, load, False, own)
+        newton.factor(own.d, own.e, 1, n, own.inverse)
+        newton.substitute(own.inverse, own.e, 1, n, own.g, own.step)
+        total += own.step[n]
     return total
 
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..jit import entry_point, kernel
 from ..solver.along.places import pulls, strain_square
+from ..solver.physics.fibers import multipliers, reach
 from ..solver.physics.physical import place, uniform_tube
-from ..solver.physics.relaxed import multipliers, reach
 from ..solver.physics.wall import slopes, stored
 from .physical_tube import LEAST, problem
 from .reference import C10, FIBERS, RADIUS, WALL
@@ -51,7 +51,7 @@ def firmness(y, constant, cell, load):
     scale, (pull, G_1, psi, taut_alpha, taut_beta) = load.p + abs(load.f), along(y, constant, cell, load)
     _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
     s = math.sqrt(max(1.0 + G_1, LEAST))
-    alpha, beta = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load.m, W_G, W_p)
+    alpha, beta = multipliers(y, s, psi, (taut_alpha, taut_beta), cell, pull, load.m, W_G, W_p)
     stretch, h, d = load.gamma * load.gamma - 1.0, cell[0], cell[1]
     alpha = alpha / scale if taut_alpha else G_1 - reach(y, psi, h + d, stretch)
     beta = beta / scale if taut_beta else G_1 - reach(y, psi, h - d, stretch)
@@ -104,7 +104,7 @@ def worst_at(y, constant, cell, load, outside, out):
     G_1 = max(G_1, LEAST - 1.0)
     s = math.sqrt(1.0 + G_1)
     _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
-    alpha, beta = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load.m, W_G, W_p)
+    alpha, beta = multipliers(y, s, psi, (taut_alpha, taut_beta), cell, pull, load.m, W_G, W_p)
     alpha, beta = pulls(alpha, beta, cell, load)
     out[0], out[1], out[2], out[3] = y * y + outside / s, strain_square(y, G_1, psi, cell, load.wall), -alpha, -beta
 

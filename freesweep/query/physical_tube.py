@@ -10,8 +10,8 @@ import math
 
 from ..jit import entry_point, kernel
 from ..solver.load import Load
+from ..solver.physics.fibers import both_reach, multipliers, taut_twist
 from ..solver.physics.physical import density, kind_of, place
-from ..solver.physics.relaxed import both_reach, multipliers, taut_twist
 from ..solver.physics.wall import has_two_families, slopes, stored
 from .reference import (
     ALPHA,
@@ -183,7 +183,7 @@ def uniform(kind, point, thick, loose, columns, out):
 def pulling(y, pull, G_1, psi, cell, load):
     """Which of two bonded families do not push, where the axial resultant is ``pull``."""
     _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
-    alpha, beta = multipliers(y, math.sqrt(1.0 + G_1), psi, True, True, cell[0], cell[1], pull, load.m, W_G, W_p)
+    alpha, beta = multipliers(y, math.sqrt(1.0 + G_1), psi, (True, True), cell, pull, load.m, W_G, W_p)
     return alpha >= 0.0, beta >= 0.0
 
 

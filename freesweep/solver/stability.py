@@ -33,10 +33,11 @@ def unstable_directions(x, y, n, base, tube, load, direction, held_size, work):
     """
     course, edges, cells, free, _, _ = tube
     own = fill(course, edges, x, n, base, cells)
-    g, d, e, inverse, b, response = work[0], work[1], work[2], work[3], work[8], work[9]
+    system, b, response = newton.system_in(work), work[8], work[9]
+    d, e, inverse = system.d, system.e, system.inverse
     for i in range(n + 1):
-        work[7, i] = 0.0
-    newton.assemble(lagrangian.density, x, y, n, own, load, False, work[7], work[6], g, d, e)
+        system.least[i] = 0.0
+    newton.assemble(lagrangian.density, x, y, n, own, load, False, system)
     negative = newton.factor(d, e, 1, n - 1, inverse)
     last = n if free else n - 1
     if free:

@@ -19,6 +19,9 @@ from freesweep.solver.free import space
 from freesweep.solver.load import NO_CHANGE, Load
 from freesweep.solver.numerics import bordered, continuation, held, mesh, nested, newton
 from freesweep.solver.numerics.bordered import FOLLOWED
+from freesweep.solver.numerics.functional import Functional
+from freesweep.solver.numerics.held import NOTHING, Target
+from freesweep.solver.numerics.newton import Mesh
 from freesweep.solver.numerics.path import Held, Path
 from freesweep.solver.numerics.properties_along import Tube
 
@@ -68,6 +71,9 @@ def scales(outputs, cell, load, length, tolerance):
     return (1.0, 1.0, 1.0, 1.0, 1.0, 1.0), (floor, floor, floor, floor, floor, floor)
 
 
+FUNCTIONAL = Functional(density, conjugate, integrands, scales)
+
+
 @pytest.fixture(autouse=True)
 def division():
     with as_kernels_divide():
@@ -111,23 +117,19 @@ def bratu(theta):
 def on_one_mesh(x, y, cell, load, free=True, tolerance=1e-14):
     """Newton on one mesh: (status, negative pivots)."""
     work = np.zeros((13, len(x)))
-    return newton.solve(
-        density, x, y, len(x) - 1, free, np.array([[cell, 0.0, 0.0]]), load, newton.UNKNOWN, tolerance, work
-    )[:2]  # fmt: skip
+    own = Mesh(x, len(x) - 1, free, np.array([[cell, 0.0, 0.0]]))
+    return newton.solve(density, y, own, load, newton.UNKNOWN, tolerance, work)[:2]
 
 
-def on_nested_meshes(x, y, cell, load=REST, goal=nested.PLAIN, direction=REST, target=0.0, mu=0.0, accuracy=1e-8):
+def on_nested_meshes(x, y, cell, load=REST, target=NOTHING, mu=0.0, accuracy=1e-8):
     """``(status, unstable, doublings, values, bounds, table)`` of nested.solve."""
-    size = ((len(x) - 1) << nested.MAX_DOUBLINGS) + 2
-    out, table = np.zeros((4, nested.OUTPUTS)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS))
+    room = space.make_space(len(x) - 1, 1)
+    room.x[:], room.y[:] = x, y
     course, last = np.zeros((1, 1, 3, 4)), len(x) - 1
     course[0, 0, 0, 0] = cell
     tube = Tube(course, np.array([0, last]), np.zeros((1, 3)), True, last, np.array([0.0, X]))
-    status, unstable, doublings, _ = nested.solve(
-        density, conjugate, integrands, scales, x, y, tube, load, goal, direction, target, mu, 2, accuracy,
-        np.zeros((5, size)), np.zeros((13, size)), table, out,
-    )  # fmt: skip
-    return status, unstable, doublings, out[0], out[1], table
+    status, unstable, doublings, _ = nested.solve(FUNCTIONAL, room, tube, load, target, mu, 2, accuracy)
+    return status, unstable, doublings, room.out[0], room.out[1], room.table
 
 
 def start(cells=24, value=1.0):
@@ -139,9 +141,9 @@ def start(cells=24, value=1.0):
 def curvature(x, y, cell, load, free):
     """Negative pivots of the second variation at y: unstable directions."""
     n = len(x) - 1
-    g, d, e, pivot, room = (np.zeros(n + 1) for _ in range(5))
-    assert newton.assemble(density, x, y, n, np.array([[cell, 0.0, 0.0]]), load, False, np.zeros(n + 1), room, g, d, e)
-    return newton.factor(d, e, 1, n if free else n - 1, pivot)
+    own = newton.system_in(np.zeros((8, n + 1)))
+    assert newton.assemble(density, x, y, n, np.array([[cell, 0.0, 0.0]]), load, False, own)
+    return newton.factor(own.d, own.e, 1, n if free else n - 1, own.inverse)
 
 
 def orders(errors):
@@ -191,7 +193,7 @@ def test_a_chain_of_given_length_hangs_as_a_catenary():
     x, _ = start()
     y = 1.0 - 0.5 * np.sin(0.5 * pi * x / X)
     status, unstable, _, values, bounds, _ = on_nested_meshes(
-        x, y, FILM, goal=nested.HELD, direction=ALONG_MU, target=length, mu=0.2, accuracy=1e-8
+        x, y, FILM, target=Target(ALONG_MU, length, True), mu=0.2, accuracy=1e-8
     )
     assert (status, unstable) == (newton.CONVERGED, 0)
     exact = 1.0 - c * cosh(X / c)
@@ -209,19 +211,17 @@ def fold_of_bratu(cells, begin):
     track.x[:], track.y[:] = x, y
     path, own, work = Path(REST, ALONG_MU, 0.0, False), np.array([[BRATU, 0.0, 0.0]]), np.zeros((13, cells + 2))
     status, _, mu, slope = bordered.correct(
-        density, conjugate, track, track.y, begin, cells, own, path, 1.0, track.tangent, work
+        FUNCTIONAL, track, track.y, begin, cells, own, path, 1.0, track.tangent, work
     )
     assert status == FOLLOWED
     slope, step = continuation.make_unit(track, cells, mu, slope, path), 0.01
     while True:
         status, negative, ahead, next_slope, made, step = continuation.advance(
-            density, conjugate, track, cells, own, path, mu, slope, step, work
+            FUNCTIONAL, track, cells, own, path, (mu, slope), step, work
         )
         assert status == FOLLOWED
         if not continuation.is_stable(negative, next_slope, 1.0):
-            return continuation.last_alike(
-                density, conjugate, track, cells, own, path, mu, slope, made, 1.0, True, work
-            )[0]
+            return continuation.last_alike(FUNCTIONAL, track, cells, own, path, (mu, slope), made, 1.0, True, work)[0]
         track.y[:], track.tangent[:] = track.next_y, track.next_tangent
         mu, slope = ahead, continuation.make_unit(track, cells, ahead, next_slope, path)
 
@@ -244,13 +244,11 @@ def test_where_the_conjugate_integral_is_held_a_way_goes_on_through_the_fold():
     first, _ = held.hold(conjugate, track.x, track.y, cells, own, load, ALONG_MU, work[8])
     track.y[-1] = 2.0
     path = Path(REST, REST, 1.0, False, Held(ALONG_MU, first, 9.0 * first, True, 0))
-    status, _, mu, slope = bordered.correct(
-        density, conjugate, track, track.y, 0.0, cells, own, path, 1.0, track.tangent, work
-    )
+    status, _, mu, slope = bordered.correct(FUNCTIONAL, track, track.y, 0.0, cells, own, path, 1.0, track.tangent, work)
     slope, step, loads, shares = continuation.make_unit(track, cells, mu, slope, path), 0.01, [], []
     while mu < 1.0:
         status, unstable, mu, slope, _, step = continuation.advance(
-            density, conjugate, track, cells, own, path, mu, slope, step, work
+            FUNCTIONAL, track, cells, own, path, (mu, slope), step, work
         )
         assert (status, unstable) == (FOLLOWED, 0)
         track.y[:], track.tangent[:] = track.next_y, track.next_tangent
@@ -307,7 +305,15 @@ def test_holding_the_conjugate_integral_stabilises_the_upper_branch(strength, pa
     work = np.zeros((13, len(x)))
     target, _ = held.hold(conjugate, x, y, len(x) - 1, cells, load, ALONG_MU, work[8])
     status, unstable, mu, sigma = held.solve_held(
-        density, conjugate, x, y, len(x) - 1, True, cells, REST, ALONG_MU, 0.9 * strength, target, 1e-12, 60, work
+        FUNCTIONAL,
+        y,
+        Mesh(x, len(x) - 1, True, cells),
+        REST,
+        Target(ALONG_MU, target, True),
+        0.9 * strength,
+        1e-12,
+        60,
+        work,
     )
     assert (status, unstable) == (newton.CONVERGED, 0)
     assert mu == pytest.approx(strength, rel=1e-4)

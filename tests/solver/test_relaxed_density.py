@@ -6,7 +6,7 @@ from scipy.optimize import minimize
 
 from freesweep.solver.cells import nothing_yet
 from freesweep.solver.load import Load, loaded
-from freesweep.solver.physics import membrane, physical, relaxed, wall
+from freesweep.solver.physics import fibers, membrane, physical, relaxed, wall
 
 QUICK, MANY = 2000, 100_000
 
@@ -108,7 +108,7 @@ def fault(y, v, cell, load):
     on = np.array(on, bool)
     _, W_G, W_p, *_ = wall.slopes(y, G_1, psi, area, load.rubber, load.wall)
     pull = 0.5 * T / np.sqrt(1 + G_1 - v * v)
-    mu = np.array(relaxed.multipliers(y, np.sqrt(1 + G_1 - v * v), psi, *on, H, D, T, load.m, W_G, W_p))
+    mu = np.array(fibers.multipliers(y, np.sqrt(1 + G_1 - v * v), psi, tuple(on), cell, T, load.m, W_G, W_p))
     along, round = pull - W_G - mu.sum(), load.m - W_p - 2 * y * y * np.sum(mu * (t + psi))
     size = pull + abs(W_G) + abs(load.m) + abs(W_p) + area
     gaps = (1 + G_1 + y * y * (t + psi) ** 2 - most * (1 + t * t)) / (1 + t * t)
@@ -173,9 +173,7 @@ def test_what_a_neighbour_hands_on_changes_nothing_but_the_way():
     for _ in range(QUICK // 4):
         y, v, cell, load = random_point(draw, room=0.05)
         T = load[3] * y * y + load[4]
-        _, G_1, psi, alpha, beta = relaxed.settle(
-            y, v, cell[0], cell[1], load[0] ** 2, T, load[5], cell[2], load[1], load[2]
-        )
+        _, G_1, psi, alpha, beta = relaxed.settle(fibers.given_at(y, v, cell, load), T)
         alone = physical.state(y, v, cell, load, nothing_yet(0.0))
         far = 10 ** draw.uniform(-5, 0)
         beside = y * (1 + far * draw.uniform(-1, 1)), v + far * draw.uniform(-1, 1)

@@ -11,6 +11,7 @@ from freesweep.solver.cells import cell_at
 from freesweep.solver.load import Load
 from freesweep.solver.numerics import newton as kernels_of_newton
 from freesweep.solver.numerics import properties_along as kernels_of_course
+from freesweep.solver.numerics.newton import Mesh
 from freesweep.solver.physics import lagrangian as kernels_of_physics
 from freesweep.statics import read_course
 from freesweep.status import OK
@@ -84,7 +85,7 @@ def test_meshes_of_a_balloon_of_revolution_extrapolate_to_brute_force(shape):
         y, work = np.ones(n + 1), np.zeros((13, n + 2))
         cells = course.fill(rows, np.array([0, n // 2, n]), x, n, n, course.make_cells(rows, n))
         with np.errstate(all="ignore"):
-            status, *_ = newton.solve(lagrangian.density, x, y, n, False, cells, load, 1e300, 1e-12, work)
+            status, *_ = newton.solve(lagrangian.density, y, Mesh(x, n, False, cells), load, 1e300, 1e-12, work)
         assert status == kernels_of_newton.CONVERGED
         middle, slope = 0.5 * (y[1:] + y[:-1]), np.diff(y) / np.diff(x)
         local = [lagrangian.integrands(*one, cell_at(cells, j), load) for j, one in enumerate(zip(middle, slope))]

@@ -32,6 +32,7 @@ from freesweep.solver.load import Load
 from freesweep.solver.numerics import mesh as kernels_of_mesh
 from freesweep.solver.numerics import newton as kernels_of_newton
 from freesweep.solver.numerics import properties_along as kernels_of_course
+from freesweep.solver.numerics.newton import Mesh
 from freesweep.solver.physics import lagrangian as kernels_of_physics
 from freesweep.statics import read_course
 from freesweep.status import OK
@@ -123,9 +124,9 @@ def test_rest_is_rest(plain, radius, model):
     x = np.concatenate([np.linspace(a, b, 49)[:-1] for a, b in itertools.pairwise(places)] + [[places[-1]]])
     cells = course.fill(rows, edges, x, n, n, course.make_cells(rows, n))
     load = Load(1.0, (0.4, 0.0, 0.0), (1.0,) if model == "source" else (1.0, 0.5, 0.0), 0.0, 0.0, 0.0, 1.0)
-    g, d, e, room, least = np.zeros((5, n + 1))
-    newton.assemble(lagrangian.density, x, np.ones(n + 1), n, cells, load, False, least, room, g, d, e)
-    assert np.max(np.abs(g[1:n])) < 1e-14 * np.max(np.abs(d))
+    own = newton.system_in(np.zeros((8, n + 1)))
+    newton.assemble(lagrangian.density, x, np.ones(n + 1), n, cells, load, False, own)
+    assert np.max(np.abs(own.g[1:n])) < 1e-14 * np.max(np.abs(own.d))
     length = sum((b - a) * lagrangian.integrands(1.0, 0.0, cell_at(cells, j), load)[0]
                  for j, (a, b) in enumerate(itertools.pairwise(x)))  # fmt: skip
     assert length == pytest.approx(places[-1], rel=1e-14)
@@ -198,7 +199,7 @@ def test_meshes_of_a_body_are_of_second_order_and_extrapolate_to_fourth():
         base = np.array([0, n // 2, n])
         cells = course.fill(rows, base, x, n, n, course.make_cells(rows, n))
         with np.errstate(all="ignore"):
-            status, *_ = newton.solve(lagrangian.density, x, y, n, False, cells, load, 1e300, 1e-13, work)
+            status, *_ = newton.solve(lagrangian.density, y, Mesh(x, n, False, cells), load, 1e300, 1e-13, work)
         assert status == kernels_of_newton.CONVERGED
         middle, slope = 0.5 * (y[1:] + y[:-1]), np.diff(y) / np.diff(x)
         s = [lagrangian.integrands(*one, cell_at(cells, j), load)[0] for j, one in enumerate(zip(middle, slope))]

@@ -11,7 +11,7 @@ from ..load import by
 from ..numerics import held, nested, newton
 from ..numerics.finest import LEFT, MESHES, NO_MESH, load_of
 from ..numerics.properties_along import fill
-from ..physics import lagrangian
+from ..of_tube import of_tube
 from .profile import at_stations
 
 
@@ -44,22 +44,16 @@ def refine(base, doublings, tube, load, accuracy, fine, work):
     by_force, by_torque = changes[1] != changes[4], changes[2] != changes[5]
     direction = by(0.0, most if by_force else 0.0, most if by_torque else 0.0)
     holds = by_force or by_torque
-    density, conjugate = lagrangian.density, lagrangian.conjugate
-    own = fill(course, edges, fine[0], count, base, cells)
-    target = held.hold(conjugate, fine[0], fine[1], count, own, now, direction, work[8])[0] if holds else 0.0
+    own, functional, value = fill(course, edges, fine[0], count, base, cells), of_tube(), 0.0
+    if holds:
+        value, _ = held.hold(functional.conjugate, fine[0], fine[1], count, own, now, direction, work[8])
     for i in range(count // 2 + 1):
         fine[3, i] = fine[4, i]
     nested.go_finer(x, base, edges, doublings, fine, work)
-    own, mu, left = fill(course, edges, fine[0], 2 * count, base, cells), 0.0, tolerance
-    if holds:
-        status, _, mu, _ = held.solve_held(
-            density, conjugate, fine[0], fine[1], 2 * count, free, own, now, direction, mu, target, tolerance,
-            newton.MAX_ITERATIONS, work,
-        )  # fmt: skip
-    else:
-        status, _, _, left = newton.solve(
-            density, fine[0], fine[1], 2 * count, free, own, now, newton.UNKNOWN, tolerance, work
-        )
+    mesh = newton.Mesh(fine[0], 2 * count, free, fill(course, edges, fine[0], 2 * count, base, cells))
+    status, _, mu, _, left = nested.on_mesh(
+        functional, fine[1], mesh, now, held.Target(direction, value, holds), 0.0, newton.UNKNOWN, tolerance, work
+    )
     for i in range(3):
         fine[3, 3 + i], fine[3, 6 + i] = changes[i], changes[3 + i]
     fine[3, 0], fine[3, 1], fine[3, 2] = changes[0], changes[1] + mu * direction.f, changes[2] + mu * direction.m

@@ -5,12 +5,13 @@ loses no digit where the meridian stands upright (:mod:`axial`).
 """
 
 from math import atan, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from ...jit import kernel
 from ..cells import cell_at, of_length
-from ..load import under
+from ..load import Load, under
 from ..numerics.finest import LEFT, MESHES, load_of, mesh_of
 from ..numerics.properties_along import at_point, fill
 from ..physics import lagrangian
@@ -24,6 +25,43 @@ SAFETY = 3.3  # times the difference of two extrapolations, over the 15 that the
 SMALLEST = 1e-300
 SPREAD = 0.5  # of a node's difference that its neighbours have at least: differences pass through zero
 UNEVEN = 30.0  # times the cell beside: what is that long, of a tube that is uniform there, is interpolated linearly
+
+
+class Nodes(NamedTuple):
+    """What meshes tell of their nodes, ``at`` (5, ...), as :func:`extrapolate_nodes` leaves it, of ``n`` cells; by what the
+    ``order`` divides differences; in what ``unit`` (5,) they count; and what ``rounding`` leaves.
+    """
+
+    at: np.ndarray
+    n: int
+    order: float
+    unit: np.ndarray
+    rounding: float
+
+
+class Told(NamedTuple):
+    """What is told at a station: weights of nodes and of every second one, (STENCIL,); numbers, their bounds, and what share
+    of these is no rounding, (5,).
+    """
+
+    weights: np.ndarray
+    coarse: np.ndarray
+    number: np.ndarray
+    bound: np.ndarray
+    share: np.ndarray
+
+
+class Loads(NamedTuple):
+    """The ``load``, and one as far from it as its error may be; of a tube that is ``alike`` all along the constant of its
+    first integral, by how much that may be missed, and that under the other load.
+    """
+
+    load: Load
+    other: Load
+    alike: bool
+    constant: float
+    missed: float
+    other_constant: float
 
 
 @kernel
@@ -115,6 +153,83 @@ def extrapolated_loads(load, fine):
 
 
 @kernel
+def units(nodes, n):
+    """In what differences count, (5,): stretch, axial position, twist, flux behind x."""
+    unit = np.empty(5)
+    unit[1], unit[2], unit[3], unit[4] = 1.0, nodes[0, n], max(1.0, abs(nodes[3, n])), 0.0
+    for k in range(n + 1):
+        unit[4] = max(unit[4], abs(nodes[4, k]))
+    return unit
+
+
+@kernel
+def loads_of(known, course, load, fine):
+    """The :class:`Loads` of a profile."""
+    load, other = extrapolated_loads(load, fine)
+    if not is_alike(course):
+        return Loads(load, other, False, 0.0, 0.0, 0.0)
+    cell, middle, n = at_point(course, 0, 1.0), known.at[1, known.n], known.n
+    off = SAFETY / known.order * known.at[1, n + 1 + n // 2]
+    constant = lagrangian.uniform_tube(middle, cell, load)[2]
+    missed = lagrangian.uniform_tube(middle + off, cell, load)[2] - constant
+    return Loads(load, other, True, constant, missed, lagrangian.uniform_tube(middle, cell, other)[2])
+
+
+@kernel
+def interpolate(at, j, low, high, known, told):
+    """What is told at a station in cell j of the segment from node ``low`` to ``high``; returns the largest bound, scaled,
+    rounding left out, of stretch, axial position and twist.
+    """
+    x, nodes, behind, worst = known.at[0], known.at, known.n + 1, 0.0
+    weight, coarse, number, bound, share = told
+    h, before, after = x[j + 1] - x[j], max(j, low + 1), min(j, high - 2)
+    linear = h > UNEVEN * min(x[before] - x[before - 1], x[after + 2] - x[after + 1])
+    first = min(max(j - STENCIL // 2 + 1, low), high + 1 - STENCIL)
+    weights(x, first, 1, at, weight)
+    half = min(max(j // 2 - STENCIL // 2 + 1, low // 2), high // 2 + 1 - STENCIL)
+    weights(x, 2 * half, 2, at, coarse)
+    for r in range(1, 5):
+        number[r], bound[r] = 0.0, 0.0
+        for k in range(STENCIL):
+            number[r] += weight[k] * nodes[r, first + k]
+            bound[r] += coarse[k] * nodes[r, 2 * half + k * 2]
+        bound[r] = abs(bound[r] - number[r]) / known.order
+        if linear:
+            number[r] = nodes[r, j] + (at - x[j]) / h * (nodes[r, j + 1] - nodes[r, j])
+            bound[r] = abs(nodes[r, j + 1] - nodes[r, j]) if r == 1 or r == 4 else 0.0
+        bound[r] += SAFETY / known.order * max(nodes[r, behind + j // 2], nodes[r, behind + (j + 1) // 2])
+        worst = max(worst, bound[r] / known.unit[r] if r < 4 else 0.0)
+        share[r] = bound[r]
+        bound[r] += known.rounding * (number[1] if r == 1 else known.unit[r])
+        share[r] /= max(bound[r], SMALLEST)
+    return worst
+
+
+@kernel
+def write(cell, loads, told, rounding, i, profile):
+    """Write the FIELDS of station i to the ``profile``; returns the largest bounds, rounding left out, of angles and of
+    multipliers, and the largest of these.
+    """
+    (_, _, number, bound, share), (load, other, alike, constant, missed, other_constant) = told, loads
+    y, flux, angle, loose, tension = number[1], number[4], 0.0, 0.0, 0.0
+    here = local(y, flux, constant, alike, cell, load)
+    by_y = local(y + bound[1], flux, constant, alike, cell, load)
+    by_flux = local(y, flux + bound[4], constant + missed, alike, cell, load)
+    by_load = local(y, flux, other_constant, alike, cell, other)
+    for r in range(3):
+        profile[r, i], profile[VALUES + r, i] = number[1 + r], bound[1 + r]
+    for r in range(4):
+        one, two, three = abs(by_y[r] - here[r]), abs(by_flux[r] - here[r]), abs(by_load[r] - here[r])
+        profile[3 + r, i], profile[VALUES + 3 + r, i] = here[r], one + two + three + rounding * abs(here[r])
+        known = share[1] * one + (1.0 if alike else share[4]) * two + three
+        if r < 2:
+            angle = max(angle, known)
+        else:
+            loose, tension = max(loose, known), max(tension, abs(here[r]))
+    return angle, loose, tension
+
+
+@kernel
 def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
     """Write the FIELDS at each of ``stations`` (distance from the end in radii, ascending) into ``profile`` (FIELDS, m):
     stretch, axial position [radius], twist [rad], angles of both families [rad], multipliers of both; then their bounds.
@@ -122,26 +237,12 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
     Returns the largest bound, scaled, rounding left out: stretch as it is, positions by the length, twist by itself or a
     radian, angles by a radian, multipliers by the largest along the tube.
     """
-    course, edges = tube.course, tube.edges
-    n = base << (doublings - 1)
+    course, edges, n, x = tube.course, tube.edges, base << (doublings - 1), nodes[0]
     order = 1.0 if extrapolate_nodes(base, n, tube, load, fine, nodes) else 15.0  # as in nested.extrapolate
-    x, behind, alike = nodes[0], n + 1, is_alike(course)
-    fourth = SAFETY / order
-    value, coarse, number, bound, share = np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5), np.empty(5)
-    load, other = extrapolated_loads(load, fine)
-    rounding = ROUNDING + LAST_STEP * max(fine[3, LEFT], 0.0)
-    constant, missed, other_constant = 0.0, 0.0, 0.0
-    if alike:
-        cell = at_point(course, 0, 1.0)
-        constant = lagrangian.uniform_tube(nodes[1, n], cell, load)[2]
-        other_constant = lagrangian.uniform_tube(nodes[1, n], cell, other)[2]
-        missed = lagrangian.uniform_tube(nodes[1, n] + fourth * nodes[1, behind + n // 2], cell, load)[2] - constant
-    unit = np.empty(5)
-    unit[1], unit[2], unit[3], unit[4] = 1.0, x[n], max(1.0, abs(nodes[3, n])), 0.0
-    for k in range(n + 1):
-        unit[4] = max(unit[4], abs(nodes[4, k]))
-    segment, j, first, linear = 0, 0, 0, False
-    worst, loose, tension = 0.0, 0.0, 0.0
+    known = Nodes(nodes, n, order, units(nodes, n), ROUNDING + LAST_STEP * max(fine[3, LEFT], 0.0))
+    loads = loads_of(known, course, load, fine)
+    told = Told(np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5), np.empty(5))
+    segment, j, worst, loose, tension = 0, 0, 0.0, 0.0, 0.0
     for i in range(len(stations)):
         # a station on a jump belongs to the segment before it
         while segment < len(edges) - 2 and x[edges[segment + 1] * n // base] < stations[i]:
@@ -150,42 +251,8 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
         j = max(j, low)
         while j < high - 1 and x[j + 1] < stations[i]:
             j += 1
-        h = x[j + 1] - x[j]
-        before, after = max(j, low + 1), min(j, high - 2)
-        linear = h > UNEVEN * min(x[before] - x[before - 1], x[after + 2] - x[after + 1])
-        at = (stations[i] - x[j]) / h
-        first = min(max(j - STENCIL // 2 + 1, low), high + 1 - STENCIL)
-        weights(x, first, 1, stations[i], value)
-        half = min(max(j // 2 - STENCIL // 2 + 1, low // 2), high // 2 + 1 - STENCIL)
-        weights(x, 2 * half, 2, stations[i], coarse)
-        for r in range(1, 5):
-            number[r], bound[r] = 0.0, 0.0
-            for k in range(STENCIL):
-                number[r] += value[k] * nodes[r, first + k]
-                bound[r] += coarse[k] * nodes[r, 2 * half + k * 2]
-            bound[r] = abs(bound[r] - number[r]) / order
-            if linear:
-                number[r] = nodes[r, j] + at * (nodes[r, j + 1] - nodes[r, j])
-                bound[r] = abs(nodes[r, j + 1] - nodes[r, j]) if r == 1 or r == 4 else 0.0
-            bound[r] += fourth * max(nodes[r, behind + j // 2], nodes[r, behind + (j + 1) // 2])
-            worst = max(worst, bound[r] / unit[r] if r < 4 else 0.0)
-            share[r] = bound[r]
-            bound[r] += rounding * (number[1] if r == 1 else unit[r])
-            share[r] /= max(bound[r], SMALLEST)
-        y, flux = number[1], number[4]
+        position = interpolate(stations[i], j, low, high, known, told)
         cell = at_point(course, segment, (stations[i] - x[low]) / (x[high] - x[low]))
-        here = local(y, flux, constant, alike, cell, load)
-        by_y = local(y + bound[1], flux, constant, alike, cell, load)
-        by_flux = local(y, flux + bound[4], constant + missed, alike, cell, load)
-        by_load = local(y, flux, other_constant, alike, cell, other)
-        for r in range(3):
-            profile[r, i], profile[VALUES + r, i] = number[1 + r], bound[1 + r]
-        for r in range(4):
-            one, two, three = abs(by_y[r] - here[r]), abs(by_flux[r] - here[r]), abs(by_load[r] - here[r])
-            profile[3 + r, i], profile[VALUES + 3 + r, i] = here[r], one + two + three + rounding * abs(here[r])
-            known = share[1] * one + (1.0 if alike else share[4]) * two + three
-            if r < 2:
-                worst = max(worst, known)
-            else:
-                loose, tension = max(loose, known), max(tension, abs(here[r]))
+        angle, pull, most = write(cell, loads, told, known.rounding, i, profile)
+        worst, loose, tension = max(worst, max(position, angle)), max(loose, pull), max(tension, most)
     return max(worst, loose / tension if tension > 0.0 else 0.0)

@@ -14,6 +14,7 @@ others. Such a tube is unstable: y' is a Jacobi field that vanishes in the middl
 """
 
 from math import exp, log, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,26 @@ DEEP = 25.0  # e-folds of a drive below its bend: beyond them the tube is unifor
 STANDING = 0.02  # share of bend times y, below which a drive tells its stretch
 ITERATIONS, LARGEST_CHANGE, ROOT = 20, 0.1, 1e-14  # of the search for that, relative
 MIDDLE, FOLDS, NECK, NECK_FOLDS, MU = 0, 1, 2, 3, 4  # y_m, q_m, y_n, q_n, mu
+
+
+class Asked(NamedTuple):
+    """A held tube: the numbers of its fibers and its section; its load but for what holds it, and the load ``direction``
+    that does; the ``target`` of its integral, and how long ``half`` of it is.
+    """
+
+    cell: tuple
+    load: tuple
+    direction: tuple
+    target: float
+    half: float
+
+
+class Traced(NamedTuple):
+    """Room for what is traced: nodes and shape of body and neck, ``curve`` (2, ...), and their integrals, a ``row`` each."""
+
+    curve: np.ndarray
+    row: np.ndarray
+    other: np.ndarray
 
 
 @kernel
@@ -120,19 +141,20 @@ def stands(cell, load, y, folds):
 
 
 @kernel
-def unknowns(cell, load, direction, now):
+def unknowns(asked, now):
     """Those three of the numbers ``now`` that the others follow from, most smoothly, while the load changes."""
-    loaded = held.loaded(load, direction, now[MU])
+    cell, loaded = asked.cell, held.loaded(asked.load, asked.direction, now[MU])
     body = MU if stands(cell, loaded, now[MIDDLE], now[FOLDS]) else MIDDLE
     neck = NECK_FOLDS if stands(cell, loaded, now[NECK], now[NECK_FOLDS]) else NECK
     return body, FOLDS, neck
 
 
 @kernel
-def misses(cell, load, direction, target, half, now, free, nodes, curve, row, other, out):
+def misses(asked, now, free, nodes, traced, out):
     """What a tube of the numbers ``now``, of which three are ``free`` and the others made to follow, misses in three
-    equations, into ``out``. Half its integrals go to ``row``. Half the ``nodes`` are the body's, a quarter the neck's.
+    equations, into ``out``. Half its integrals go to the row. Half the ``nodes`` are the body's, a quarter the neck's.
     """
+    (cell, load, direction, target, half), (curve, row, other) = asked, traced
     body, drive, outward = nodes // 2, exp(now[FOLDS]), 1.0 if now[MIDDLE] > 1.0 else -1.0
     if free[0] == MU:
         now[MIDDLE] = stretch_of(cell, held.loaded(load, direction, now[MU]), outward * drive, now[MIDDLE])

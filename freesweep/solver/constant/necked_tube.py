@@ -9,7 +9,7 @@ from ..numerics.dense import eliminate
 from ..physics import lagrangian
 from ..status import INACCURATE, NOT_CONVERGED, OK
 from . import necked_shape, quadrature
-from .necked_shape import FOLDS, MIDDLE, MU, NECK_FOLDS
+from .necked_shape import FOLDS, MIDDLE, MU, NECK_FOLDS, Asked, Traced
 
 NEAR = 0.05  # relative difference of the first middle from the mesh's
 NODES, MOST_NODES = 320, 6144  # along body and neck: on the way, and at its end
@@ -29,12 +29,12 @@ def copy(numbers, out):
 
 
 @kernel
-def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve, row, other):
+def fit(asked, now, free, nodes, tolerance, traced):
     """Newton's method from a guess ``now``, which is replaced; whether it converged."""
     miss, moved, there, matrix = np.empty(3), np.empty(3), np.empty(5), np.empty((3, 3))
     least = 1e300
     for _ in range(ITERATIONS):
-        necked_shape.misses(cell, load, direction, target, half, now, free, nodes, curve, row, other, miss)
+        necked_shape.misses(asked, now, free, nodes, traced, miss)
         most = np.max(np.abs(miss))
         if most < tolerance or (most < ROUNDED * tolerance and most >= 0.5 * least):
             return True
@@ -44,7 +44,7 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
             step = FOLDS_DIFFERENCE if k == FOLDS or k == NECK_FOLDS else DIFFERENCE * now[k]
             copy(now, there)
             there[k] += step
-            necked_shape.misses(cell, load, direction, target, half, there, free, nodes, curve, row, other, moved)
+            necked_shape.misses(asked, there, free, nodes, traced, moved)
             for i in range(3):
                 matrix[i, j] = (moved[i] - miss[i]) / step
         eliminate(matrix, miss.reshape((3, 1)))
@@ -61,17 +61,22 @@ def fit(cell, load, direction, target, half, now, free, nodes, tolerance, curve,
 
 
 @kernel
-def follow(cell, x, y, mu, path, t, half, curve, row, other, now):
+def asked_at(cell, path, t, half):
+    """What is asked at the share t of a path."""
+    load, what = loaded(path.origin, path.direction, t), path.held
+    return Asked(cell, load, what.unit, what.first + t * what.change, half)
+
+
+@kernel
+def follow(cell, track, path, t, half, traced, now):
     """The numbers ``now`` at the end of the path; arguments as of :func:`solve`. Whether they were found."""
-    load, direction = loaded(path.origin, path.direction, t), path.held.unit
-    if not necked_shape.guess_of(cell, loaded(load, direction, mu), x, y, now):
+    n = len(track.x) - 1
+    mu, asked = track.y[n + 1], asked_at(cell, path, t, half)
+    if not necked_shape.guess_of(cell, loaded(asked.load, asked.direction, mu), track.x, track.y[: n + 1], now):
         return False
     now[MU] = mu
     middle, last, guess, t_last, step = now[MIDDLE], np.empty(5), np.empty(5), t, FIRST_STEP * t
-    free = necked_shape.unknowns(cell, load, direction, now)
-    if not fit(
-        cell, load, direction, path.held.first + t * path.held.change, half, now, free, NODES, CLOSE, curve, row, other
-    ):
+    if not fit(asked, now, necked_shape.unknowns(asked, now), NODES, CLOSE, traced):
         return False
     if not abs(now[MIDDLE] / middle - 1.0) < NEAR:
         return False
@@ -83,10 +88,9 @@ def follow(cell, x, y, mu, path, t, half, curve, row, other, now):
         share = (ahead - t) / (t - t_last) if t > t_last else 0.0
         for k in range(5):
             guess[k] = now[k] + share * (now[k] - last[k])
-        expected, load = guess[MIDDLE], loaded(path.origin, path.direction, ahead)
-        free, held_there = necked_shape.unknowns(cell, load, direction, now), path.held.first + ahead * path.held.change
+        expected, asked = guess[MIDDLE], asked_at(cell, path, ahead, half)
         if (
-            fit(cell, load, direction, held_there, half, guess, free, NODES, CLOSE, curve, row, other)
+            fit(asked, guess, necked_shape.unknowns(asked, now), NODES, CLOSE, traced)
             and abs(guess[MIDDLE] / expected - 1.0) < STRAY
             and abs(guess[MIDDLE] / now[MIDDLE] - 1.0) < LARGEST_CHANGE
         ):
@@ -101,33 +105,30 @@ def follow(cell, x, y, mu, path, t, half, curve, row, other, now):
 
 
 @kernel
-def solve(cell, tube, x, y, mu, path, t, scale, accuracy, base, fine, curve, table, out):
-    """The state at the end of a path; at its share ``t`` a mesh has the necked shape ``x``, ``y`` and the multiplier ``mu``.
+def solve(room, tube, cell, path, t, scale, accuracy):
+    """The state at the end of a path; at its share ``t`` the mesh in the room's track has the necked shape.
 
-    Returns ``(status, doublings, load)``, and what :func:`..numerics.nested.solve` leaves, with mu in units of the held
-    ``unit/scale``.
+    Returns ``(status, doublings, load)``, and what :func:`..numerics.nested.solve` leaves, with the multiplier in units of
+    the held ``unit/scale``.
     """
+    space, table, out, end = room.space, room.space.table, room.space.out, loaded(path.origin, path.direction, 1.0)
     if len(cell) > 3:  # a body has no first integral
-        return NOT_CONVERGED, 0, loaded(path.origin, path.direction, 1.0)
-    half, now, spare = tube.places[1], np.empty(5), table[quadrature.ROWS]
-    end, direction, target = (
-        loaded(path.origin, path.direction, 1.0),
-        path.held.unit,
-        path.held.first + path.held.change,
-    )
-    if not follow(cell, x, y, mu, path, t, half, curve, table[0], spare, now):
         return NOT_CONVERGED, 0, end
-    free = necked_shape.unknowns(cell, end, direction, now)
+    half, base, now, spare = tube.places[1], len(space.x) - 1, np.empty(5), table[quadrature.ROWS]
+    if not follow(cell, room.track, path, t, half, Traced(space.curve, table[0], spare), now):
+        return NOT_CONVERGED, 0, end
+    asked = Asked(cell, end, path.held.unit, path.held.first + path.held.change, half)
+    direction, free = asked.direction, necked_shape.unknowns(asked, now)
     doublings = nested.MAX_DOUBLINGS
     while doublings > 1 and base << doublings > MOST_NODES:
         doublings -= 1
     nodes = base << doublings
     for k in range(quadrature.ROWS):
         count = nodes >> (quadrature.ROWS - 1 - k)
-        if not fit(cell, end, direction, target, half, now, free, count, CLOSEST, curve, table[k], spare):
+        if not fit(asked, now, free, count, CLOSEST, Traced(space.curve, table[k], spare)):
             return NOT_CONVERGED, 0, end
         if k >= quadrature.ROWS - finest.MESHES:
-            lay(curve, count, half, *finest.mesh_of(quadrature.ROWS - 1 - k, nodes // 2, fine))
+            lay(space.curve, count, half, *finest.mesh_of(quadrature.ROWS - 1 - k, nodes // 2, space.fine))
     there, last = loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
     units, floors = lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE)
     for k in range(nested.OUTPUTS):
@@ -137,7 +138,12 @@ def solve(cell, tube, x, y, mu, path, t, scale, accuracy, base, fine, curve, tab
     out[3, nested.MULTIPLIER] /= unit
     largest = quadrature.finish(table, out)
     finest.leave_loads(
-        table[:, nested.MULTIPLIER], quadrature.ROWS - 1, out[0, nested.MULTIPLIER], direction, finest.NO_MESH, fine
+        table[:, nested.MULTIPLIER],
+        quadrature.ROWS - 1,
+        out[0, nested.MULTIPLIER],
+        direction,
+        finest.NO_MESH,
+        space.fine,
     )
     out[0, nested.MULTIPLIER] *= scale
     out[1, nested.MULTIPLIER] *= scale

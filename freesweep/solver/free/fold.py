@@ -12,7 +12,7 @@ from ..numerics.bordered import FOLLOWED, correct
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, is_flat, is_stable, last_alike, make_unit
 from ..numerics.path import Track, load_at, size_of
 from ..numerics.properties_along import fill
-from ..physics import lagrangian
+from ..of_tube import of_tube
 from ..physics.wall import may_go_slack
 
 COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
@@ -51,18 +51,9 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
     unit, step = size_of(mu, path), FIRST_STEP * CHANGE
     for i in range(n + 1):
         track.normal[i] = track.tangent[i] / (n * track.y[i] * track.y[i])
+    normal_mu = tangent_mu / (unit * unit)
     status, negative, mu, tangent_mu = correct(
-        lagrangian.density,
-        lagrangian.conjugate,
-        track,
-        track.y,
-        mu,
-        n,
-        cells,
-        path,
-        tangent_mu / (unit * unit),
-        track.tangent,
-        work,
+        of_tube(), track, track.y, mu, n, cells, path, normal_mu, track.tangent, work
     )
     if status != FOLLOWED:
         return np.nan, 0.0
@@ -75,24 +66,12 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
     for _ in range(STEPS):
         if status != FOLLOWED:
             return (mu if is_flat(mu, tangent_mu, path) else np.nan), CHANGE * abs(tangent_mu)
+        here = (mu, tangent_mu)
         status, negative, next_mu, next_tangent_mu, made, step = advance(
-            lagrangian.density, lagrangian.conjugate, track, n, cells, path, mu, tangent_mu, step, work
+            of_tube(), track, n, cells, path, here, step, work
         )
         if is_stable(negative, next_tangent_mu, sense) != stable:
-            found, _, _ = last_alike(
-                lagrangian.density,
-                lagrangian.conjugate,
-                track,
-                n,
-                cells,
-                path,
-                mu,
-                tangent_mu,
-                made,
-                sense,
-                stable,
-                work,
-            )
+            found, _, _ = last_alike(of_tube(), track, n, cells, path, here, made, sense, stable, work)
             return found, 0.0
         for i in range(len(track.y)):
             track.y[i], track.tangent[i] = track.next_y[i], track.next_tangent[i]
@@ -101,22 +80,22 @@ def edge(track, n, cells, path, mu, tangent_mu, sense, work):
 
 
 @kernel
-def locate(track, roomy, space, tube, path, here, ahead, sense):
-    """The load at which the branch ends, from the state ``here`` in ``track``; ``ahead`` is where the base mesh has that
-    edge. ``(load, bound)``, NaN where some mesh has none near, or they do not agree; ``roomy`` is a track for the finest.
+def locate(room, tube, path, here, ahead, sense):
+    """The load at which the branch ends, from the state ``here`` in the room's track; ``ahead`` is where the base mesh has
+    that edge. ``(load, bound)``, NaN where some mesh has none near, or they do not agree.
     """
-    n = len(track.x) - 1
+    space, track, n = room.space, room.track, len(room.track.x) - 1
     course, edges, cells, free, _, _ = tube
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.next_y[i]
     now = load_at(path, track.next_y, n, ahead[0])
-    if not nested.adapt(lagrangian.density, lagrangian.integrands, space.x, space.y, n, tube, now, space.work):
+    if not nested.adapt(of_tube(), space.x, space.y, n, tube, now, space.work):
         for i in range(n + 1):
             space.x[i] = track.x[i]
     loads, doubt = space.table[0], 0.0
     for k in range(len(COUNTS)):
         count = n * COUNTS[k] // 2
-        own = nodes_of(roomy, count, free)
+        own = nodes_of(room.roomy, count, free)
         if COUNTS[k] == 1:
             for i in range(count + 1):
                 own.x[i] = space.x[2 * i]

@@ -20,10 +20,9 @@ from ..physics.wall import has_two_families, may_go_slack
 from ..problem import FORCE, GAMMA, TORQUE, rubber_of, wall_of
 from ..status import COMPRESSED, DEGENERATE, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
 from .branch import begin, follow, guess
-from .fold import FINEST
 from .meshes import stand
 from .one_state import blank, cold, plain, record
-from .space import Rows, make_space, make_track
+from .space import Rows, make_room
 
 FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for what did not converge
 
@@ -80,9 +79,10 @@ def leave(rows, status, low, high):
 
 
 @kernel
-def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
+def settle_loads(path, room, tube, rows, limit, accuracy):
     """Stand on the state at which all loads are at their full size, if the status is OK."""
-    status, mu, tangent_mu = begin(track, space, tube, path)
+    track, space = room.track, room.space
+    status, mu, tangent_mu = begin(room, tube, path)
     if status != FOLLOWED:
         return NOT_CONVERGED
     if mu < 1.0:
@@ -90,10 +90,10 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
             rows.pressures[:0], rows.values[:0], rows.bounds[:0], rows.status[:0], rows.slack[:0], rows.stations,
             rows.profiles[:0],
         )  # fmt: skip
-        status, here, ahead = follow(track, roomy, space, tube, path, mu, tangent_mu, 1.0, none, limit, accuracy)
+        status, here, ahead = follow(room, tube, path, (mu, tangent_mu), 1.0, none, limit, accuracy)
         if status != OK:
             return status
-        guess(track, space, here, ahead, 1.0)
+        guess(room, here, ahead, 1.0)
         for i in range(len(space.y)):
             track.y[i] = space.y[i]
         status, negative, _ = stand(track, tube, path, 1.0, 1.0, 0, space.work)
@@ -103,10 +103,11 @@ def settle_loads(path, track, roomy, space, tube, rows, limit, accuracy):
 
 
 @kernel
-def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
+def lock(problem, walls, tube, room, rows, limit, accuracy):
     """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way
     from rest along which the wall fades.
     """
+    track, space = room.track, room.space
     load = Load(problem[GAMMA], rubber_of(problem), wall_of(problem, walls), 1.0, 0.0, 0.0, 0.0)
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
@@ -117,7 +118,7 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
                 rest = Load(1.0, load.rubber, load.wall, 0.0, 0.0, 0.0, 1.0)
                 fading = Load(load.gamma - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0)
                 way = Path(rest, fading, 0.0, may_go_slack(load.wall), NOTHING)
-                if settle_loads(way, track, roomy, space, tube, rows, limit, accuracy) == OK:
+                if settle_loads(way, room, tube, rows, limit, accuracy) == OK:
                     for k in range(len(space.x)):
                         space.x[k], space.y[k] = track.x[k], track.y[k]
                     status, doublings = plain(space, tube, load, accuracy)
@@ -125,25 +126,25 @@ def lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy):
 
 
 @kernel
-def along_pressure(track, roomy, space, tube, path, status, start, tangent_mu, sense, far, rows, limit, accuracy):
-    """The states from the pressure ``start`` on, where the ``track`` stands if its ``status`` is FOLLOWED, to the pressure
-    ``far``; rows on that side that no state belongs to get a status.
+def along_pressure(room, tube, path, status, here, sense, far, rows, limit, accuracy):
+    """The states from the pressure ``here[0]`` on, where the room's track stands if its ``status`` is FOLLOWED, to the
+    pressure ``far``; rows on that side that no state belongs to get a status.
     """
     if status == FOLLOWED:
-        status, _, _ = follow(track, roomy, space, tube, path, start, tangent_mu, far, rows, limit, accuracy)
+        status, _, _ = follow(room, tube, path, here, far, rows, limit, accuracy)
     else:
         status = NOT_CONVERGED
-    low, high = (start, np.inf) if sense > 0.0 else (0.0, start)
+    low, high = (here[0], np.inf) if sense > 0.0 else (0.0, here[0])
     leave(rows, status if status != OK else NOT_CONVERGED, low, high)
 
 
 @kernel
-def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accuracy):
+def walk(problem, walls, settled, tube, room, rows, limit, accuracy):
     """All states of one design; rows whose status is not PENDING are passed over. ``settled`` is its settling pressure,
     ``limit`` (2,) takes the limit pressure and its bound, if one is met. Rows: see :func:`follow_many`.
     """
     settle(problem, wall_of(problem, walls), tube, rows)
-    lock(problem, walls, tube, track, roomy, space, rows, limit, accuracy)
+    lock(problem, walls, tube, room, rows, limit, accuracy)
     least, most = np.inf, -1.0
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING:
@@ -155,20 +156,20 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
     rest, pressure = Load(1.0, rubber, wall, 0.0, 0.0, 0.0, 1.0), by(1.0, 0.0, 0.0)
     if f == 0.0 and m == 0.0 and gamma == 1.0:
         path = Path(rest, pressure, 0.0, may_go_slack(wall), NOTHING)
-        status, mu, tangent_mu = begin(track, space, tube, path)
+        status, mu, tangent_mu = begin(room, tube, path)
         if status == FOLLOWED:
-            first_states(path, mu, tube, space, rows, accuracy)
+            first_states(path, mu, tube, room.space, rows, accuracy)
         else:
             mu = 0.0
         if most > mu:
-            along_pressure(track, roomy, space, tube, path, status, mu, tangent_mu, 1.0, most, rows, limit, accuracy)
+            along_pressure(room, tube, path, status, (mu, tangent_mu), 1.0, most, rows, limit, accuracy)
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
     rise = Load(gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0)
-    first, n = Path(rest, rise, 0.0, may_go_slack(wall), NOTHING), len(track.x) - 1
+    first, track = Path(rest, rise, 0.0, may_go_slack(wall), NOTHING), room.track
     origin = Load(gamma, rubber, wall, 0.0, f, m, 1.0)
     path = Path(origin, pressure, max(f, 0.0), may_go_slack(wall), NOTHING)
-    status = settle_loads(first, track, roomy, space, tube, rows, limit, accuracy)
+    status = settle_loads(first, room, tube, rows, limit, accuracy)
     if status != OK:
         leave(rows, status, 0.0, np.inf)
         return
@@ -176,10 +177,10 @@ def walk(problem, walls, settled, tube, track, roomy, space, rows, limit, accura
     for sense, far in ((1.0, most), (-1.0, least)):
         if (far - settled) * sense < 0.0:
             continue
-        for i in range(n + 1):
+        for i in range(len(x)):
             track.x[i], track.y[i] = x[i], y[i]
-        status, _, tangent_mu = stand(track, tube, path, settled, sense, 0, space.work)
-        along_pressure(track, roomy, space, tube, path, status, settled, tangent_mu, sense, far, rows, limit, accuracy)
+        status, _, tangent_mu = stand(track, tube, path, settled, sense, 0, room.space.work)
+        along_pressure(room, tube, path, status, (settled, tangent_mu), sense, far, rows, limit, accuracy)
 
 
 @entry_point
@@ -214,11 +215,11 @@ def follow_many(
             continue
         for factor in FINER:
             base = factor * edges[len(edges) - 1]
-            space = make_space(base, guide.PLACES)
-            track, roomy = make_track(base, False, False), make_track(FINEST * base, False, False)
-            tube = Tube(course, factor * edges, make_cells(course, len(space.fine[0])), False, factor * middle, places)
+            room = make_room(base, False, False, guide.PLACES)
+            cells = make_cells(course, len(room.space.fine[0]))
+            tube = Tube(course, factor * edges, cells, False, factor * middle, places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
-            walk(problems[k], walls, settled[k], tube, track, roomy, space, rows, limits[k], accuracy)
+            walk(problems[k], walls, settled[k], tube, room, rows, limits[k], accuracy)
             again = False
             for i in range(first[k], first[k + 1]):
                 if status[i] == NOT_CONVERGED or status[i] == INACCURATE:

@@ -6,7 +6,7 @@ from ..numerics.bordered import FOLLOWED, correct
 from ..numerics.continuation import make_unit
 from ..numerics.path import load_at, size_of
 from ..numerics.properties_along import fill
-from ..physics import lagrangian
+from ..of_tube import of_tube
 
 GRADINGS = 3  # of the first mesh
 
@@ -20,7 +20,7 @@ def regrade(track, tube, path, mu, work):
     for i in range(n + 1):
         track.spare[i], track.other[i] = track.x[i], track.y[i]
     now = load_at(path, track.y, n, mu)
-    if nested.adapt(lagrangian.density, lagrangian.integrands, track.x, track.y, n, tube, now, work):
+    if nested.adapt(of_tube(), track.x, track.y, n, tube, now, work):
         return True
     for i in range(n + 1):
         track.x[i], track.y[i] = track.spare[i], track.other[i]
@@ -40,7 +40,7 @@ def stand(track, tube, path, mu, sense, gradings, work):
     while True:
         own = fill(course, edges, track.x, n, n, cells)
         status, negative, _, tangent_mu = correct(
-            lagrangian.density, lagrangian.conjugate, track, track.y, mu, n, own, path, sense, track.tangent, work
+            of_tube(), track, track.y, mu, n, own, path, sense, track.tangent, work
         )
         if status != FOLLOWED or made == gradings or not regrade(track, tube, path, mu, work):
             return status, negative, make_unit(track, n, mu, tangent_mu, path)
@@ -70,18 +70,9 @@ def take(track, tube, path, mu, tangent_mu, work):
         track.next_y[i] = track.y[i]
     unit = size_of(mu, path)
     own = fill(course, edges, track.x, n, n, cells)
+    normal_mu = tangent_mu / (unit * unit)
     status, _, new_mu, new_tangent_mu = correct(
-        lagrangian.density,
-        lagrangian.conjugate,
-        track,
-        track.next_y,
-        mu,
-        n,
-        own,
-        path,
-        tangent_mu / (unit * unit),
-        track.next_tangent,
-        work,
+        of_tube(), track, track.next_y, mu, n, own, path, normal_mu, track.next_tangent, work
     )
     if status != FOLLOWED:
         for i in range(n + 1):

@@ -11,25 +11,23 @@ from ...jit import kernel
 from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
-from ..load import NO_CHANGE, by
+from ..load import by
 from ..numerics import held, nested, newton
+from ..numerics.held import NOTHING, Target
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
+from ..of_tube import of_tube
 from ..physics import lagrangian
 from ..status import INACCURATE, NOT_CONVERGED, OK
 
 ROOT_STEPS, ROOT = 40, 1e-9  # of the pressure, relative
 REGRADES, COLD = 1, 3  # of the base mesh, from a good guess and from a rough one
-PLAIN, HELD = nested.PLAIN, nested.HELD
 
 
 @kernel
-def solve(space, tube, load, goal, direction, target, regrades, accuracy):
+def solve(space, tube, load, target, regrades, accuracy):
     """:func:`..numerics.nested.solve` from the guess in ``space``: ``(status, doublings)``, and that the state is stable."""
-    status, unstable, doublings, _ = nested.solve(
-        lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, space.x, space.y, tube, load,
-        goal, direction, target, 1.0, regrades, accuracy, space.fine, space.work, space.table, space.out,
-    )  # fmt: skip
+    status, unstable, doublings, _ = nested.solve(of_tube(), space, tube, load, target, 1.0, regrades, accuracy)
     solved = status == newton.CONVERGED or status == nested.UNREACHED
     if not solved or unstable > 0:
         return NOT_CONVERGED, doublings
@@ -39,7 +37,7 @@ def solve(space, tube, load, goal, direction, target, regrades, accuracy):
 @kernel
 def free(space, tube, load, regrades, accuracy):
     """The state at ``load``, from a guess."""
-    return solve(space, tube, load, PLAIN, NO_CHANGE, 0.0, regrades, accuracy)
+    return solve(space, tube, load, NOTHING, regrades, accuracy)
 
 
 @kernel
@@ -57,11 +55,11 @@ def plain(space, tube, load, accuracy):
 
 
 @kernel
-def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
-    """The state at ``pressure``, between one at the pressure ``first``, in ``track``, and a fold at ``limit`` whose shape is
-    a step ahead there; as :func:`plain`. The error of the pressure that was met enters the bounds.
+def near_fold(room, tube, path, pressure, first, limit, accuracy):
+    """The state at ``pressure``, between one at the pressure ``first``, in the room's track, and a fold at ``limit`` whose
+    shape is a step ahead there; as :func:`plain`. The error of the pressure that was met enters the bounds.
     """
-    n = len(space.x) - 1
+    space, track, n = room.space, room.track, len(room.space.x) - 1
     course, edges, cells, _, _, _ = tube
     own = fill(course, edges, track.x, n, n, cells)
     direction = by(pressure, 0.0, 0.0)
@@ -79,7 +77,7 @@ def near_fold(track, space, tube, path, pressure, first, limit, accuracy):
         for i in range(n + 1):
             space.x[i], space.y[i] = track.x[i], track.y[i] + share * (track.next_y[i] - track.y[i])
         guess = extremes(space.y, tube.middle)
-        status, doublings = solve(space, tube, path.origin, HELD, direction, target, REGRADES, accuracy)
+        status, doublings = solve(space, tube, path.origin, Target(direction, target, True), REGRADES, accuracy)
         if status == NOT_CONVERGED or differ(guess, extremes(space.y, tube.middle)):
             return NOT_CONVERGED, doublings
         gap = space.out[0, nested.MULTIPLIER] - 1.0

@@ -7,11 +7,12 @@ import numpy as np
 from ...jit import kernel
 from ..numerics import nested
 from ..numerics.path import Track
+from .fold import FINEST
 
 
 class Space(NamedTuple):
-    """Scratch: of :func:`..numerics.nested.solve`, a mesh and shape of its own (n + 1,), and uniform stretches along
-    the tube.
+    """Scratch: a :class:`..numerics.nested.Room`, with a mesh and shape of its own (n + 1,); and curves, and uniform
+    stretches along the tube.
     """
 
     fine: np.ndarray
@@ -23,6 +24,14 @@ class Space(NamedTuple):
     y: np.ndarray
     u: np.ndarray
     ahead: np.ndarray
+
+
+class Room(NamedTuple):
+    """What a branch is followed with: scratch, the branch, and one on finer meshes."""
+
+    space: Space
+    track: Track
+    roomy: Track
 
 
 class Rows(NamedTuple):
@@ -55,3 +64,9 @@ def make_track(base, free, held):
     return Track(
         nodes[0], state[0], state[1], state[2], state[3], nodes[1], nodes[2], nodes[3], base if free else base - 1
     )
+
+
+@kernel
+def make_room(base, free, held, places):
+    """Scratch for a base mesh of so many cells, as of :func:`make_track`, and uniform stretches at so many ``places``."""
+    return Room(make_space(base, places), make_track(base, free, held), make_track(FINEST * base, free, held))

@@ -40,11 +40,11 @@ PULLS = 0.0, 1.0, -1.0, 4.0, -4.0, 16.0, -16.0  # of the load that holds, as oth
 
 
 @kernel
-def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
+def find(problem, asked, tube, accuracy, room):
     """One held state on one base mesh. Which way is gone must not hang on the accuracy: the other one is not, where only
     finer meshes have no state that the base mesh has come to.
     """
-    load = load_of(problem, walls, p, other, kind)
+    load, target, kind = load_of(problem, asked), asked.target, asked.kind
     status = refused(load, target, kind, tube)
     if status != PENDING:
         return failed(status, load)
@@ -53,9 +53,9 @@ def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
     if sought.stands:
         end = first_way(room, tube, sought)
         came_to = end.status == OK
-        found, end = settle(room, tube, end, sought, FROM_REST, accuracy, out)
+        found, end = settle(room, tube, end, sought, FROM_REST, accuracy)
         if not valued(found.status) and not found.sure and found.status != COMPRESSED and not sought.varies:
-            necked = with_neck(room, tube, end, sought, accuracy, out)
+            necked = with_neck(room, tube, end, sought, accuracy)
             if valued(necked.status):
                 return necked
     lost = sought.wanted != sought.natural and not (came_to and found.status == NOT_CONVERGED)
@@ -64,11 +64,11 @@ def find(problem, walls, p, other, target, kind, tube, accuracy, room, out):
         for pull in PULLS:
             if snaps:
                 end = ways.from_free(room, tube, sought.with_pressure, sought.unit, borne(pull, sought), sought.wanted)
-                again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy, out)
+                again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy)
                 done = valued(again.status)
                 found = again if done else found
                 snaps = not done and (pull != 0.0 or (end.status == BEYOND_LIMIT and not end.path.held.any))
-    return finish(room, tube, sought, found, out) if valued(found.status) else found
+    return finish(room, tube, sought, found) if valued(found.status) else found
 
 
 @kernel

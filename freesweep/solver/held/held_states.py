@@ -11,6 +11,7 @@ from ..along import places
 from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
+from ..free.space import make_room
 from ..numerics import held, nested
 from ..numerics.properties_along import Tube, make_cells, of_problems, seat, turns, volume
 from ..numerics.shapes import MESH_CHANGE
@@ -28,8 +29,8 @@ from ..status import (
     PENDING,
 )
 from .held_state import find
-from .sought import HELD_LENGTH, HELD_ROTATION, Found, failed, load_of, unit_of, valued
-from .ways import cylinder_multiplier, make_room
+from .sought import HELD_ROTATION, Asked, Found, failed, load_of, unit_of, valued
+from .ways import cylinder_multiplier
 
 FINER, FINEST = 4, 6144  # times the cells of the base mesh, up to so many: some layers are thin
 ENDED = 1e-2  # relative difference of a limit's place: where two meshes agree so well, the branch ends there
@@ -37,9 +38,9 @@ THINNEST_LAYER = 100.0  # times it fits into a cell of an even base mesh; thinne
 
 
 @kernel
-def layers(problem, walls, p, other, kind, tube):
+def layers(problem, asked, tube):
     """How many times the thinnest end layer of a cylinder under the load fits into the length that is solved."""
-    course, places, load, unit = tube.course, tube.places, load_of(problem, walls, p, other, kind), unit_of(kind, 1.0)
+    course, places, load, unit = tube.course, tube.places, load_of(problem, asked), unit_of(asked.kind, 1.0)
     largest = 0.0
     for k in range(1 if course.shape[0] == 1 and course.shape[1] == 1 else guide.PLACES):
         cell = guide.cell_along(tube, k / (guide.PLACES - 1))
@@ -72,38 +73,38 @@ def made_finer(tube, factor):
 
 
 @kernel
-def first_factor(problem, walls, p, other, kind, tube):
+def first_factor(problem, asked, tube):
     """Times the cells of the base mesh that its thinnest layer needs."""
     base, factor = tube.edges[len(tube.edges) - 1], 1
-    most = layers(problem, walls, p, other, kind, tube) / THINNEST_LAYER
+    most = layers(problem, asked, tube) / THINNEST_LAYER
     while factor * base <= FINEST and most > factor * base:
         factor *= FINER
     return factor
 
 
 @kernel
-def find_on_some_mesh(problem, walls, p, other, target, kind, tube, accuracy, room, out):
+def find_on_some_mesh(problem, asked, tube, accuracy, room):
     """As :func:`find`, on finer base meshes where one does not do: where the solver fails, misses the accuracy, or meets an
     end of the way that is not certain. Returns also the tube and the room that were used.
 
     Where the accuracy is missed on all of them, the first mesh's state stands. Among unstable states branches lie close to
     each other, and a mesh that sees too little of them leads astray: such a state is given where two meshes lead to it.
     """
-    base, half, varies = tube.edges[len(tube.edges) - 1], tube.half, len(tube.cells) > 1
-    factor = first_factor(problem, walls, p, other, kind, tube)
+    base, half, count = tube.edges[len(tube.edges) - 1], tube.half, guide.PLACES if len(tube.cells) > 1 else 1
+    factor = first_factor(problem, asked, tube)
     if factor > 1:
-        tube, room = made_finer(tube, factor), make_room(factor * base, half, varies)
-    found = find(problem, walls, p, other, target, kind, tube, accuracy, room, out)
-    doubtful, differed = valued(found.status) and found.unstable > 0 and out[0, nested.MIDDLE] != 1.0, False
+        tube, room = made_finer(tube, factor), make_room(factor * base, half, True, count)
+    found = find(problem, asked, tube, accuracy, room)
+    straight, differed = room.space.out[0, nested.MIDDLE] == 1.0, False
+    doubtful = valued(found.status) and found.unstable > 0 and not straight
     settled = found.status == OK or found.status == COMPRESSED or found.sure
     first_tube = tube
     finer = 1
     while (doubtful or not settled) and FINER * finer * factor * base <= FINEST:
         finer *= FINER
-        finer_tube, finer_room = made_finer(first_tube, finer), make_room(finer * factor * base, half, varies)
-        finer_out = out.copy()
-        again = find(problem, walls, p, other, target, kind, finer_tube, accuracy, finer_room, finer_out)
-        same = valued(found.status) and valued(again.status) and alike(out, finer_out)
+        finer_tube, finer_room = made_finer(first_tube, finer), make_room(finer * factor * base, half, True, count)
+        again = find(problem, asked, finer_tube, accuracy, finer_room)
+        same = valued(found.status) and valued(again.status) and alike(room.space.out, finer_room.space.out)
         keeps = found.status == INACCURATE and again.status != OK and (same or not doubtful)
         if keeps or (doubtful and same and found.status == OK):
             differed = False
@@ -112,9 +113,6 @@ def find_on_some_mesh(problem, walls, p, other, target, kind, tube, accuracy, ro
         ended = abs(again.reached - found.reached) <= ENDED * found.reached and 0.0 < found.reached < 1.0
         found, tube, room = again, finer_tube, finer_room
         settled = found.status == OK or found.status == COMPRESSED or found.sure
-        for row in range(out.shape[0]):
-            for k in range(out.shape[1]):
-                out[row, k] = finer_out[row, k]
         doubtful = valued(found.status) and found.unstable > 0 and not same
         if not valued(found.status) and ended:  # steps die out at one place on any mesh
             found = as_limit(found)
@@ -154,7 +152,7 @@ class States(NamedTuple):
 
 
 @kernel
-def leave_at_rest(states, i, problem, walls, tube):
+def leave_at_rest(states, i, problem, wall, tube):
     """The undeformed tube; the fiber angles of one that varies are put in by who asks."""
     rest, fields = 0.5 * problem[LENGTH], states.profiles[i]
     states.status[i], states.stable[i] = OK, 1
@@ -163,7 +161,7 @@ def leave_at_rest(states, i, problem, walls, tube):
     states.values[i, 0], states.values[i, 4] = rest, 1.0
     states.values[i, 1] = (1.0 if tube.half else 0.5) * volume(tube.course, tube.places)
     if states.values.shape[1] > 6:
-        places.rest(tube.course, wall_of(problem, walls), states.values[i, 6:], states.bounds[i, 6:])
+        places.rest(tube.course, wall, states.values[i, 6:], states.bounds[i, 6:])
     for j in range(len(states.stations)):
         for k in range(FIELDS):
             fields[k, j] = 0.0
@@ -172,12 +170,12 @@ def leave_at_rest(states, i, problem, walls, tube):
 
 
 @kernel
-def record(states, i, found, tube, space, accuracy, out):
+def record(states, i, found, tube, space, accuracy):
     """What was found."""
     states.status[i], states.paths[i] = found.status, found.path
     if not valued(found.status):
         return
-    base = tube.edges[len(tube.edges) - 1]
+    base, out = tube.edges[len(tube.edges) - 1], space.out
     for k in range(6):
         share = 0.5 if not tube.half and k < 4 else 1.0
         states.values[i, k], states.bounds[i, k] = share * out[0, k], share * out[1, k]
@@ -201,29 +199,29 @@ def record(states, i, found, tube, space, accuracy, out):
 
 
 @kernel
-def ends_last(problem, walls, tube):
+def ends_last(problem, wall, tube):
     """Whether longer fibers leave the clamped ends, whose radius is given, any length."""
     least = 1.0
     for end in range(2):
         cell = guide.cell_along(tube, 1.0 * end)
-        least = min(least, lagrangian.clamped(cell, problem[GAMMA], wall_of(problem, walls)))
+        least = min(least, lagrangian.clamped(cell, problem[GAMMA], wall))
     return least > 0.0
 
 
 @kernel
-def hold(states, i, problem, walls, p, other, target, kind, tube, accuracy, room, out):
+def hold(states, i, problem, asked, tube, accuracy, room):
     """Hold one state."""
-    natural = target == (problem[LENGTH] if kind == HELD_LENGTH else 0.0)
-    if not ends_last(problem, walls, tube):
+    wall, turned = wall_of(problem, asked.walls), asked.kind == HELD_ROTATION
+    natural = asked.target == (0.0 if turned else (0.5 if tube.half else 1.0) * problem[LENGTH])
+    if not ends_last(problem, wall, tube):
         states.status[i] = INVALID
-    elif p == 0.0 and other == 0.0 and natural:
-        leave_at_rest(states, i, problem, walls, tube)
-    elif kind == HELD_ROTATION and not (turns(tube.course) or may_go_slack(wall_of(problem, walls))):
+    elif asked.p == 0.0 and asked.other == 0.0 and natural:
+        leave_at_rest(states, i, problem, wall, tube)
+    elif turned and not (turns(tube.course) or may_go_slack(wall)):
         states.status[i] = HELD_IMPOSSIBLE
     else:
-        own_target = 0.5 * target if tube.half else target
-        found, tube, room = find_on_some_mesh(problem, walls, p, other, own_target, kind, tube, accuracy, room, out)
-        record(states, i, found, tube, room.space, accuracy, out)
+        found, tube, room = find_on_some_mesh(problem, asked, tube, accuracy, room)
+        record(states, i, found, tube, room.space, accuracy)
 
 
 @entry_point
@@ -247,7 +245,7 @@ def hold_many(
     whole = own_places[len(own_places) - 1]
     middle = base if alike else edges[np.argmin(np.abs(own_places - 0.5 * whole))]
     tube = Tube(own_course, edges, cells_for(base, not alike, own_course), alike, middle, own_places)
-    room, out = make_room(base, alike, not alike), np.zeros((4, nested.OUTPUTS))
+    room = make_room(base, alike, True, 1 if alike else guide.PLACES)
     states = States(values, bounds, status, stable, slack, paths, stations, profiles)
     for k in range(len(problems)):
         if alike:
@@ -255,6 +253,5 @@ def hold_many(
             seat(own_course, problems[k])
         for i in range(first[k], first[k + 1]):
             if status[i] == PENDING:
-                hold(
-                    states, i, problems[k], walls, pressures[i], others[i], targets[i], kind, tube, accuracy, room, out
-                )
+                asked = Asked(walls, pressures[i], others[i], (0.5 if alike else 1.0) * targets[i], kind)
+                hold(states, i, problems[k], asked, tube, accuracy, room)

@@ -15,6 +15,7 @@ from ..numerics.bordered import FOLLOWED, correct
 from ..numerics.continuation import CHANGE
 from ..numerics.path import Track, load_at
 from ..numerics.properties_along import fill
+from ..of_tube import of_tube
 from ..physics import lagrangian
 from ..status import INACCURATE, NOT_CONVERGED, OK
 
@@ -48,9 +49,7 @@ def pin(track, n, cells, path, node, value, mu, work):
     for i in range(n + 1):
         track.normal[i] = 0.0
     track.normal[node], track.y[node] = 1.0, value
-    return correct(
-        lagrangian.density, lagrangian.conjugate, track, track.y, mu, n, cells, path, 0.0, track.tangent, work
-    )
+    return correct(of_tube(), track, track.y, mu, n, cells, path, 0.0, track.tangent, work)
 
 
 @kernel

@@ -6,10 +6,11 @@ from ..free.fold import locate
 from ..load import loaded
 from ..numerics import nested, newton
 from ..numerics.continuation import is_flat
+from ..numerics.held import Target
 from ..numerics.path import load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
-from ..physics import lagrangian
+from ..of_tube import of_tube
 from ..stability import pushed, unstable_directions
 from ..status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 from . import near_turn, ways
@@ -29,16 +30,16 @@ def lower(room, tube, end, start, load, sought):
 
 
 @kernel
-def settle(room, tube, end, sought, path, accuracy, out):
+def settle(room, tube, end, sought, path, accuracy):
     """The state at the ``end`` of a way, or before its turn, on finer meshes; and where its branch was left at last."""
-    load, space, track = sought.load, room.space, room.track
+    load, track = sought.load, room.track
     if end.status == OK and sought.with_pressure.p != load.p:
         end = lower(room, tube, end, sought.with_pressure, load, sought)
         if end.status == NOT_CONVERGED and end.here[0] > 1.0 - NEAR:
             return Found(COMPRESSED, 0, 0, load, end.here[0], False, path), end
     found = Found(end.status, 0, 0, load, end.here[0], False, path)
     if end.status == OK:
-        found = on_meshes(track, space, tube, end, sought, path, accuracy, out)
+        found = on_meshes(room, tube, end, sought, path, accuracy)
         if found.status == NOT_CONVERGED:  # a turn just behind?
             end = ways.follow(room, tube, end.path, 1.0, end.here[1], 1.0 + NEAR)
     turned = end.status == BEYOND_LIMIT and end.path.held.any and end.ahead[2] > 0.0
@@ -47,7 +48,7 @@ def settle(room, tube, end, sought, path, accuracy, out):
         own = fill(tube.course, tube.edges, track.x, n, n, tube.cells)
         if pushed(track.y[: n + 1], own, load_at(end.path, track.y, n, end.here[0])):
             return Found(COMPRESSED, 0, 0, load, end.here[0], True, path), end
-        found = at_turn(room, tube, end, sought, path, accuracy, out)
+        found = at_turn(room, tube, end, sought, path, accuracy)
     if valued(found.status) and not found.load.p + found.load.f > 0.0:  # at the clamped ends, where y = 1
         return Found(COMPRESSED, 0, 0, load, 1.0, True, path), end
     return found, end
@@ -63,11 +64,11 @@ def leads_to(path, sought):
 
 
 @kernel
-def at_turn(room, tube, end, sought, path, accuracy, out):
+def at_turn(room, tube, end, sought, path, accuracy):
     """What is at the end of a way that turns back there: the state before the turn, if all meshes together have it."""
     status = BEYOND_LIMIT if sought.wanted == sought.natural else HELD_IMPOSSIBLE
     space, track, load = room.space, room.track, sought.load
-    limit, bound = locate(track, room.roomy, space, tube, end.path, end.here, end.ahead, 1.0)
+    limit, bound = locate(room, tube, end.path, end.here, end.ahead, 1.0)
     if limit > 1.0 + bound and leads_to(end.path, sought):
         again, doublings, unstable = near_turn.before(track, space, tube, end, limit, accuracy)
         now = loaded(load, end.path.held.unit, space.out[0, nested.MULTIPLIER])
@@ -76,18 +77,17 @@ def at_turn(room, tube, end, sought, path, accuracy, out):
 
 
 @kernel
-def on_meshes(track, space, tube, end, sought, path, accuracy, out):
+def on_meshes(room, tube, end, sought, path, accuracy):
     """The track's state on finer meshes; NOT_CONVERGED where these have another or none."""
-    n, load, unit = len(track.x) - 1, sought.load, sought.unit
+    space, track, load, unit = room.space, room.track, sought.load, sought.unit
+    n = len(track.x) - 1
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.y[i]
-    status, unstable, doublings, _ = nested.solve(
-        lagrangian.density, lagrangian.conjugate, lagrangian.integrands, lagrangian.scales, space.x, space.y, tube, load,
-        nested.HELD, unit, sought.wanted, track.y[n + 1], 1, accuracy, space.fine, space.work, space.table, out,
-    )  # fmt: skip
+    target = Target(unit, sought.wanted, True)
+    status, unstable, doublings, _ = nested.solve(of_tube(), space, tube, load, target, track.y[n + 1], 1, accuracy)
     if status == newton.CONVERGED or status == nested.UNREACHED:
         if not differ(extremes(track.y[: n + 1], tube.middle), extremes(space.y, tube.middle)):
-            now = loaded(load, unit, out[0, nested.MULTIPLIER])
+            now = loaded(load, unit, space.out[0, nested.MULTIPLIER])
             return Found(OK if status == newton.CONVERGED else INACCURATE, unstable, doublings, now, 1.0, False, path)
     own = fill(tube.course, tube.edges, track.x, n, n, tube.cells)
     gone = pushed(track.y[: n + 1], own, load_at(end.path, track.y, n, 1.0))
@@ -95,23 +95,20 @@ def on_meshes(track, space, tube, end, sought, path, accuracy, out):
 
 
 @kernel
-def with_neck(room, tube, end, sought, accuracy, out):
+def with_neck(room, tube, end, sought, accuracy):
     """The state of a tube with a neck, from a mesh's shape where the last way to it was left."""
-    space, track, path, load = room.space, room.track, end.path, sought.load
-    n = len(track.x) - 1
-    if not leads_to(path, sought):
-        return failed(NOT_CONVERGED, load)
+    if not leads_to(end.path, sought):
+        return failed(NOT_CONVERGED, sought.load)
     status, doublings, now = necked_tube.solve(
-        sought.cell, tube, track.x, track.y[: n + 1], track.y[n + 1], path, min(end.here[0], 1.0), sought.scale, accuracy,
-        n, space.fine, space.curve, space.table, out,
-    )  # fmt: skip
+        room, tube, sought.cell, end.path, min(end.here[0], 1.0), sought.scale, accuracy
+    )
     return Found(status, 1, doublings, now, 1.0, True, FROM_REST)
 
 
 @kernel
-def finish(room, tube, sought, found, out):
+def finish(room, tube, sought, found):
     """The unstable directions of a state on the whole tube, and the load that holds it without its unit."""
-    space, edges = room.space, tube.edges
+    space, edges, out = room.space, tube.edges, room.space.out
     base = edges[len(edges) - 1]
     size = (2.0 if tube.half else 1.0) * max(abs(sought.wanted), abs(sought.natural))
     unstable, rounding = unstable_directions(

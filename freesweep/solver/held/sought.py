@@ -21,6 +21,18 @@ CYLINDER = 3  # numbers of a cell, of which a body has more
 MIRROR_OFFSET, MIRROR_TOLERANCE = 0.37, 1e-12  # places off jumps; of H, D and the section
 
 
+class Asked(NamedTuple):
+    """A held state that is asked for: the columns of its wall; the pressure, and the load that is not unknown; and what is
+    held, HELD_LENGTH or HELD_ROTATION, at which target.
+    """
+
+    walls: tuple
+    p: float
+    other: float
+    target: float
+    kind: int
+
+
 class Sought(NamedTuple):
     """A held state: its load, but for what holds it; ``with_pressure``, the same where there is none, and whether there the
     wall of the straight cylinder ``cell`` is under tension: it ``stands``. The load ``unit`` holds the integral, in units
@@ -59,10 +71,10 @@ def unit_of(kind, scale):
 
 
 @kernel
-def load_of(problem, walls, p, other, kind):
+def load_of(problem, asked):
     """The load but for what holds."""
-    force, torque = (0.0, other) if kind == HELD_LENGTH else (other, 0.0)
-    return Load(problem[GAMMA], rubber_of(problem), wall_of(problem, walls), p, force, torque, 1.0)
+    force, torque = (0.0, asked.other) if asked.kind == HELD_LENGTH else (asked.other, 0.0)
+    return Load(problem[GAMMA], rubber_of(problem), wall_of(problem, asked.walls), asked.p, force, torque, 1.0)
 
 
 @kernel

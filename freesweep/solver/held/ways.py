@@ -8,16 +8,15 @@ from typing import NamedTuple
 from ...jit import kernel
 from .. import guide
 from ..free.branch import begin
-from ..free.fold import FINEST
 from ..free.meshes import stand, take
-from ..free.space import Space, make_space, make_track
 from ..load import NO_CHANGE, Load, by, loaded
 from ..numerics import held
 from ..numerics.bordered import FOLLOWED
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
-from ..numerics.path import NOTHING, Held, Path, Track, load_at
+from ..numerics.path import NOTHING, Held, Path, load_at
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
+from ..of_tube import of_tube
 from ..physics import lagrangian
 from ..physics.wall import may_go_slack, with_bonded_fibers
 from ..stability import pushed
@@ -30,14 +29,6 @@ HALVINGS = 60  # of its load, until that holds
 LEAST_SHARE = 1e-6  # of the loads: all but none
 
 
-class Room(NamedTuple):
-    """What a way is followed with: scratch, the branch, and one on finer meshes."""
-
-    space: Space
-    track: Track
-    roomy: Track
-
-
 class End(NamedTuple):
     """Where a way was left: OK at its end, BEYOND_LIMIT where it turns back or becomes unstable; (mu, the tangent's mu) of
     the state in the track, and (mu, the tangent's mu, step) of the last one ahead of it.
@@ -47,14 +38,6 @@ class End(NamedTuple):
     path: Path
     here: tuple
     ahead: tuple
-
-
-@kernel
-def make_room(base, half, varying):
-    """Scratch for a base mesh of so many cells."""
-    return Room(
-        make_space(base, guide.PLACES if varying else 1), make_track(base, half, True), make_track(FINEST * base, half, True)
-    )  # fmt: skip
 
 
 @kernel
@@ -142,18 +125,14 @@ def follow(room, tube, path, mu, tangent_mu, until):
     n, here, step = len(track.x) - 1, (mu, tangent_mu), FIRST_STEP * CHANGE
     for _ in range(MOST_STEPS):
         own = fill(course, edges, track.x, n, n, cells)
-        status, negative, mu, tangent_mu, made, step = advance(
-            lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], step, work
-        )
+        status, negative, mu, tangent_mu, made, step = advance(of_tube(), track, n, own, path, here, step, work)
         if status != FOLLOWED:
             gone = pushed(track.y[: n + 1], own, load_at(path, track.y, n, here[0]))
             flat = is_flat(here[0], here[1], path)  # no step leads round so sharp a fold
             return stopped(COMPRESSED if gone else BEYOND_LIMIT if flat else NOT_CONVERGED, path, here[0], here[1])
         ahead, ends = (mu, tangent_mu, made), not is_stable(negative, tangent_mu, 1.0)
         if ends:
-            ahead = last_alike(
-                lagrangian.density, lagrangian.conjugate, track, n, own, path, here[0], here[1], made, 1.0, True, work
-            )
+            ahead = last_alike(of_tube(), track, n, own, path, here, made, 1.0, True, work)
         if ahead[0] >= until:
             return land(room, tube, path, here, ahead, until)
         if ends:
@@ -217,7 +196,7 @@ def from_free(room, tube, load, unit, pull, target):
     n = len(track.x) - 1
     course, edges, cells, _, _, _ = tube
     track.y[n + 1] = track.next_y[n + 1] = 0.0
-    status, mu, tangent_mu = begin(track, room.space, tube, path)
+    status, mu, tangent_mu = begin(room, tube, path)
     if status != FOLLOWED:
         return stopped(NOT_CONVERGED, path, 0.0, 1.0)
     if mu < 1.0:

@@ -16,11 +16,13 @@ for what places and state miss.
 """
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from ...jit import kernel
-from .second import BY_V, BY_Y, LOADS, NUMBERS, OF_LOADS, VV, YV, YY
+from .pack import aligned
+from .second import BY_V, BY_Y, LOADS, NUMBERS, OF_LOADS, ROWS, VV, YV, YY
 from .vector import get, put, select, spread
 
 COUNT, BUBBLES, FEWER = 16, 14, 10
@@ -40,6 +42,47 @@ TAILS = np.ascontiguousarray(_COEFFICIENTS[-LAST_ONES:])
 OF_STATE = 3  # fields before those of the numbers; behind them those of what loads are conjugate to
 PIVOT = 0  # rows of what is carried on: A, and behind it g of each number
 SQUARES, LOST = range(2)  # rows of what is known of errors: g A^-1 g of each number, and what FEWER lose of it
+
+
+class Variation(NamedTuple):
+    """What a second variation by the numbers ``used`` is made in: ``rows`` (2, ROWS, WIDTH) of a place and of the middle,
+    ``fields`` (OF_STATE + 2 numbers + LOADS, COUNT, ...) of a part, its A and the factors (3, TRIANGLE, ...), ``pushed``
+    (numbers, SIZE, ...), and two rows of half of what it is made of (2, COUNT, ...). What parts leave: ``carried``
+    (2, 1 + numbers, ...), ``known`` errors (2, numbers, ...), ``sums`` (2, LOADS NUMBERS + LOADS, ...) at a fixed shape and
+    answered, and how ``rough`` they are (2, LOADS, ...); last the force that is ``left`` (numbers, ...).
+    """
+
+    used: np.ndarray
+    rows: np.ndarray
+    fields: np.ndarray
+    matrix: np.ndarray
+    pushed: np.ndarray
+    halves: np.ndarray
+    carried: np.ndarray
+    known: np.ndarray
+    sums: np.ndarray
+    rough: np.ndarray
+    left: np.ndarray
+
+
+@kernel
+def make_variation(used):
+    """Scratch of a vector."""
+    count = len(used)
+    return Variation(
+        used, aligned(2, ROWS), aligned(OF_STATE + 2 * count + LOADS, COUNT), aligned(3, TRIANGLE), aligned(count, SIZE),
+        aligned(2, COUNT), aligned(2, 1 + count), aligned(2, count), aligned(2, LOADS * NUMBERS + LOADS), aligned(2, LOADS),
+        aligned(1, count)[0],
+    )  # fmt: skip
+
+
+@kernel
+def clear(own):
+    """Nothing is summed yet."""
+    for array in (own.sums, own.carried, own.known, own.rough):
+        for i in range(2):
+            for k in range(array.shape[1]):
+                put(array[i], k, 0.0)
 
 
 @kernel

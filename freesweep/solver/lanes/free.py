@@ -11,10 +11,9 @@ from ...jit import entry_point, kernel
 from ..load import Load
 from ..physics import lagrangian
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H
-from . import first_guess, meridian, quadrature, slack_ends
-from .pack import BEFORE, COLUMNS, PRESSURE, aligned, enter, is_clamped, loads, lock, record, settle
+from . import first_guess, meridian, quadrature
+from .pack import BEFORE, COLUMNS, PRESSURE, Asked, Kind, Told, aligned, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
-from .rule import LAST
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
 
@@ -35,12 +34,10 @@ def locked(problem):
 
 
 @kernel
-def carry(problems, first, pressures, order, constants, walls, layers, values, bounds, status, stretches, likeness):
+def carry(problems, first, pressures, order, kind, told, stretches, likeness):
     """Uniform ``stretches`` (pressures,) of the problems, taken in the given ``order``, WIDTH at a time: NaN from where
     no quick way leads on; and ``likeness`` (pressures,), numbers from 0 to 1 that tell states that are as much work.
-    What needs no solving at all is written to ``values``, ``bounds`` and ``status``. ``constants`` are the columns of
-    the rubbers' constants, MOONEY_RIVLIN or YEOH, and ``walls`` those of the walls, SOURCE or PHYSICAL, whose
-    ``layers`` and loose fibers are the same for all: each has machine code of its own.
+    What needs no solving at all is ``told``. Problem i is asked for the ``pressures`` from ``first[i]`` on.
     """
     columns, found = aligned(1, COLUMNS)[0], aligned(1, 2)[0]
     members, rows = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
@@ -63,7 +60,7 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
                 if row < first[k + 1]:
                     p, clamped = pressures[row], (valid >> lane) & 1 == 1
                     stretches[row] = np.nan
-                    if settle(p, problems[k], clamped, row, values, bounds, status):
+                    if settle(p, problems[k], clamped, row, told):
                         continue
                     if p == np.inf:
                         stretches[row], likeness[row] = locked(problems[k])
@@ -72,7 +69,7 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
                         active |= 1 << lane
             if active == 0:
                 continue
-            cell, before, now = loads(columns, constants, walls, layers)
+            cell, before, now = loads(columns, kind.constants, kind.walls, kind.layers)
             ahead, arrived = first_guess.follow(
                 u, cell, first_leg(before, mask_of(active & ~started)), now, get(columns, HALF), mask_of(active)
             )
@@ -88,43 +85,35 @@ def carry(problems, first, pressures, order, constants, walls, layers, values, b
 
 
 @kernel
-def seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start):
-    """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too."""
+def seat_states(group, count, asked, rows, columns, start):
+    """Put the next ``count`` rows in the given order into the lanes; those that are left take the last one, too."""
     for lane in range(WIDTH):
-        row = order[group + min(lane, count - 1)]
+        row = asked.order[group + min(lane, count - 1)]
         rows[lane] = row
-        enter(lane, problems[owners[row]], columns)
-        start[0, lane] = stretches[row]
-        if pressures[row] == np.inf:
+        enter(lane, asked.problems[asked.owners[row]], columns)
+        start[0, lane] = asked.starts[row]
+        if asked.pressures[row] == np.inf:
             lock(lane, columns)
         else:
-            columns[PRESSURE, lane] = pressures[row]
+            columns[PRESSURE, lane] = asked.pressures[row]
 
 
 @kernel
-def solve(
-    problems, owners, pressures, stretches, order, constants, walls, layers, pieces, accuracy, values, bounds, status, slack,
-    middles,
-):  # fmt: skip
-    """Solve the rows in the given ``order``, WIDTH at a time, by :mod:`quadrature`, each part in so many ``pieces``:
-    row i belongs to problem ``owners[i]`` and has the uniform stretch ``stretches[i]``. Other arguments as of
-    :func:`carry` and :func:`..free.free_states.follow_many`; rows that a lane could not do keep the status that they
-    have. Of the others ``middles`` (n, 2) take the uniform stretch and the depth of the middle, from which profiles are
-    drawn.
+def solve(asked, kind, pieces, accuracy, told, middles):
+    """Solve the rows that are ``asked`` for, WIDTH at a time, by :mod:`quadrature`, each part in so many ``pieces``: they
+    begin at uniform stretches. Rows that a lane could not do keep the status that they have. Of the others ``middles``
+    (n, 2) take the uniform stretch and the depth of the middle, from which profiles are drawn.
     """
-    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
-    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
-    columns, start, scratch = small[0], small[1], small[2]
-    rows, counts = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
-    for group in range(0, len(order), WIDTH):
-        count = min(WIDTH, len(order) - group)
-        seat_states(group, count, order, problems, owners, pressures, stretches, rows, columns, start)
-        cell, _, load = loads(columns, constants, walls, layers)
+    room, out, small = quadrature.make_room(), aligned(2, 16), aligned(2, COLUMNS)
+    columns, start, rows = small[0], small[1], np.zeros(WIDTH, np.int64)
+    for group in range(0, len(asked.order), WIDTH):
+        count = min(WIDTH, len(asked.order) - group)
+        seat_states(group, count, asked, rows, columns, start)
+        cell, _, load = loads(columns, kind.constants, kind.walls, kind.layers)
         met, alpha, beta, (u, depth) = quadrature.solve(
-            get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, ends[:5],
-            ends[5:], edges, numbers[:2], scratch, counts, numbers[2:],
-        )  # fmt: skip
-        record(bits(met), bits(alpha), bits(beta), rows, numbers[2:], values, bounds, status, slack)
+            get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, out
+        )
+        record(bits(met), bits(alpha), bits(beta), rows, out, told)
         put(start, 0, u)
         put(start, 1, depth)
         for lane in range(count):
@@ -135,25 +124,24 @@ def solve(
 @entry_point
 def carry_lanes(problems, first, pressures, order, constants, values, bounds, status, stretches, likeness):
     """:func:`carry` the source's tubes."""
-    carry(problems, first, pressures, order, constants, SOURCE, 1, values, bounds, status, stretches, likeness)
+    kind, told = Kind(constants, SOURCE, 1), Told(values, bounds, status, status)
+    carry(problems, first, pressures, order, kind, told, stretches, likeness)
 
 
 @entry_point
 def carry_physical(problems, first, pressures, order, constants, layers, values, bounds, status, stretches, likeness):
     """:func:`carry` physical tubes."""
-    carry(problems, first, pressures, order, constants, PHYSICAL, layers, values, bounds, status, stretches, likeness)
+    kind, told = Kind(constants, PHYSICAL, layers), Told(values, bounds, status, status)
+    carry(problems, first, pressures, order, kind, told, stretches, likeness)
 
 
 @entry_point
 def solve_lanes(
-    problems, owners, pressures, stretches, order, constants, pieces, accuracy, values, bounds, status, slack,
-    middles,
+    problems, owners, pressures, stretches, order, constants, pieces, accuracy, values, bounds, status, slack, middles
 ):  # fmt: skip
     """:func:`solve` the source's tubes."""
-    solve(
-        problems, owners, pressures, stretches, order, constants, SOURCE, 1, pieces, accuracy, values, bounds, status, slack,
-    middles,
-    )  # fmt: skip
+    asked, kind = Asked(problems, owners, pressures, stretches, order), Kind(constants, SOURCE, 1)
+    solve(asked, kind, pieces, accuracy, Told(values, bounds, status, slack), middles)
 
 
 @entry_point
@@ -162,7 +150,5 @@ def solve_physical(
     middles,
 ):  # fmt: skip
     """:func:`solve` physical tubes."""
-    solve(
-        problems, owners, pressures, stretches, order, constants, PHYSICAL, layers, pieces, accuracy, values, bounds, status,
-        slack, middles,
-    )  # fmt: skip
+    asked, kind = Asked(problems, owners, pressures, stretches, order), Kind(constants, PHYSICAL, layers)
+    solve(asked, kind, pieces, accuracy, Told(values, bounds, status, slack), middles)

@@ -11,6 +11,7 @@ at the tube with nothing held, or under a strong pull.
 """
 
 from math import pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from ..physics.wall import may_go_slack, with_bonded_fibers
 from ..problem import FORCE, PHYSICAL, SOURCE, TORQUE
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, OK
 from . import first_guess
-from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, is_clamped, loads
+from .pack import COLUMNS, LENGTH, PRESSURE, Kind, aligned, enter, is_clamped, loads
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
@@ -35,6 +36,27 @@ STRONG, STRONGER = 4.0, 32.0  # pulls, to pressure and torque
 STRETCH, MULTIPLIER, HELD, RISE, LONGEST, LOST = range(6)
 AT_CYLINDER, AT_FREE, AT_STRONG, AT_STRONGER, AT_OPPOSITE = TRIALS = range(5)  # where to begin, at first
 BEGINNING = LOST + 1
+ROUNDED = BEGINNING  # behind a beginning: what rounding leaves of the multiplier of a straight cylinder
+
+
+class Asked(NamedTuple):
+    """Held states (n,) that are asked for: row i is that of a problem of its own, half of whose length or rotation is
+    ``targets[i]``; rows in the given ``order`` share vectors.
+    """
+
+    problems: np.ndarray
+    pressures: np.ndarray
+    targets: np.ndarray
+    order: np.ndarray
+
+
+class Told(NamedTuple):
+    """What is told of held states (n,)."""
+
+    multipliers: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    stable: np.ndarray
 
 
 @kernel
@@ -124,75 +146,96 @@ def cylinder_stability(cell, load, half):
 
 
 @kernel
-def start(
-    problems, pressures, targets, order, length_held, constants, walls, layers, multipliers, bounds, status, stable,
-    beginnings,
-):  # fmt: skip
-    """Beginnings (n, BEGINNING) of the search for the held states of the rows in the given ``order``, WIDTH at a time: row i
-    is a problem of its own under its pressure, half of whose length or rotation is ``targets[i]``; their stretch is NaN
-    where there is none. In place of LOST they tell which of the TRIALS it is. What needs no search, straight cylinders
-    and what nothing holds, is written to ``multipliers``, ``bounds``, ``status`` and ``stable``.
+def seat(group, count, asked, unknown, beginnings, columns, found):
+    """Put the next ``count`` rows in the given order into the lanes, without the load ``unknown``; those that are left take
+    the last one, too. Returns the lanes whose tubes can be clamped.
+    """
+    valid = 0
+    for lane in range(WIDTH):
+        row = asked.order[group + min(lane, count - 1)]
+        enter(lane, asked.problems[row], columns)
+        columns[PRESSURE, lane], columns[unknown, lane] = asked.pressures[row], 0.0
+        found[HELD, lane], found[LOST, lane] = asked.targets[row], beginnings[row, LOST]
+        if lane < count and is_clamped(asked.problems[row]):
+            valid |= 1 << lane
+    return mask_of(valid)
+
+
+@kernel
+def refused(valid, todo, cell, load, target, most, length_held):
+    """Where no load holds the ``target``, and where the wall would be pushed: p + f alone decides, of given rotation."""
+    if length_held:
+        return todo & (target > (1.0 + LONGER) * most), mask_of(0)
+    unturned = (cell[0] == 0.0) & isnt(loose_turn(load, length_held) & isnt(target == 0.0))
+    return valid & unturned, todo & isnt(load.p + load.f > 0.0)
+
+
+@kernel
+def tell(count, rows, refused, straight, begun, found, told, beginnings):
+    """Write what was ``found`` in the lanes of the ``rows``: (never, pushed) are ``refused``, (lanes, firm) ``straight``; of
+    those ``begun``, (lanes, upright, from rest), what is upright is a cylinder.
+    """
+    never, pushed = bits(refused[0]), bits(refused[1])
+    known, firm = bits(straight[0]), bits(straight[1])
+    started, upright, from_rest = bits(begun[0]), bits(begun[1]), bits(begun[2])
+    for lane in range(count):
+        row = rows[lane]
+        if ((never | pushed) >> lane) & 1:
+            told.status[row] = COMPRESSED if (pushed >> lane) & 1 else HELD_IMPOSSIBLE
+            continue
+        if (known >> lane) & 1:
+            told.multipliers[row], told.bounds[row] = found[MULTIPLIER, lane], found[ROUNDED, lane]
+            told.status[row], told.stable[row] = OK, (firm >> lane) & 1
+        if (started >> lane) & 1:
+            for k in range(BEGINNING):
+                beginnings[row, k] = found[k, lane]
+            beginnings[row, LOST] = 0.0 if (from_rest >> lane) & 1 else 1.0
+            if not (upright >> lane) & 1:
+                beginnings[row, HELD] = beginnings[row, RISE] = np.nan
+
+
+@kernel
+def start(asked, length_held, kind, told, beginnings):
+    """Beginnings (n, BEGINNING) of the search for the held states that are ``asked`` for, WIDTH at a time; their stretch is
+    NaN where there is none. In place of LOST they tell which of the TRIALS it is. What needs no search, straight cylinders
+    and what nothing holds, is ``told``.
     """
     columns, found = aligned(1, COLUMNS)[0], aligned(1, BEGINNING + 1)[0]
-    unknown = FORCE if length_held else TORQUE
-    for group in range(0, len(order), WIDTH):
-        count, valid = min(WIDTH, len(order) - group), 0
-        for lane in range(WIDTH):
-            row = order[group + min(lane, count - 1)]
-            enter(lane, problems[row], columns)
-            columns[PRESSURE, lane], columns[unknown, lane] = pressures[row], 0.0
-            found[HELD, lane], found[LOST, lane] = targets[row], beginnings[row, LOST]
-            if lane < count and is_clamped(problems[row]):
-                valid |= 1 << lane
-        cell, _, load = loads(columns, constants, walls, layers)
-        half, target = get(columns, LENGTH), get(found, HELD)
+    for group in range(0, len(asked.order), WIDTH):
+        count = min(WIDTH, len(asked.order) - group)
+        valid = seat(group, count, asked, FORCE if length_held else TORQUE, beginnings, columns, found)
+        cell, _, load = loads(columns, kind.constants, kind.walls, kind.layers)
+        half, target, trial = get(columns, LENGTH), get(found, HELD), get(found, LOST)
         c, c_y, mu = cylinder(cell, load, length_held)
         first, upheld = c * half, abs(c_y) > POLE * (cell[0] * cell[0] + cell[1] * cell[1])
-        todo = mask_of(valid) & (upheld | loose_turn(load, length_held))
-        most, never, pushed = half * lagrangian.longest(cell, load.gamma, load.wall), mask_of(0), mask_of(0)
-        if length_held:
-            never = todo & (target > (1.0 + LONGER) * most)
-        else:  # p + f alone decides
-            pushed = todo & isnt(load.p + load.f > 0.0)
-            never = mask_of(valid) & (cell[0] == 0.0) & isnt(loose_turn(load, length_held) & isnt(target == 0.0))
+        todo = valid & (upheld | loose_turn(load, length_held))
+        most = half * lagrangian.longest(cell, load.gamma, load.wall)
+        never, pushed = refused(valid, todo, cell, load, target, most, length_held)
         todo = todo & isnt(never | pushed)
         now = holding(load, length_held, mu)
         pulled = lagrangian.density(spread(1.0), 0.0, cell, with_bonded_fibers(now))[0] > 0.0
         stands = todo & upheld & pulled & both_pull(cell, now)
         firm, gone = cylinder_stability(cell, now, half)
-        trial, toward = get(found, LOST), select(target < first, -1.0, spread(1.0))
         natural = half if length_held else spread(0.0)
         todo = todo & isnt((trial > AT_CYLINDER) & stands & (target == natural))  # has its one way from rest
         stands = stands & isnt(trial > AT_CYLINDER)
         straight = stands & (target == first)
         lost = upheld & gone & (first == natural) & isnt(target == first)
         stands = stands & isnt(lost)
+        toward = select(target < first, -1.0, spread(1.0))
         u, came, pull = free_start(cell, load, half, length_held, toward, trial, todo & isnt(stands))
         put(found, MULTIPLIER, select(stands, mu, pull))
         put(found, HELD, first)
         put(found, RISE, rise_of(c_y, cell, now, half))
         put(found, LONGEST, most)
         put(found, STRETCH, u)
-        put(found, BEGINNING, ROUNDING * max(abs(load.p), max(abs(now.f), abs(now.m))))
-        begun, upright, known = bits(stands | came), bits(stands), bits(straight)
-        for lane in range(count):
-            row = order[group + lane]
-            if (bits(never | pushed) >> lane) & 1:
-                status[row] = COMPRESSED if (bits(pushed) >> lane) & 1 else HELD_IMPOSSIBLE
-                continue
-            if (known >> lane) & 1:
-                multipliers[row], bounds[row], status[row] = found[MULTIPLIER, lane], found[BEGINNING, lane], OK
-                stable[row] = (bits(firm) >> lane) & 1
-            if (begun >> lane) & 1:
-                for k in range(BEGINNING):
-                    beginnings[row, k] = found[k, lane]
-                beginnings[row, LOST] = 0.0 if (bits(pulled & isnt(lost)) >> lane) & 1 else 1.0
-                if not (upright >> lane) & 1:
-                    beginnings[row, HELD] = beginnings[row, RISE] = np.nan
+        put(found, ROUNDED, ROUNDING * max(abs(load.p), max(abs(now.f), abs(now.m))))
+        begun = stands | came, stands, pulled & isnt(lost)
+        tell(count, asked.order[group:], (never, pushed), (straight, firm), begun, found, told, beginnings)
 
 
 @kernel
-def move(problems, pressures, order, length_held, constants, walls, layers, before, after, stretches):
+def move(problems, pressures, order, length_held, kind, before, after, stretches):
     """Carry the uniform ``stretches`` (n,) of the rows in the given ``order`` from the multipliers ``before`` to those
     ``after``; NaN where no quick way leads there.
     """
@@ -204,7 +247,7 @@ def move(problems, pressures, order, length_held, constants, walls, layers, befo
             enter(lane, problems[row], columns)
             columns[PRESSURE, lane] = pressures[row]
             found[0, lane], found[1, lane], found[2, lane] = stretches[row], before[row], after[row]
-        cell, _, load = loads(columns, constants, walls, layers)
+        cell, _, load = loads(columns, kind.constants, kind.walls, kind.layers)
         here, there = holding(load, length_held, get(found, 1)), holding(load, length_held, get(found, 2))
         u, came = first_guess.follow(get(found, 0), cell, here, there, get(columns, LENGTH), mask_of((1 << count) - 1))
         put(found, 0, u)
@@ -214,33 +257,29 @@ def move(problems, pressures, order, length_held, constants, walls, layers, befo
 
 @entry_point
 def start_lanes(
-    problems, pressures, targets, order, length_held, constants, multipliers, bounds, status, stable, beginnings,
+    problems, pressures, targets, order, length_held, constants, multipliers, bounds, status, stable, beginnings
 ):  # fmt: skip
     """:func:`start` the source's tubes."""
-    start(
-        problems, pressures, targets, order, length_held, constants, SOURCE, 1, multipliers, bounds, status, stable,
-        beginnings,
-    )  # fmt: skip
+    asked, told = Asked(problems, pressures, targets, order), Told(multipliers, bounds, status, stable)
+    start(asked, length_held, Kind(constants, SOURCE, 1), told, beginnings)
 
 
 @entry_point
 def start_physical(
-    problems, pressures, targets, order, length_held, constants, layers, multipliers, bounds, status, stable, beginnings,
+    problems, pressures, targets, order, length_held, constants, layers, multipliers, bounds, status, stable, beginnings
 ):  # fmt: skip
     """:func:`start` physical tubes."""
-    start(
-        problems, pressures, targets, order, length_held, constants, PHYSICAL, layers, multipliers, bounds, status, stable,
-        beginnings,
-    )  # fmt: skip
+    asked, told = Asked(problems, pressures, targets, order), Told(multipliers, bounds, status, stable)
+    start(asked, length_held, Kind(constants, PHYSICAL, layers), told, beginnings)
 
 
 @entry_point
 def move_lanes(problems, pressures, order, length_held, constants, before, after, stretches):
     """:func:`move` the source's tubes."""
-    move(problems, pressures, order, length_held, constants, SOURCE, 1, before, after, stretches)
+    move(problems, pressures, order, length_held, Kind(constants, SOURCE, 1), before, after, stretches)
 
 
 @entry_point
 def move_physical(problems, pressures, order, length_held, constants, layers, before, after, stretches):
     """:func:`move` physical tubes."""
-    move(problems, pressures, order, length_held, constants, PHYSICAL, layers, before, after, stretches)
+    move(problems, pressures, order, length_held, Kind(constants, PHYSICAL, layers), before, after, stretches)

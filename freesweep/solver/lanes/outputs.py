@@ -52,8 +52,7 @@ def finish(mid, miss, moved, placed, behind, cell, load, half, middle_limp, doub
         half * mid.energy + get(sums, ENERGY) + behind * mid.uniform[3],
         mid.u + (mid.y - mid.u) * rest,
     )  # fmt: skip
-    by = min(placed, 2.0 * mid.q)
-    middle_moved = abs(1.0 - mid.u) * by
+    _, middle_moved = middle_off(mid, placed)
     errors = (
         get(missed, LENGTH) + moved * abs(get(sums, LENGTH)),
         get(missed, VOLUME) + moved * abs(get(sums, VOLUME)),
@@ -67,19 +66,26 @@ def finish(mid, miss, moved, placed, behind, cell, load, half, middle_limp, doub
         max(max(errors[0] / scale[0], errors[1] / scale[1]), max(errors[2] / scale[2], errors[3] / scale[3])), errors[4]
     )
     record(out, 0, outputs, errors, floor)
-    tell_places(
-        mid, miss, placed, by, middle_moved, cell, load, half, middle_limp, doubts, unsure, sums, missed, out, load.wall
-    )
+    tell_places(mid, miss, placed, cell, load, half, (middle_limp, doubts, unsure), numbers, out, load.wall)
     return largest
 
 
 @kernel
-def tell_places(
-    mid, miss, moved, by, middle_moved, cell, load, half, middle_limp, doubts, unsure, sums, missed, out, wall
-):
-    """Write the numbers of a physical tube's places."""
+def middle_off(mid, placed):
+    """``(share of the layer, stretch)`` by which the middle may be off."""
+    by = min(placed, 2.0 * mid.q)
+    return by, abs(1.0 - mid.u) * by
+
+
+@kernel
+def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
+    """Write the numbers of a physical tube's places; of what is ``seen`` of slack families: (limp in the middle, lengths in
+    doubt, by how much an end may be off).
+    """
     if len(wall) == 1:
         return
+    (middle_limp, doubts, unsure), sums, missed = seen, numbers[0], numbers[1]
+    by, middle_moved = middle_off(mid, moved)
     size = load.p + abs(load.f)
     share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
     share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half

@@ -1,6 +1,7 @@
 """Designs in and out of lanes: scalar work, done one lane at a time."""
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,6 +34,37 @@ OUTPUTS = 5  # length, volume, twist, energy, stretch in the middle
 COLUMNS = THREADS + 4
 PRESSURE, BEFORE, WEIGHT = range(THREADS + 1, COLUMNS)
 LINE = 64  # bytes: arrays of lanes begin on a cache line
+
+
+class Kind(NamedTuple):
+    """What is the same for all tubes in a vector: columns of their rubbers' constants, MOONEY_RIVLIN or YEOH, those of their
+    walls, SOURCE or PHYSICAL, and as how many layers walls count. Each kind has machine code of its own.
+    """
+
+    constants: tuple
+    walls: tuple
+    layers: int
+
+
+class Asked(NamedTuple):
+    """States (n,) that are asked for: row i is that of ``problems[owners[i]]`` under ``pressures[i]``, looked for from
+    ``starts[i]``; rows in the given ``order`` share vectors.
+    """
+
+    problems: np.ndarray
+    owners: np.ndarray
+    pressures: np.ndarray
+    starts: np.ndarray
+    order: np.ndarray
+
+
+class Told(NamedTuple):
+    """What is told of states: see :func:`..free.free_states.follow_many`."""
+
+    values: np.ndarray
+    bounds: np.ndarray
+    status: np.ndarray
+    slack: np.ndarray
 
 
 @kernel
@@ -104,8 +136,9 @@ def is_clamped(problem):
 
 
 @kernel
-def settle(p, problem, clamped, row, values, bounds, status):
+def settle(p, problem, clamped, row, told):
     """What needs no solving: an unpressed tube, one that is pushed, one that is not valid. Whether that is so."""
+    values, bounds, status = told.values, told.bounds, told.status
     f, m = problem[FORCE], problem[TORQUE]
     if not (p >= 0.0 and clamped):
         status[row] = INVALID
@@ -126,8 +159,9 @@ def settle(p, problem, clamped, row, values, bounds, status):
 
 
 @kernel
-def record(met, alpha, beta, rows, out, values, bounds, status, slack):
+def record(met, alpha, beta, rows, out, told):
     """Write what was found in the lanes that are met."""
+    values, bounds, status, slack = told
     for lane in range(WIDTH):
         row = rows[lane]
         if (met >> lane) & 1:

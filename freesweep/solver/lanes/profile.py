@@ -19,9 +19,9 @@ from . import slack_ends
 from .free import seat_states
 from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at
 from .outputs import DX, LENGTH, TWIST
-from .pack import COLUMNS, aligned, loads
+from .pack import COLUMNS, Asked, Kind, aligned, loads
 from .pack import LENGTH as HALF
-from .quadrature import along, find_ends, graded, scan
+from .quadrature import along, find_ends, graded, make_room, scan
 from .rule import LAST, PLACES, UP_TO, missed_within, summed
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
 
@@ -29,6 +29,7 @@ from .vector import WIDTH, bits, get, mask_of, put, select, spread
 SHARE, X, GROWTH, Z, TURN, DOUBT_X, DOUBT_Z, DOUBT_TURN = range(8)
 KEPT = DOUBT_TURN + 1
 STEPS, CLOSE = 40, 1e-14  # to a station, of a part
+DEPTH, LONGER, TURNED, LEFT = range(4)  # rows of where a station lies
 
 
 @kernel
@@ -117,9 +118,9 @@ def meet(x, way, first, lane):
 
 @kernel
 def stand(x, count, way, beside, at, moved):
-    """Where the station x lies in each lane: the share of the depth to ``at[0]``, by what axial position and twist
-    differ from those of the middle to ``at[1]``, ``at[2]``, and their doubts, that of x first, to ``moved``. What is
-    left behind the last place is like the middle.
+    """Where the station x lies in each lane, ``at``: the share of the DEPTH, by what axial position and twist differ from
+    those of the middle, LONGER and TURNED, and what is LEFT behind the last place, which is like the middle; doubts of x,
+    axial position and twist, ``moved``.
     """
     for lane in range(WIDTH):
         first = beside[lane]
@@ -128,10 +129,11 @@ def stand(x, count, way, beside, at, moved):
         beside[lane] = first
         t = 1.0 if x > way[X, count - 1, lane] else meet(x, way, first, lane)
         last = first + LAST
-        at[0, lane] = way[SHARE, first, lane] + t * (way[SHARE, last, lane] - way[SHARE, first, lane])
-        at[1, lane], at[2, lane] = between(t, way[Z], first, lane), between(t, way[TURN], first, lane)
+        at[DEPTH, lane] = way[SHARE, first, lane] + t * (way[SHARE, last, lane] - way[SHARE, first, lane])
+        at[LONGER, lane], at[TURNED, lane] = between(t, way[Z], first, lane), between(t, way[TURN], first, lane)
         for k in range(3):
             moved[k, lane] = way[DOUBT_X + k, last, lane]
+    put(at, LEFT, max(x - get(way[X], count - 1), 0.0))
 
 
 @kernel
@@ -161,18 +163,20 @@ def pull(multiplier, load):
 
 
 @kernel
-def tell(x, left, mid, cell, load, half, placed, at, moved, near, scratch, out):
+def tell(x, mid, cell, load, half, placed, stood, near, scratch, out):
     """Write the FIELDS of a station that :func:`stand` found to ``out`` (FIELDS, WIDTH), where the middle may have moved by
-    the share ``placed`` of the layer; what is ``left`` of a long tube has the middle's, or that of the uniform tube.
+    the share ``placed`` of the layer; what is left of a long tube has the middle's, or that of the uniform tube.
     Returns what is handed on.
     """
-    here = look(get(at, 0), mid, cell, load, near, scratch)
+    at, moved = stood[0], stood[1]
+    longer, turned, left = get(at, LONGER), get(at, TURNED), get(at, LEFT)
+    here = look(get(at, DEPTH), mid, cell, load, near, scratch)
     y, level = here.y, here.at
     near = handed_on(y, level, near, load.wall)
     s = sqrt(1.0 + level.G_1)
     sine = sqrt(max(1.0 - here.cosine * here.cosine, 0.0))
     off = get(moved, 0)
-    z, turn = mid.s * x + get(at, 1), mid.psi * x + get(at, 2)
+    z, turn = mid.s * x + longer, mid.psi * x + turned
     middle_off = abs(1.0 - mid.u) * placed
     wrong = s * sine * off + middle_off
     _, G_1, psi, _ = lagrangian.level_of(mid.u, cell, load, near)
@@ -188,7 +192,7 @@ def tell(x, left, mid, cell, load, half, placed, at, moved, near, scratch, out):
         out,
         VALUES + 1,
         get(moved, 1)
-        + placed * abs(get(at, 1))
+        + placed * abs(longer)
         + abs(s * here.cosine - mid.s) * off
         + select(left > 0.0, abs(sqrt(1.0 + G_1) - mid.s) * left, 0.0)  # else u is but a number
         + ROUNDING * half,
@@ -197,7 +201,7 @@ def tell(x, left, mid, cell, load, half, placed, at, moved, near, scratch, out):
         out,
         VALUES + 2,
         get(moved, 2)
-        + placed * abs(get(at, 2))
+        + placed * abs(turned)
         + abs(level.psi - mid.psi) * off
         + select(left > 0.0, abs(psi - mid.psi) * left, 0.0)
         + ROUNDING * max(1.0, abs(turn)),
@@ -220,42 +224,50 @@ def judge(out, half, turned, worst, loose, tension):
 
 
 @kernel
-def draw(
-    problems, owners, pressures, middles, order, stations, constants, walls, layers, pieces, accuracy, profiles, drawn
-):  # fmt: skip
-    """Write the profiles (FIELDS, m) of the rows in the given ``order`` at the ``stations`` (m,), ascending distances
+def seat(group, count, asked, depths, rows, columns, start, beside):
+    """:func:`.free.seat_states`, with the depths of middles behind their stretches."""
+    seat_states(group, count, asked, rows, columns, start)
+    for lane in range(WIDTH):
+        start[1, lane], beside[lane] = depths[rows[lane]], 0
+
+
+@kernel
+def seated(start, cell, load, half, scratch):
+    """The :class:`.meridian.Middle` of the uniform stretch and the depth, or, where that is NaN, of its stretch."""
+    u, depth = get(start, 0), get(start, 1)
+    known = depth == depth
+    found, _, _ = middle_at(u, cell, load, half, scratch)
+    return chosen(known, middle(u, select(known, depth, DEEPEST), cell, load, scratch), found)
+
+
+@kernel
+def draw(asked, depths, stations, kind, pieces, accuracy, profiles, drawn):
+    """Write the profiles (FIELDS, m) of the rows that are ``asked`` for at the ``stations`` (m,), ascending distances
     from the end in radii, WIDTH at a time, each part in so many ``pieces``; ``drawn`` (n,) are those whose bounds meet
-    the ``accuracy``. ``middles`` (n, 2) are what :func:`.free.solve` leaves: uniform stretch and depth of the middle,
-    or its stretch and NaN. Other arguments as there.
+    the ``accuracy``. Rows start from what :func:`.free.solve` leaves: uniform stretch of the middle and one of the
+    ``depths`` (n,), or its stretch and NaN.
     """
-    places = (slack_ends.MOST + 1) * pieces * (LAST + 1)
-    room, ends, way = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(KEPT, places)
-    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(3, COLUMNS)
-    columns, start, scratch = small[0], small[1], small[2]
-    out, at = aligned(1, FIELDS)[0], aligned(2, KEPT)
-    rows, counts, beside = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
-    for group in range(0, len(order), WIDTH):
-        count = min(WIDTH, len(order) - group)
-        seat_states(group, count, order, problems, owners, pressures, middles[:, 0], rows, columns, start)
-        for lane in range(WIDTH):
-            start[1, lane], beside[lane] = middles[rows[lane], 1], 0
-        cell, _, load = loads(columns, constants, walls, layers)
-        half, depth = get(columns, HALF), get(start, 1)
-        known = depth == depth
-        found, _, _ = middle_at(get(start, 0), cell, load, half, scratch)
-        mid = chosen(known, middle(get(start, 0), select(known, depth, DEEPEST), cell, load, scratch), found)
-        _, _, _, _, valid, _ = scan(pieces, mid, cell, load, room, ends[:5], counts, ends[5:], scratch)
-        parts, unsure = find_ends(mid, cell, load, valid, ends[:5], counts, ends[5:], edges, scratch)
-        last, fine = go(parts, pieces, edges, mid, cell, load, room, way, scratch)
+    room, way, small = make_room(), aligned(KEPT, (slack_ends.MOST + 1) * pieces * (LAST + 1)), aligned(2, COLUMNS)
+    columns, start, out, stood = small[0], small[1], aligned(1, FIELDS)[0], aligned(2, KEPT)
+    rows, beside = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
+    ends, counts, starts, edges, scratch = room.ends, room.counts, room.starts, room.edges, room.scratch
+    for group in range(0, len(asked.order), WIDTH):
+        count = min(WIDTH, len(asked.order) - group)
+        seat(group, count, asked, depths, rows, columns, start, beside)
+        cell, _, load = loads(columns, kind.constants, kind.walls, kind.layers)
+        half = get(columns, HALF)
+        mid = seated(start, cell, load, half, scratch)
+        _, _, _, _, valid, _ = scan(pieces, mid, cell, load, room.rows, ends, counts, starts, scratch)
+        parts, unsure = find_ends(mid, cell, load, valid, ends, counts, starts, edges, scratch)
+        last, fine = go(parts, pieces, edges, mid, cell, load, room.rows, way, scratch)
         miss = half - get(way[X], last - 1)
         moved = min(mid.rate * (abs(miss) + get(way[DOUBT_X], last - 1)), 1.0)  # deep in a tube little depends on it
         placed = 2.0 * mid.q * moved
         turned = max(1.0, abs(half * mid.psi + get(way[TURN], last - 1)))
         worst, loose, tension, near = spread(0.0), spread(0.0), spread(0.0), nothing_yet(spread(0.0))
         for j in range(len(stations)):
-            stand(stations[j], last, way, beside, at[0], at[1])
-            left = max(stations[j] - get(way[X], last - 1), 0.0)
-            near = tell(stations[j], left, mid, cell, load, half, placed, at[0], at[1], near, scratch, out)
+            stand(stations[j], last, way, beside, stood[0], stood[1])
+            near = tell(stations[j], mid, cell, load, half, placed, stood, near, scratch, out)
             worst, loose, tension = judge(out, half, turned, worst, loose, tension)
             for lane in range(count):
                 for k in range(FIELDS):
@@ -269,9 +281,8 @@ def draw(
 @entry_point
 def draw_lanes(problems, owners, pressures, middles, order, stations, constants, pieces, accuracy, profiles, drawn):
     """:func:`draw` the source's tubes."""
-    draw(
-        problems, owners, pressures, middles, order, stations, constants, SOURCE, 1, pieces, accuracy, profiles, drawn
-    )  # fmt: skip
+    asked, kind = Asked(problems, owners, pressures, middles[:, 0], order), Kind(constants, SOURCE, 1)
+    draw(asked, middles[:, 1], stations, kind, pieces, accuracy, profiles, drawn)
 
 
 @entry_point
@@ -279,7 +290,5 @@ def draw_physical(
     problems, owners, pressures, middles, order, stations, constants, layers, pieces, accuracy, profiles, drawn
 ):  # fmt: skip
     """:func:`draw` physical tubes."""
-    draw(
-        problems, owners, pressures, middles, order, stations, constants, PHYSICAL, layers, pieces, accuracy, profiles,
-        drawn,
-    )  # fmt: skip
+    asked, kind = Asked(problems, owners, pressures, middles[:, 0], order), Kind(constants, PHYSICAL, layers)
+    draw(asked, middles[:, 1], stations, kind, pieces, accuracy, profiles, drawn)

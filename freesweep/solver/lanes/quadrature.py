@@ -7,6 +7,10 @@ finds it, first by one rule along the whole depth, then part by part between the
 is what an output differs by from that of the middle; :mod:`outputs` makes of the sums what is told.
 """
 
+from typing import NamedTuple
+
+import numpy as np
+
 from ...jit import kernel
 from ..along import places
 from ..cells import nothing_yet
@@ -18,6 +22,7 @@ from . import slack_ends
 from .extremes import highest, widest
 from .meridian import CERTAIN, DEEPEST, handed_on, look, middle
 from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WITHIN, WORST, finish, pulled, unmet
+from .pack import aligned
 from .rule import LAST, PLACES, missed_within, summed
 from .vector import HUGE, WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
@@ -29,6 +34,39 @@ MUCH = 1e-2  # of the accuracy asked for
 STEPS, MET = 8, 1e-12  # to the uniform stretch, relative
 NARROW = 1e-6  # of the depth: a part of no length
 SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
+
+
+class Room(NamedTuple):
+    """Scratch: ``rows`` (15, > LAST, WIDTH) of the places of one rule; brackets of ``ends`` (5, MOST, ...), their ``counts``
+    (WIDTH,), ``starts`` (4, MOST, ...) and ``edges`` (MOST + 2, ...); ``numbers`` (2, 16, ...), sums and what they may miss;
+    and one row (1, WIDTH).
+    """
+
+    rows: np.ndarray
+    ends: np.ndarray
+    counts: np.ndarray
+    starts: np.ndarray
+    edges: np.ndarray
+    numbers: np.ndarray
+    scratch: np.ndarray
+
+
+class Seen(NamedTuple):
+    """What a look along the depth tells of both families: limp somewhere, limp in the middle, lengths in doubt."""
+
+    limp: tuple
+    middle: tuple
+    doubts: tuple
+
+
+@kernel
+def make_room():
+    """Scratch of a vector."""
+    ends = aligned(9, slack_ends.MOST)
+    return Room(
+        aligned(15, LAST + 1), ends[:5], np.zeros(WIDTH, np.int64), ends[5:], aligned(1, slack_ends.MOST + 2)[0],
+        aligned(2, 16), aligned(1, 1)[0],
+    )  # fmt: skip
 
 
 @kernel
@@ -251,68 +289,113 @@ def stationary(u, cell, load, active):
 
 
 @kernel
-def solve(u, cell, load, half, active, pieces, accuracy, rows, ends, starts, edges, numbers, scratch, counts, out):
+def is_off(mid, miss, straight, share):
+    """Where half a tube is not as long as it is, by more than a ``share`` of the layer. What is left behind the deepest
+    middle, or that of a ``straight`` tube, is uniform.
+    """
+    long = (straight | (mid.depth >= DEEPEST)) & (miss >= 0.0)
+    return isnt(long) & (abs(miss) * mid.rate * mid.q > share)
+
+
+@kernel
+def seen_again(where, new, old):
+    """What is :class:`Seen`, in some lanes anew."""
+    return Seen(
+        (other(where, new.limp[0], old.limp[0]), other(where, new.limp[1], old.limp[1])),
+        (other(where, new.middle[0], old.middle[0]), other(where, new.middle[1], old.middle[1])),
+        (select(where, new.doubts[0], old.doubts[0]), select(where, new.doubts[1], old.doubts[1])),
+    )
+
+
+@kernel
+def look_along(pieces, mid, cell, load, room):
+    """``(length, what is Seen, lanes that may be)`` of a :func:`scan`."""
+    total, limp, middle_limp, doubts, valid, _ = scan(
+        pieces, mid, cell, load, room.rows, room.ends, room.counts, room.starts, room.scratch
+    )
+    return total, Seen(limp, middle_limp, doubts), valid
+
+
+@kernel
+def sum_parts(pieces, mid, cell, load, active, room):
+    """Sum all parts, to the room's ``numbers``: ``(lanes that may be, (alpha, beta) limp in the last part, by how much an
+    end may be off)``.
+    """
+    parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, room.edges, room.scratch)
+    valid, limps = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, room.numbers, room.scratch)
+    return active & (unsure < slack_ends.ENOUGH) & valid, limps, unsure
+
+
+@kernel
+def tell(mid, miss, seen, unsure, cell, load, half, room, out):
+    """Write what is told of a state (:mod:`outputs`) whose half is missed by so much; returns the largest scaled bound."""
+    nearest = 2.0 * mid.q  # at most that far is a long tube's from the end
+    moved = nearest * min(mid.rate * unmet(mid, miss, get(room.numbers[1], DX)), 1.0)
+    placed = nearest * min(mid.rate * unmet(mid, miss, get(room.numbers[1], WITHIN)), 1.0)
+    behind = select(mid.depth >= DEEPEST, max(miss, 0.0), 0.0)
+    return finish(
+        mid,
+        miss,
+        moved,
+        placed,
+        behind,
+        cell,
+        load,
+        half,
+        seen.middle,
+        seen.doubts,
+        unsure,
+        room.numbers,
+        room.scratch,
+        out,
+    )
+
+
+@kernel
+def there(limps, wall):
+    """``(alpha, beta)``: what is not there is not slack."""
+    none = mask_of(0)
+    return limps[0] if has_any_family(wall) else none, limps[1] if has_two_families(wall) else none
+
+
+@kernel
+def solve(u, cell, load, half, active, pieces, accuracy, room, out):
     """Solve the ``active`` lanes, whose uniform tubes have about the stretch ``u``, all rules in so many ``pieces``.
     ``out`` (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their
     bounds. Returns masks, and uniform stretch and depth of the middle: ``(met, alpha slack or pushed somewhere, beta,
     (u, depth))``.
-
-    The rest is scratch: ``rows`` (15, > LAST, WIDTH), ``ends`` (5, > MOST, ...), ``starts`` (4, > MOST, ...), ``edges``
-    (> MOST + 1, ...), ``numbers`` (2, > 11, ...), ``scratch`` (1, ...), ``counts`` (WIDTH,).
     """
     u, active = stationary(u, cell, load, active)
-    mid = middle(u, spread(DEEPEST), cell, load, scratch)
+    mid, none, zero = middle(u, spread(DEEPEST), cell, load, room.scratch), mask_of(0), spread(0.0)
     depth, straight = min(mid.rate * half, DEEPEST), u == 1.0
-    slope, before, settled = -1.0 / mid.rate, (depth, half), mask_of(0)
-    found, limps = mask_of(0), (mask_of(0), mask_of(0))
-    unsure, miss, doubts, middle_limp = spread(0.0), spread(0.0), (spread(0.0), spread(0.0)), (mask_of(0), mask_of(0))
+    slope, before, settled, found = -1.0 / mid.rate, (depth, half), none, none
+    seen, unsure, miss = Seen((none, none), (none, none), (zero, zero)), zero, zero
     rough, fine = 0, 0  # trials that each lane has had, whatever its neighbours need
     ended = mask_of(-1)  # whose parts have to be looked for again: of all the same, they are one
     while fine < FITS:
-        mid, wrong = middle(u, depth, cell, load, scratch), mask_of(0)
+        mid, wrong = middle(u, depth, cell, load, room.scratch), none
         if fine == 0 or some(active & ended):
-            total, now_limp, limp_there, now_doubts, valid, _ = scan(
-                pieces, mid, cell, load, rows, ends, counts, starts, scratch
-            )
-            limps = other(ended, now_limp[0], limps[0]), other(ended, now_limp[1], limps[1])
-            middle_limp = other(ended, limp_there[0], middle_limp[0]), other(ended, limp_there[1], middle_limp[1])
-            doubts = select(ended, now_doubts[0], doubts[0]), select(ended, now_doubts[1], doubts[1])
-            active = active & (valid | isnt(ended))
-            miss = half - total
-            long = (straight | (depth >= DEEPEST)) & (miss >= 0.0)  # the middle is the uniform tube
+            total, now, valid = look_along(pieces, mid, cell, load, room)
+            seen, active, miss = seen_again(ended, now, seen), active & (valid | isnt(ended)), half - total
             rough += 1
-            wrong = active & isnt(settled) & isnt(long) & (abs(miss) * mid.rate * mid.q > ROUGH)
+            wrong = active & isnt(settled) & is_off(mid, miss, straight, ROUGH)
             if rough == FITS:
-                active, wrong = active & isnt(wrong), mask_of(0)
+                active, wrong = active & isnt(wrong), none
             arrived = active & isnt(wrong) & isnt(settled)
             settled = settled | arrived
             before = select(arrived, depth, before[0]), before[1]
         if not some(wrong):
             fine += 1
-            ended = ended & with_ends(counts, ended)
-            parts, unsure = find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch)
-            active = active & (unsure < slack_ends.ENOUGH)
-            valid, last_limps = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)
-            active = active & valid
+            ended = ended & with_ends(room.counts, ended)
+            active, limps, unsure = sum_parts(pieces, mid, cell, load, active, room)
             if len(load.wall) == 1:
-                limps = last_limps
-            miss = half - get(numbers[0], DX)
-            long = (straight | (depth >= DEEPEST)) & (miss >= 0.0)
-            wrong = active & isnt(long) & (abs(miss) * mid.rate * mid.q > min(CLOSE, MUCH * accuracy))
+                seen = Seen(limps, seen.middle, seen.doubts)
+            miss = half - get(room.numbers[0], DX)
+            wrong = active & is_off(mid, miss, straight, min(CLOSE, MUCH * accuracy))
             found = active & isnt(wrong)
             if not some(wrong):
                 break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    nearest = 2.0 * mid.q  # at most that far is a long tube's from the end
-    moved = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], DX)), 1.0)
-    placed = nearest * min(mid.rate * unmet(mid, miss, get(numbers[1], WITHIN)), 1.0)
-    behind = select(depth >= DEEPEST, max(miss, 0.0), 0.0)
-    largest = finish(
-        mid, miss, moved, placed, behind, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out
-    )
-    alpha, beta = limps
-    if not has_two_families(load.wall):  # what is not there is not slack
-        beta = mask_of(0)
-    if not has_any_family(load.wall):
-        alpha = mask_of(0)
+    largest = tell(mid, miss, seen, unsure, cell, load, half, room, out)
+    alpha, beta = there(seen.limp, load.wall)
     return found & (largest <= accuracy) & isnt(let_go(mid, cell, load, half)), alpha, beta, (u, depth)

@@ -23,21 +23,20 @@ from .element import (
     OF_STATE,
     PIVOT,
     PLACES,
-    SIZE,
-    TRIANGLE,
     WEIGHTS,
     assemble,
+    clear,
     derive,
     eliminate,
     gather,
+    make_variation,
     roughness,
     weigh,
 )
 from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
-from .quadrature import NARROW, find_ends, scan
-from .rule import LAST
-from .second import LOADS, NUMBERS, ROWS, bends
+from .quadrature import NARROW, find_ends, look_along, make_room
+from .second import LOADS, bends
 from .told import CLOSE, OUTPUTS, TOLD, finish
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 
@@ -82,29 +81,17 @@ def slope_at(y, per_share, steep, mid):
 
 
 @kernel
-def clear(array):
-    """Write 0 to all rows."""
-    for i in range(len(array)):
-        put(array, i, 0.0)
-
-
-@kernel
-def over_parts(
-    parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, room, carried, sums, known, rough, scratch
-):  # fmt: skip
-    """Sum all parts between the ``edges``, each in so many ``pieces``: ``sums`` (2, ...) take derivatives at a fixed shape,
-    and what is answered. Returns the lanes in which each part is of one kind, and the length.
+def over_parts(parts, pieces, edges, mid, cell, load, own, scratch):
+    """Sum all parts between the ``edges``, each in so many ``pieces``, to a :class:`.element.Variation` of our ``own``.
+    Returns the lanes in which each part is of one kind, and the length.
     """
     valid, near, fixed, length = mask_of(-1), nothing_yet(spread(0.0)), mask_of(-1), spread(0.0)
-    for i in range(2):
-        clear(sums[i])
-        clear(carried[i])
-        clear(known[i])
-        clear(rough[i])
+    used, fields, rows = own.used, own.fields, own.rows
+    clear(own)
     for j in range(parts):
         first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
         width = (width - first) / pieces
-        own = width > NARROW * mid.depth
+        within = width > NARROW * mid.depth
         for i in range(pieces):
             kind = spread(-1.0)
             for k in range(COUNT):
@@ -113,22 +100,29 @@ def over_parts(
                 near = handed_on(here.y, here.at, near, load.wall)
                 if k == 0:
                     kind = here.at.kind
-                valid = valid & (((here.at.room > 0.0) & (here.at.kind == kind)) | ~own)
+                valid = valid & (((here.at.room > 0.0) & (here.at.kind == kind)) | ~within)
                 bends(here.y, slope_at(here.y, here.per_share, steep, mid), here.cosine, here.at, cell, load, rows[0])
                 weight = WEIGHTS[k] * here.per_share
                 weigh(k, weight, 1.0 / here.per_share, rows[0], rows[1], used, fields)
-                weight = select(own, weight, 0.0)
-                gather(weight, rows[0], used, sums[0])
+                weight = select(within, weight, 0.0)
+                gather(weight, rows[0], used, own.sums[0])
                 length = length + weight
-            for n in range(LOADS):
-                missed, most = roughness(fields[OF_STATE + 2 * len(used) + n])
-                put(rough[0], n, get(rough[0], n) + select(own, missed, 0.0))
-                put(rough[1], n, get(rough[1], n) + select(own, most, 0.0))
-            assemble(fields, len(used), matrix[0], pushed, room)
-            eliminate(own, fixed, used, matrix[0], pushed, matrix[1], matrix[2], carried, known)
-            derive(own, used, pushed, matrix[2], room[0], sums[1])
-            fixed = fixed & ~own
+            add_part(within, fixed, own)
+            fixed = fixed & ~within
     return valid, length
+
+
+@kernel
+def add_part(where, fixed, own):
+    """Add what the fields of a part tell, in the lanes that have it: how rough they are, and what it answers with."""
+    used, fields, matrix = own.used, own.fields, own.matrix
+    for n in range(LOADS):
+        missed, most = roughness(fields[OF_STATE + 2 * len(used) + n])
+        put(own.rough[0], n, get(own.rough[0], n) + select(where, missed, 0.0))
+        put(own.rough[1], n, get(own.rough[1], n) + select(where, most, 0.0))
+    assemble(fields, len(used), matrix[0], own.pushed, own.halves)
+    eliminate(where, fixed, used, matrix[0], own.pushed, matrix[1], matrix[2], own.carried, own.known)
+    derive(where, used, own.pushed, matrix[2], own.halves[0], own.sums[1])
 
 
 @kernel
@@ -150,21 +144,17 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
 
 
 @entry_point
-def differentiate_lanes(problems, pressures, middles, limp, order, constants, layers, used, pieces, values, bounds):
-    """Values and bounds (rows, OUTPUTS, TOLD) of the rows in the given ``order``, WIDTH at a time: of the outputs, of their
-    derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where vectors cannot.
+def differentiate_lanes(problems, pressures, middles, limp, order, constants, layers, used, pieces, told):
+    """Values and bounds, ``told`` (2, rows, OUTPUTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
+    outputs, of their derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where
+    vectors cannot.
 
     Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
     where some family goes slack along a part of it. ``used`` are the numbers that there are, all LOADS among them.
     Other arguments as of :func:`.free.solve_physical`.
     """
-    count = len(used)
-    room, ends, edges = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(1, slack_ends.MOST + 2)[0]
-    small, counts = aligned(3, COLUMNS), np.zeros(WIDTH, np.int64)
-    columns, start, scratch = small[0], small[1], small[2]
-    rows, fields, pushed = aligned(2, ROWS), aligned(OF_STATE + 2 * count + LOADS, COUNT), aligned(count, SIZE)
-    matrix, halves, carried, known = aligned(3, TRIANGLE), aligned(2, COUNT), aligned(2, 1 + count), aligned(3, count)
-    sums, rough, out = aligned(2, LOADS * NUMBERS + LOADS), aligned(2, LOADS), aligned(2, OUTPUTS * TOLD)
+    room, own, small, out = make_room(), make_variation(used), aligned(2, COLUMNS), aligned(2, OUTPUTS * TOLD)
+    columns, start, scratch, edges = small[0], small[1], room.scratch, room.edges
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
         searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)
@@ -177,23 +167,17 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
             put(edges, 0, 0.0)
             put(edges, 1, 1.0)
             if searched:
-                _, _, _, doubts, valid, _ = scan(pieces, mid, cell, load, room, ends[:5], counts, ends[5:], scratch)
-                active = active & valid & (doubts[0] + doubts[1] == 0.0)
-                parts, unsure = find_ends(mid, cell, load, active, ends[:5], counts, ends[5:], edges, scratch)
+                _, seen, valid = look_along(pieces, mid, cell, load, room)
+                active = active & valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
+                parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, edges, scratch)
                 active, loose = active & (unsure < slack_ends.ENOUGH), unsure > 0.0
             still, flat = spread(0.0), spread(1.0)
             here = look_down(mid.depth, flat, mid, cell, load, nothing_yet(still), scratch)
-            bends(mid.y, still, flat, here.at, cell, load, rows[1])
-            valid, length = over_parts(
-                parts, pieces, edges, mid, cell, load, used, rows, fields, matrix, pushed, halves, carried, sums, known,
-                rough, scratch,
-            )  # fmt: skip
+            bends(mid.y, still, flat, here.at, cell, load, own.rows[1])
+            valid, length = over_parts(parts, pieces, edges, mid, cell, load, own, scratch)
             rest = half - length
-            grown = (
-                finish(mid, rest, loose, load, half, used, rows[1], carried, sums, known[:2], known[2], rough, out)
-                * rest
-            )
-            active = active & valid & (get(carried[0], PIVOT) > 0.0)  # of others bounds say nothing
+            grown = finish(mid, rest, loose, load, half, own, out) * rest
+            active = active & valid & (get(own.carried[0], PIVOT) > 0.0)  # of others bounds say nothing
             wrong = active & (abs(grown) > CLOSE * abs(1.0 - y))
             y = select(wrong, y + grown, y)
             if not some(wrong):
@@ -204,5 +188,5 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
             for i in range(OUTPUTS):
                 for j in range(TOLD):
                     k = TOLD * i + j
-                    values[row, i, j] = out[0, k, lane] if (met >> lane) & 1 else np.nan
-                    bounds[row, i, j] = out[1, k, lane]
+                    told[0, row, i, j] = out[0, k, lane] if (met >> lane) & 1 else np.nan
+                    told[1, row, i, j] = out[1, k, lane]

@@ -12,10 +12,11 @@ either surface. By the tangents t_a and t_b of the angles each family changes by
 """
 
 from math import sqrt
+from typing import NamedTuple
 
 from ...jit import kernel
 from ..either import isnt, select
-from ..physics.relaxed import is_taut
+from ..physics.fibers import is_taut
 from ..physics.wall import layer, rises, slopes, stored
 from .vector import put, spread
 
@@ -32,11 +33,49 @@ OF_LOADS = (
 ROWS = OF_LOADS + LOADS * NUMBERS + LOADS
 
 
-@kernel
-def inverse(taut_alpha, taut_beta, turn_a, turn_b, M_GG, M_Gp, M_pp):
-    """The seven numbers of ``-(dG, dpsi)`` by (M_G, M_psi, g_a, g_b): ``(GG, Gpsi, psipsi, Ga, psia, Gb, psib)``; ``turn``
-    is a constraint's derivative by psi.
+class Family(NamedTuple):
+    """A family of fibers at one place: whether it is taut; tan(angle), undeformed and as the twist leaves it; multiplier,
+    0 of a slack one; and its constraint's derivative by psi.
     """
+
+    taut: bool
+    t: float
+    on: float
+    pull: float
+    turn: float
+
+
+class Place(NamedTuple):
+    """Derivatives of M at one place, and of the G and psi that it settles at by y; 1/s, y^2; slopes of W by G and psi; and
+    the :func:`inverse`.
+    """
+
+    M_yG: float
+    M_yp: float
+    M_vG: float
+    M_GG: float
+    M_Gp: float
+    M_pp: float
+    G_y: float
+    p_y: float
+    per_s: float
+    yy: float
+    W_G: float
+    W_p: float
+    inverse: tuple
+
+
+@kernel
+def family(taut, t, multiplier, psi, yy):
+    """The :class:`Family` of an angle."""
+    on = t + psi
+    return Family(taut, t, on, select(taut, multiplier, spread(0.0)), 2.0 * yy * on)
+
+
+@kernel
+def inverse(alpha, beta, M_GG, M_Gp, M_pp):
+    """The seven numbers of ``-(dG, dpsi)`` by (M_G, M_psi, g_a, g_b): ``(GG, Gpsi, psipsi, Ga, psia, Gb, psib)``."""
+    taut_alpha, taut_beta, turn_a, turn_b = alpha.taut, beta.taut, alpha.turn, beta.turn
     both, none = taut_alpha & taut_beta, isnt(taut_alpha | taut_beta)
     zero = 0.0 * M_GG
     apart = 1.0 / (turn_a - turn_b)
@@ -92,16 +131,16 @@ def by_constant(there, W, V):
 
 
 @kernel
-def answer(spot, M_G, M_p, c_a, c_b):
+def answer(inverse, M_G, M_p, c_a, c_b):
     """``(dG, dpsi)`` of a number along which M's slopes by G and psi change by ``M_G``, ``M_p``, the constraints by c."""
-    GG, Gp, pp, G_a, p_a, G_b, p_b = spot
+    GG, Gp, pp, G_a, p_a, G_b, p_b = inverse
     return -(GG * M_G + Gp * M_p + G_a * c_a + G_b * c_b), -(Gp * M_G + pp * M_p + p_a * c_a + p_b * c_b)
 
 
 @kernel
 def enter(k, dG, dp, M_y, M_G, M_p, W_by, here, rows):
     """Write what number k, no load, changes: slopes of L along y and v, and what loads are conjugate to."""
-    M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, per_s, yy, W_G, W_p = here
+    M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, per_s, yy, W_G, W_p, _ = here
     half = 0.5 * per_s * dG
     pull_G, pull_p = M_G + M_GG * dG + M_Gp * dp, M_p + M_Gp * dG + M_pp * dp
     put(rows, BY_Y + k, M_y + M_yG * dG + M_yp * dp + G_y * pull_G + p_y * pull_p)
@@ -117,34 +156,42 @@ def bends(y, v, cosine, at, cell, load, rows):
     """Write all second derivatives of the density at one place, and its first ones by the loads, to ``rows`` (ROWS,
     WIDTH); ``at`` is the :class:`..physics.first_integral.Level` there.
     """
-    H, D, gamma, e = cell[0], cell[1], load.gamma, load.e
-    G_1, psi, yy, zero = at.G_1, at.psi, y * y, spread(0.0)
+    G_1, psi = at.G_1, at.psi
     W, V = stored(y, G_1, psi, cell[2], load.rubber, load.wall), slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
-    by_c, by_2, by_3 = by_rubber(y, G_1, psi, cell[2], load.rubber, load.wall, W, V)
-    by_area, by_inner = by_surfaces(y, G_1, psi, cell, load)
+    s, (taut_alpha, taut_beta) = sqrt(1.0 + G_1) * cosine, is_taut(at.kind)
+    alpha = family(taut_alpha, cell[0] + cell[1], at.a, psi, y * y)
+    beta = family(taut_beta, cell[0] - cell[1], at.b, psi, y * y)
+    here = by_shape(y, v, s, 1.0 + G_1, alpha, beta, load, V, rows)
+    by_fibers(y, load.gamma, alpha, beta, here, rows)
+    by_walls(y, at, cell, load, W, V, here, rows)
+    by_loads(here, rows)
+    put(rows, ROWS - 4, s)
+    put(rows, ROWS - 3, here.yy * s)
+    put(rows, ROWS - 2, psi)
+    put(rows, ROWS - 1, -W)
+
+
+@kernel
+def by_shape(y, v, s, G, alpha, beta, load, V, rows):
+    """Write the derivatives by y and v, of their slopes and of those by the loads; returns the :class:`Place`, of a wall
+    whose slopes are V.
+    """
+    e, yy, zero = load.e, y * y, spread(0.0)
     W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = V
-    T = load.p * yy + load.f
-    s = sqrt(1.0 + G_1) * cosine
-    i = 1.0 / s
-    alpha, beta = is_taut(at.kind)
-    a, b = select(alpha, at.a, zero), select(beta, at.b, zero)
-    t_a, t_b = H + D, H - D
-    on_a, on_b = t_a + psi, t_b + psi
-    turned, squared = a * on_a + b * on_b, a * on_a * on_a + b * on_b * on_b
+    T, i, a, b = load.p * yy + load.f, 1.0 / s, alpha.pull, beta.pull
+    turned, squared = a * alpha.on + b * beta.on, a * alpha.on * alpha.on + b * beta.on * beta.on
     M_yy = 2.0 * load.p * s - e * W_yy - 2.0 * squared
     M_yG, M_yp = load.p * y * i - e * W_yG, -e * W_yp - 4.0 * y * turned
     flat = -v * i
     M_vG = -0.5 * T * flat * i * i
     M_GG, M_Gp, M_pp = -0.25 * T * i * i * i - e * W_GG, -e * W_Gp, -e * W_pp - 2.0 * yy * (a + b)
-    turn_a, turn_b = 2.0 * yy * on_a, 2.0 * yy * on_b
-    spot = inverse(alpha, beta, turn_a, turn_b, M_GG, M_Gp, M_pp)
-
-    G_y, p_y = answer(spot, M_yG, M_yp, 2.0 * y * on_a * on_a, 2.0 * y * on_b * on_b)
-    G_v, p_v = answer(spot, M_vG, zero, zero, zero)
+    settled = inverse(alpha, beta, M_GG, M_Gp, M_pp)
+    G_y, p_y = answer(settled, M_yG, M_yp, 2.0 * y * alpha.on * alpha.on, 2.0 * y * beta.on * beta.on)
+    G_v, p_v = answer(settled, M_vG, zero, zero, zero)
     L_yy = M_yy + 2.0 * (M_yG * G_y + M_yp * p_y) + (M_GG * G_y + 2.0 * M_Gp * p_y) * G_y + M_pp * p_y * p_y
     put(rows, YY, L_yy)
     put(rows, YV, 2.0 * load.p * y * flat + M_vG * G_y)
-    put(rows, VV, -T * (1.0 + G_1) * i * i * i + M_vG * G_v)
+    put(rows, VV, -T * G * i * i * i + M_vG * G_v)
     s_y, s_v = 0.5 * i * G_y, 0.5 * i * G_v + flat
     put(rows, BY_Y + FORCE, s_y)
     put(rows, BY_V + FORCE, s_v)
@@ -154,50 +201,63 @@ def bends(y, v, cosine, at, cell, load, rows):
     put(rows, BY_V + TORQUE, p_v)
     put(rows, BY_Y + WEIGHT, -(W_y + W_G * G_y + W_p * p_y))
     put(rows, BY_V + WEIGHT, -(W_G * G_v + W_p * p_v))
-
-    here = M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, i, yy, W_G, W_p
-    gg = gamma * gamma
-    M_p, c = -2.0 * yy * a, turn_a - 2.0 * gg * t_a
-    dG, dp = answer(spot, zero, M_p, c, zero)
-    enter(T_ALPHA, dG, dp, -4.0 * y * a * on_a, zero, M_p, zero, here, rows)
-    M_p, c = -2.0 * yy * b, turn_b - 2.0 * gg * t_b
-    dG, dp = answer(spot, zero, M_p, zero, c)
-    enter(T_BETA, dG, dp, -4.0 * y * b * on_b, zero, M_p, zero, here, rows)
-    dG, dp = answer(spot, zero, zero, -2.0 * gamma * (1.0 + t_a * t_a), -2.0 * gamma * (1.0 + t_b * t_b))
-    enter(GAMMA, dG, dp, zero, zero, zero, zero, here, rows)
-    by_wall(AREA, by_area, e, spot, here, rows)
-    if load.wall[3] > 1:
-        by_wall(INNER, by_inner, e, spot, here, rows)
-    by_wall(RATIO, by_c, e, spot, here, rows)
-    if len(load.rubber) > 1:
-        by_wall(SECOND, by_2, e, spot, here, rows)
-        by_wall(THIRD, by_3, e, spot, here, rows)
-
-    dG, dp = answer(spot, 0.5 * i, zero, zero, zero)
-    half = 0.5 * i * dG
-    by_load(FORCE, half, dp, dG, yy, W_G, W_p, rows)
-    by_load(PRESSURE, yy * half, yy * dp, yy * dG, yy, W_G, W_p, rows)
-    dG, dp = answer(spot, zero, spread(1.0), zero, zero)
-    by_load(TORQUE, 0.5 * i * dG, dp, dG, yy, W_G, W_p, rows)
-    put(rows, ROWS - 4, s)
-    put(rows, ROWS - 3, yy * s)
-    put(rows, ROWS - 2, psi)
-    put(rows, ROWS - 1, -W)
+    return Place(M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, i, yy, W_G, W_p, settled)
 
 
 @kernel
-def by_wall(k, changed, e, spot, here, rows):
+def by_fibers(y, gamma, alpha, beta, here, rows):
+    """:func:`enter` tan(angle) of both families, and their extension."""
+    yy, gg, zero = here.yy, gamma * gamma, spread(0.0)
+    M_p, c = -2.0 * yy * alpha.pull, alpha.turn - 2.0 * gg * alpha.t
+    dG, dp = answer(here.inverse, zero, M_p, c, zero)
+    enter(T_ALPHA, dG, dp, -4.0 * y * alpha.pull * alpha.on, zero, M_p, zero, here, rows)
+    M_p, c = -2.0 * yy * beta.pull, beta.turn - 2.0 * gg * beta.t
+    dG, dp = answer(here.inverse, zero, M_p, zero, c)
+    enter(T_BETA, dG, dp, -4.0 * y * beta.pull * beta.on, zero, M_p, zero, here, rows)
+    longer = -2.0 * gamma * (1.0 + alpha.t * alpha.t), -2.0 * gamma * (1.0 + beta.t * beta.t)
+    dG, dp = answer(here.inverse, zero, zero, longer[0], longer[1])
+    enter(GAMMA, dG, dp, zero, zero, zero, zero, here, rows)
+
+
+@kernel
+def by_walls(y, at, cell, load, W, V, here, rows):
+    """:func:`enter` the surfaces and the rubber's constants of a wall of the energy W, whose slopes are V."""
+    by_c, by_2, by_3 = by_rubber(y, at.G_1, at.psi, cell[2], load.rubber, load.wall, W, V)
+    by_area, by_inner = by_surfaces(y, at.G_1, at.psi, cell, load)
+    by_wall(AREA, by_area, load.e, here, rows)
+    if load.wall[3] > 1:
+        by_wall(INNER, by_inner, load.e, here, rows)
+    by_wall(RATIO, by_c, load.e, here, rows)
+    if len(load.rubber) > 1:
+        by_wall(SECOND, by_2, load.e, here, rows)
+        by_wall(THIRD, by_3, load.e, here, rows)
+
+
+@kernel
+def by_wall(k, changed, e, here, rows):
     """:func:`enter` a number on which only the wall's energy depends, and its slopes, as ``changed`` tells."""
     W_by, W_y, W_G, W_p = changed
     M_G, M_p = -e * W_G, -e * W_p
-    dG, dp = answer(spot, M_G, M_p, 0.0 * M_G, 0.0 * M_G)
+    dG, dp = answer(here.inverse, M_G, M_p, 0.0 * M_G, 0.0 * M_G)
     enter(k, dG, dp, -e * W_y, M_G, M_p, W_by, here, rows)
 
 
 @kernel
-def by_load(k, half, dp, dG, yy, W_G, W_p, rows):
+def by_loads(here, rows):
+    """Write what force, pressure and torque change of what loads are conjugate to."""
+    i, yy, zero = here.per_s, here.yy, spread(0.0)
+    dG, dp = answer(here.inverse, 0.5 * i, zero, zero, zero)
+    half = 0.5 * i * dG
+    by_load(FORCE, half, dp, dG, here, rows)
+    by_load(PRESSURE, yy * half, yy * dp, yy * dG, here, rows)
+    dG, dp = answer(here.inverse, zero, spread(1.0), zero, zero)
+    by_load(TORQUE, 0.5 * i * dG, dp, dG, here, rows)
+
+
+@kernel
+def by_load(k, half, dp, dG, here, rows):
     """Write what load k changes of what loads are conjugate to."""
     put(rows, OF_LOADS + k, half)
-    put(rows, OF_LOADS + NUMBERS + k, yy * half)
+    put(rows, OF_LOADS + NUMBERS + k, here.yy * half)
     put(rows, OF_LOADS + 2 * NUMBERS + k, dp)
-    put(rows, OF_LOADS + 3 * NUMBERS + k, -(W_G * dG + W_p * dp))
+    put(rows, OF_LOADS + 3 * NUMBERS + k, -(here.W_G * dG + here.W_p * dp))

@@ -25,24 +25,23 @@ TINY = 1e-300
 
 
 @kernel
-def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left, rough, out):
-    """Add the ``rest`` of the half, which is uniform, as the ``rows`` of the middle tell, and write what is told:
-    ``out`` (2, OUTPUTS TOLD, WIDTH), values and what they may miss. Returns how the middle grows with the length.
-    Where ``loose``, a family goes slack along the tube; ``left`` (numbers, ...) is scratch, the rest as of :mod:`element`.
+def finish(mid, rest, loose, load, half, own, out):
+    """Add the ``rest`` of the half, which is uniform, as the rows of the middle tell, and write what is told: ``out``
+    (2, OUTPUTS TOLD, WIDTH), values and what they may miss. Returns how the middle grows with the length. Where ``loose``,
+    a family goes slack along the tube; ``own`` is the :class:`.element.Variation`.
     """
+    rows, carried, sums, used = own.rows[1], own.carried, own.sums, own.used
     gather(rest, rows, used, sums[0])
     pulls, strain, stiff = (load.f, load.p, load.m, load.e), 1.0 - mid.y, -get(rows, YY)
     pivot = 1.0 / (get(carried[0], PIVOT) + rest * stiff)
     fewer_pivot = 1.0 / (get(carried[1], PIVOT) + rest * stiff)
-    work = close(
-        rest, pivot, fewer_pivot, pulls, abs(stiff) * half * strain * strain, used, rows, carried, sums[1], known
-    )
-    missed = FORCED * force_left(pulls, work, used, sums[1], left) + select(loose, ENDS, 0.0) + ROUNDING
+    work = close(rest, pivot, fewer_pivot, pulls, abs(stiff) * half * strain * strain, own)
+    missed = FORCED * force_left(pulls, work, used, sums[1], own.left) + select(loose, ENDS, 0.0) + ROUNDING
     drive = -mid.rise * mid.s
     wrong = abs(drive * pivot) * (abs(rest) + missed * half)  # a half that sums miss has another middle
     grown, doubt = growth(mid, load, drive, pivot, fewer_pivot, missed, wrong, rows)
-    tell_loads(half, grown, doubt, wrong, missed, used, rows, carried, sums, known, left, rough, out)
-    tell_middle(mid, half, pivot, fewer_pivot, missed, used, rows, carried, known, out)
+    tell_loads(half, grown, doubt, wrong, missed, own, out)
+    tell_middle(mid, half, pivot, fewer_pivot, missed, own, out)
     first = TOLD * LOADS + TOLD - 1
     put(out[0], first, grown)
     put(out[1], first, doubt)
@@ -50,16 +49,17 @@ def finish(mid, rest, loose, load, half, used, rows, carried, sums, known, left,
 
 
 @kernel
-def close(rest, pivot, fewer_pivot, pulls, work, used, rows, carried, answers, known):
+def close(rest, pivot, fewer_pivot, pulls, work, own):
     """Eliminate the middle, too. Returns the ``work`` of the state, by which forces are measured, and that of its loads."""
+    used, rows, carried, known, answers = own.used, own.rows[1], own.carried, own.known, own.sums[1]
     count = len(used)
     for j in range(count):
         more = rest * get(rows, BY_Y + used[j])
-        own, fewer = get(carried[0], 1 + j) + more, get(carried[1], 1 + j) + more
-        put(carried[0], 1 + j, own)
+        push, fewer = get(carried[0], 1 + j) + more, get(carried[1], 1 + j) + more
+        put(carried[0], 1 + j, push)
         put(carried[1], 1 + j, fewer)
-        put(known[SQUARES], j, max(get(known[SQUARES], j) + own * own * pivot, 0.0))
-        put(known[LOST], j, abs(get(known[LOST], j) + own * own * pivot - fewer * fewer * fewer_pivot))
+        put(known[SQUARES], j, max(get(known[SQUARES], j) + push * push * pivot, 0.0))
+        put(known[LOST], j, abs(get(known[LOST], j) + push * push * pivot - fewer * fewer * fewer_pivot))
     for i in range(LOADS):
         one = count - LOADS + i
         push = get(carried[0], 1 + one) * pivot
@@ -91,10 +91,13 @@ def force_left(pulls, work, used, answers, left):
 
 
 @kernel
-def tell_loads(half, grown, doubt, wrong, missed, used, rows, carried, sums, known, left, rough, out):
+def tell_loads(half, grown, doubt, wrong, missed, own, out):
     """Write what loads are conjugate to, and its derivatives; ``grown`` is how the middle grows with the length, but for
     its ``doubt``; the middle itself may be ``wrong``.
     """
+    used, rows, carried, sums, known, left, rough = (
+        own.used, own.rows[1], own.carried, own.sums, own.known, own.left, own.rough
+    )  # fmt: skip
     count = len(used)
     for i in range(LOADS):
         one, sign = count - LOADS + i, -1.0 if i == LOADS - 1 else 1.0
@@ -132,18 +135,19 @@ def growth(mid, load, drive, pivot, fewer_pivot, missed, wrong, rows):
 
 
 @kernel
-def tell_middle(mid, half, pivot, fewer_pivot, missed, used, rows, carried, known, out):
+def tell_middle(mid, half, pivot, fewer_pivot, missed, own, out):
     """Write the stretch of the middle and its derivatives: the uniform tube's where less is missed so."""
+    used, rows, carried, known = own.used, own.rows[1], own.carried, own.known
     count, first, stiff = len(used), TOLD * LOADS, -get(rows, YY)
     lost = abs(pivot - fewer_pivot)  # of what the middle answers with to a push
     put(out[0], first, mid.y)
     put(out[1], first, CLOSE * abs(1.0 - mid.y) + ROUNDING)
     shallow = SHALLOW * mid.depth * mid.q
     for j in range(count - 1):
-        own, even, square = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff, get(known[SQUARES], j)
+        push, even, square = get(carried[0], 1 + j) * pivot, get(rows, BY_Y + used[j]) / stiff, get(known[SQUARES], j)
         typical = sqrt(square / (abs(stiff) * half))
-        doubt = SAFETY * abs(own - get(carried[1], 1 + j) * fewer_pivot)
+        doubt = SAFETY * abs(push - get(carried[1], 1 + j) * fewer_pivot)
         doubt = doubt + ALIKE * sqrt(lost * get(known[LOST], j))
         of_even = shallow * (abs(even) + typical)
-        put(out[0], first + 1 + used[j], select(of_even < doubt, even, own))
-        put(out[1], first + 1 + used[j], min(doubt, of_even) + missed * (abs(own) + typical))
+        put(out[0], first + 1 + used[j], select(of_even < doubt, even, push))
+        put(out[1], first + 1 + used[j], min(doubt, of_even) + missed * (abs(push) + typical))

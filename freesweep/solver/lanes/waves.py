@@ -14,13 +14,11 @@ from ..load import under
 from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
 from ..problem import SOURCE
-from . import slack_ends
 from .meridian import DEEPEST, fallen, logarithm, middle, middle_at
 from .outputs import DX, FLOOR, WITHIN, finish
 from .pack import COLUMNS, LENGTH, OUTPUTS, PRESSURE, aligned, enter, loads
 from .profile import chosen
-from .quadrature import between_ends, scan, stationary
-from .rule import LAST
+from .quadrature import between_ends, make_room, scan, stationary
 from .vector import WIDTH, bits, get, isnt, put, select, spread
 
 # what is told of half a wave: outputs, their bounds, and how much of these is rounding; its length, and what may be missing
@@ -45,22 +43,24 @@ def balanced(center, cell, load):
 
 
 @kernel
-def measure(first, depth, cell, load, quarter, pieces, rows, ends, starts, edges, numbers, scratch, counts, out, told):
+def measure(first, depth, cell, load, quarter, pieces, room, out, told):
     """Tell halves of waves, whose middles have about the uniform stretch ``first`` and that ``depth``, or, where it is NaN,
     the stretch ``first``; ``quarter`` is about how long they are. Returns masks: (it is one, alpha pushed somewhere, beta).
     """
-    zero = spread(0.0)
+    zero, numbers, scratch = spread(0.0), room.numbers, room.scratch
     known = depth == depth
     u, met = stationary(first, cell, load, known)
     deepest = min(LAST_DIGITS + logarithm(max(abs(1.0 - u), FAINTEST), scratch), DEEPEST)
     given = select(known, depth, deepest)
     shallow, driven, _ = middle_at(first, cell, load, quarter, scratch)
     mid = chosen(known, middle(u, min(given, deepest), cell, load, scratch), shallow)
-    _, _, limp, doubts, fine, short = scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch)
+    _, _, limp, doubts, fine, short = scan(
+        pieces, mid, cell, load, room.rows, room.ends, room.counts, room.starts, scratch
+    )
     valid = ((known & met) | (isnt(known) & driven)) & fine & (short <= 0.0)
-    put(edges, 0, zero)
-    put(edges, 1, spread(1.0))
-    fine, (alpha, beta) = between_ends(1, pieces, edges, mid, cell, load, rows, numbers, scratch)
+    put(room.edges, 0, zero)
+    put(room.edges, 1, spread(1.0))
+    fine, (alpha, beta) = between_ends(1, pieces, room.edges, mid, cell, load, room.rows, numbers, scratch)
     rest = max(given - deepest, 0.0) / mid.rate
     x = get(numbers[0], DX) + rest
     finish(mid, rest, zero, zero, rest, cell, load, x, limp, doubts, zero, numbers, scratch, out)
@@ -87,10 +87,8 @@ def measure_many(problem, given, constants, walls, pieces, told):
     """:func:`measure` halves of waves of the tube of one ``problem``, in so many ``pieces``. Rows of ``given`` (n, 4) are
     pressure, center, stretch, and depth or NaN; those of ``told`` (n, COUNT) take what is told, NaN where it is none.
     """
-    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
-    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(4, COLUMNS + COUNT)
-    columns, start, scratch, own = small[0], small[1], small[2], small[3]
-    counts = np.zeros(WIDTH, np.int64)
+    room, out, small = make_room(), aligned(2, 16), aligned(3, COLUMNS + COUNT)
+    columns, start, own = small[0], small[1], small[2]
     for group in range(0, len(given), WIDTH):
         count = min(WIDTH, len(given) - group)
         for lane in range(WIDTH):
@@ -103,9 +101,8 @@ def measure_many(problem, given, constants, walls, pieces, told):
         center = get(start, 0)
         load = balanced(center, cell, load)
         valid, alpha, beta = measure(
-            get(start, 1), get(start, 2), cell, load, 0.5 * get(columns, LENGTH), pieces, room, ends[:5], ends[5:], edges,
-            numbers[:2], scratch, counts, numbers[2:], own,
-        )  # fmt: skip
+            get(start, 1), get(start, 2), cell, load, 0.5 * get(columns, LENGTH), pieces, room, out, own
+        )
         _, _, _, L_yy, _, L_vv = lagrangian.density(center, spread(0.0), cell, load)
         put(own, TORQUE, load.m)
         put(own, BEND, L_yy)

@@ -11,13 +11,15 @@ load nu is one unknown more, its equation another row, with c = -dC/dy = dg/dnu 
 One node joins the border, so that what is left of H is regular at a fold.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...jit import kernel
 from ..cells import cell_at, of_length
 from .dense import eliminate
 from .held import hold
-from .newton import assemble, factor, substitute
+from .newton import assemble, factor, substitute, system_in
 from .path import load_at, size_of
 
 CORRECTIONS = 12  # of Newton's method; three suffice where a step is taken
@@ -27,6 +29,25 @@ DIFFERENCE = 1e-3  # of the load, to see how the gradient changes with it: exact
 STILL = 1e-8  # of a tangent: a state that stands cannot leave its branch
 
 LOST, FOLLOWED = 0, 1
+
+
+class Border(NamedTuple):
+    """Scratch (> n,) beside the :class:`.newton.System`: the columns c and b; what H makes of them, of_held and of_mu, and
+    of node k, of_k; and where the plane lies.
+    """
+
+    c: np.ndarray
+    b: np.ndarray
+    of_mu: np.ndarray
+    anchor: np.ndarray
+    of_k: np.ndarray
+    of_held: np.ndarray
+
+
+@kernel
+def border_in(work):
+    """The :class:`Border` in scratch, which needs no trial."""
+    return Border(work[5], work[8], work[9], work[10], work[11], work[12])
 
 
 @kernel
@@ -39,8 +60,9 @@ def largest_share(y, tangent, last):
 
 
 @kernel
-def load_slope(density, conjugate, x, y, n, cells, path, mu, b, spare):
+def load_slope(functional, x, y, n, cells, path, mu, b, spare):
     """``b = dg/dmu``: how the gradient of -J changes along the path; returns what C and its target do, ``C_mu - T'``."""
+    density, conjugate = functional.density, functional.conjugate
     step = DIFFERENCE * (abs(mu) + path.floor)
     low, here, high = load_at(path, y, n, mu - step), load_at(path, y, n, mu), load_at(path, y, n, mu + step)
     b[0] = 0.0
@@ -115,8 +137,8 @@ def border(track, n, path, normal_mu, k, off_plane, held_row, work, matrix, righ
     tangent's: of row k of H, of what is held, ``held_row`` = (C - T, dC/dnu, C_mu - T'), and of the plane. Returns how
     many directions that keep what is held are unstable.
     """
-    g, d, e, inverse, step, c, b = work[0], work[1], work[2], work[3], work[4], work[5], work[8]
-    of_mu, of_k, of_held = work[9], work[11], work[12]
+    g, d, e, inverse, step, _, _, _ = system_in(work)
+    c, b, of_mu, _, of_k, of_held = border_in(work)
     normal, last = track.normal, track.last
     negative = factor_without(d, e, last, k, inverse)
     right[0, 0] = -without(inverse, e, last, k, g, step)
@@ -145,28 +167,29 @@ def border(track, n, path, normal_mu, k, off_plane, held_row, work, matrix, righ
 
 
 @kernel
-def correct(density, conjugate, track, y, mu, n, cells, path, normal_mu, tangent, work):
+def correct(functional, track, y, mu, n, cells, path, normal_mu, tangent, work):
     """Newton's method on the plane through (y, mu) with the track's normal, y in place; ``tangent`` takes the branch's, of
     length 1 on the normal.
 
     One node k, mu and nu border the rest of H, which is factored with that node held: at a fold H is singular, the rest is
     not. Returns ``(status, unstable directions beyond those allowed, mu, the tangent's mu)``.
     """
-    g, d, e, step, c, room, least, b = work[0], work[1], work[2], work[4], work[5], work[6], work[7], work[8]
-    of_mu, anchor, of_k, of_held = work[9], work[10], work[11], work[12]
+    system = system_in(work)
+    step, least = system.step, system.least
+    c, b, of_mu, anchor, of_k, of_held = border_in(work)
     held, last, k, before, anchor_mu = path.held, track.last, leading(track, n), 1e300, mu
     matrix, right = np.empty((3, 3)), np.empty((3, 2))
     for i in range(n + 1):
         anchor[i], least[i], of_held[i] = y[i], 0.0, 0.0
     for _ in range(CORRECTIONS):
         now, held_row = load_at(path, y, n, mu), (0.0, 0.0, 0.0)
-        if not assemble(density, track.x, y, n, cells, now, False, least, room, g, d, e):
+        if not assemble(functional.density, track.x, y, n, cells, now, False, system):
             return LOST, 0, mu, 0.0
         for i in range(n):  # one step must not use up a cell's room: next to none it is so stiff that it seems to have come
-            least[i] = room[i]
-        by_mu = load_slope(density, conjugate, track.x, y, n, cells, path, mu, b, of_k)
+            least[i] = system.room[i]
+        by_mu = load_slope(functional, track.x, y, n, cells, path, mu, b, of_k)
         if held.any:
-            total, by_held = hold(conjugate, track.x, y, n, cells, now, held.unit, c)
+            total, by_held = hold(functional.conjugate, track.x, y, n, cells, now, held.unit, c)
             held_row = total - (held.first + mu * held.change), by_held, by_mu
         off_plane = normal_mu * (mu - anchor_mu)
         for i in range(1, last + 1):

@@ -8,8 +8,8 @@ Lengths are measured in relative changes of y (root mean square) and of mu, whic
 list of loads enters, only the branch itself. A step is taken where the chord agrees with the mean of the tangents at its
 ends, in every node and in mu: a branch that did something else in between, or another branch, does not.
 
-Knows no tube: ``density`` and ``conjugate`` are handed in as to :mod:`newton` and :mod:`held`. ``y[0]`` stays; so does
-``y[n]`` unless it is free. Behind the nodes of a state whose integral is held, ``y[n + 1]`` is nu.
+Knows no tube: a :class:`.functional.Functional` is handed in. ``y[0]`` stays; so does ``y[n]`` unless it is free. Behind the
+nodes of a state whose integral is held, ``y[n + 1]`` is nu. Where a branch is left, ``here`` is (mu, the tangent's mu).
 """
 
 import numpy as np
@@ -49,15 +49,16 @@ def longest_step(track, mu, tangent_mu, path):
 
 
 @kernel
-def step_ahead(density, conjugate, track, n, cells, path, mu, tangent_mu, step, work):
+def step_ahead(functional, track, n, cells, path, here, step, work):
     """The state a ``step`` of arclength ahead, into ``track.next_y`` and ``next_tangent``; returns as :func:`correct`."""
+    mu, tangent_mu = here
     unit = size_of(mu, path)
     for i in range(n + 1):
         track.normal[i] = track.tangent[i] / (n * track.y[i] * track.y[i])
     for i in range(len(track.y)):
         track.next_y[i] = track.y[i] + step * track.tangent[i]
     return correct(
-        density, conjugate, track, track.next_y, mu + step * tangent_mu, n, cells, path, tangent_mu / (unit * unit),
+        functional, track, track.next_y, mu + step * tangent_mu, n, cells, path, tangent_mu / (unit * unit),
         track.next_tangent, work,
     )  # fmt: skip
 
@@ -80,26 +81,19 @@ def defect(track, path, mu, tangent_mu, next_mu, next_tangent_mu, step):
 
 
 @kernel
-def advance(density, conjugate, track, n, cells, path, mu, tangent_mu, step, work):
+def advance(functional, track, n, cells, path, here, step, work):
     """One step along the branch, as long as the branch allows: ``(status, negative pivots, mu, the tangent's mu, step made,
     step to try next)``; the state is left as :func:`step_ahead` leaves it.
     """
+    mu, tangent_mu = here
     step = min(step, longest_step(track, mu, tangent_mu, path))
     while step > LEAST_STEP:
-        status, negative, next_mu, next_tangent_mu = step_ahead(
-            density, conjugate, track, n, cells, path, mu, tangent_mu, step, work
-        )
+        status, negative, next_mu, next_tangent_mu = step_ahead(functional, track, n, cells, path, here, step, work)
         if status == FOLLOWED:
             wrong = defect(track, path, mu, tangent_mu, next_mu, next_tangent_mu, step)
             if wrong < DEFECT or (path.bends and step < SHORT and wrong < BEND):
-                return (
-                    FOLLOWED,
-                    negative,
-                    next_mu,
-                    next_tangent_mu,
-                    step,
-                    step * (GROWTH if wrong < 0.5 * DEFECT else 1.0),
-                )
+                longer = step * (GROWTH if wrong < 0.5 * DEFECT else 1.0)
+                return FOLLOWED, negative, next_mu, next_tangent_mu, step, longer
         step *= 0.5
     return LOST, 0, mu, tangent_mu, step, step
 
@@ -140,7 +134,7 @@ def is_flat(mu, tangent_mu, path):
 
 
 @kernel
-def last_alike(density, conjugate, track, n, cells, path, mu, tangent_mu, step, sense, stable, work):
+def last_alike(functional, track, n, cells, path, here, step, sense, stable, work):
     """The last state on a step that is as ``stable``, or not, as its beginning, while its end is not so: bisection in
     arclength. ``(mu, the tangent's mu, step)``; the state is left as :func:`step_ahead` leaves it.
 
@@ -149,10 +143,10 @@ def last_alike(density, conjugate, track, n, cells, path, mu, tangent_mu, step, 
     low, high = 0.0, step
     while high - low > ROUNDING * step:
         at = 0.5 * (low + high)
-        status, negative, _, now = step_ahead(density, conjugate, track, n, cells, path, mu, tangent_mu, at, work)
+        status, negative, _, now = step_ahead(functional, track, n, cells, path, here, at, work)
         if status == FOLLOWED and is_stable(negative, now, sense) == stable:
             low = at
         else:
             high = at
-    _, _, found, now = step_ahead(density, conjugate, track, n, cells, path, mu, tangent_mu, low, work)
+    _, _, found, now = step_ahead(functional, track, n, cells, path, here, low, work)
     return found, now, low

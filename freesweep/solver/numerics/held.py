@@ -9,9 +9,11 @@ solved with two tridiagonal solutions. ``sigma = k + b^T H^-1 b = dC/dmu`` along
 is stable under given loads; through a turning point of mu, 1/sigma falls smoothly through zero.
 """
 
+from typing import NamedTuple
+
 from ...jit import kernel
 from ..cells import cell_at, of_length
-from ..load import loaded
+from ..load import NO_CHANGE, Load, loaded
 from .newton import (
     CONVERGED,
     INFEASIBLE,
@@ -23,7 +25,21 @@ from .newton import (
     new_rate,
     settled,
     substitute,
+    system_in,
 )
+
+
+class Target(NamedTuple):
+    """What is held while a state is solved, if ``any``thing is: the integral conjugate to the load ``direction``, at a
+    ``value``. The direction is to be scaled so that its multiplier mu is of order 1.
+    """
+
+    direction: Load
+    value: float
+    any: bool
+
+
+NOTHING = Target(NO_CHANGE, 0.0, False)
 
 
 @kernel
@@ -44,15 +60,14 @@ def hold(conjugate, x, y, n, cells, load, direction, b):
 
 
 @kernel
-def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, target, tolerance, iterations, work):
-    """Newton, at most so many ``iterations``, for ``y`` (in place) and the multiplier ``mu`` of ``direction``, with the
-    conjugate integral held.
+def solve_held(functional, y, mesh, load, target, mu, tolerance, iterations, work):
+    """Newton, at most so many ``iterations``, for ``y`` (in place) and the multiplier ``mu`` of the :class:`Target`.
 
-    Returns ``(status, unstable directions that keep the integral, mu, sigma)``; ``work[9]`` is left with the change of y
-    per unit of mu. ``direction`` is to be scaled so that mu is of order 1.
+    Returns ``(status, unstable directions that keep the integral, mu, sigma)``.
     """
-    g, d, e, inverse, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
-    b, response = work[8], work[9]
+    (x, n, free, cells), direction, system = mesh, target.direction, system_in(work)
+    g, d, e, inverse, step, trial, room, least = system
+    b, response = work[8], work[9]  # and the change of y per unit of mu
     first, last = 1, n if free else n - 1
     for i in range(n + 1):
         trial[i] = y[i]
@@ -61,7 +76,7 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
     made, halvings = 0, 0
     while made < iterations and halvings < MAX_HALVINGS:
         now = loaded(load, direction, mu + fraction * change)
-        if not assemble(density, x, trial, n, cells, now, False, least, room, g, d, e):
+        if not assemble(functional.density, x, trial, n, cells, now, False, system):
             if made == 0:
                 return INFEASIBLE, 0, mu, 0.0
             fraction *= 0.5
@@ -74,7 +89,7 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
         for i in range(n + 1):
             y[i], least[i] = trial[i], room[i]
         negative = factor(d, e, first, last, inverse)
-        value, sigma = hold(conjugate, x, y, n, cells, now, direction, b)
+        value, sigma = hold(functional.conjugate, x, y, n, cells, now, direction, b)
         substitute(inverse, e, first, last, g, step)
         substitute(inverse, e, first, last, b, response)
         response[0] = 0.0
@@ -85,7 +100,7 @@ def solve_held(density, conjugate, x, y, n, free, cells, load, direction, mu, ta
             sigma -= b[i] * response[i]
             lag += b[i] * step[i]
         # dC = sigma dmu: a held change of C moves mu by change / sigma
-        change = (target - value - lag) / sigma
+        change = (target.value - value - lag) / sigma
         size = abs(change) / max(1.0, abs(mu))
         step[0] = 0.0
         step[n] = step[n] if free else 0.0

@@ -10,10 +10,16 @@ The rows of ``table`` belong to the meshes, coarsest first; its columns are the 
 middle, and the multiplier of a held integral.
 """
 
+from typing import NamedTuple
+
+import numpy as np
+
 from ...jit import kernel
 from ..cells import behind, cell_at, largest_sizes, nothing_yet
 from ..load import loaded
-from . import finest, held, mesh, middle, newton
+from . import finest, held, middle, newton
+from . import mesh as grading
+from .newton import Mesh
 from .properties_along import fill
 
 OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
@@ -25,8 +31,20 @@ SAFETY = 3.3
 FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
 TINY = 1e-300
 
-PLAIN, HELD = 0, 1
 UNREACHED = 3  # the accuracy was not met on the finest mesh
+
+
+class Room(NamedTuple):
+    """The graded base mesh ``x``, ``y`` a first guess, (n + 1,); scratch for the ``fine`` meshes, left as :mod:`finest`
+    describes, and of Newton's method, (13, ...); the ``table``; and ``out`` (4, OUTPUTS): values, bounds, scales, floors.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    fine: np.ndarray
+    work: np.ndarray
+    table: np.ndarray
+    out: np.ndarray
 
 
 @kernel
@@ -88,35 +106,36 @@ def make_admissible(density, x, y, n, cells, load):
 
 
 @kernel
-def ease(density, integrands, x, y, n, new_x, new_y, count, cells, load, work):
-    """Ease the guess ``new_y`` on half or twice as many cells as the solution ``y`` has, by the slopes of that."""
+def ease(integrands, x, y, n, guess, mesh, load, work):
+    """Ease a ``guess`` on a mesh of half or twice as many cells as the solution ``y`` on n cells, by the slopes of that."""
     sine, cosine, here = work[0], work[1], work[2]
-    mesh.slants(integrands, x, y, n, cells, load, sine, cosine)
-    for j in range(count):
-        here[j] = min(cosine[2 * j], cosine[2 * j + 1]) if count < n else cosine[j // 2]
-    mesh.ease(integrands, new_x, new_y, count, here, cells, load)
+    grading.slants(integrands, x, y, n, mesh.cells, load, sine, cosine)
+    for j in range(mesh.n):
+        here[j] = min(cosine[2 * j], cosine[2 * j + 1]) if mesh.n < n else cosine[j // 2]
+    grading.ease(integrands, mesh.x, guess, mesh.n, here, mesh.cells, load)
 
 
 @kernel
-def adapt(density, integrands, x, y, n, tube, load, work):
+def adapt(functional, x, y, n, tube, load, work):
     """Move the nodes of the base mesh to where the solution bends, and carry the solution over, eased where that leaves a
     cell no room; returns whether it is admissible there.
     """
     course, edges, cells, free, _, _ = tube
+    density, integrands = functional.density, functional.integrands
     own = fill(course, edges, x, n, n, cells)
     cosine, rate, nodes, new_x, new_y, least = work[1], work[2], work[3], work[4], work[5], work[7]
     for s in range(len(edges) - 1):  # each segment keeps its nodes: the jumps between them stay on the mesh
         a, b = edges[s], edges[s + 1]
         here = own[a:b] if len(own) > 1 else own
         symmetric = free and s == len(edges) - 2
-        mesh.turning(integrands, x[a : b + 1], y[a : b + 1], b - a, symmetric, here, load, work, rate)
-        mesh.node_density(x[a : b + 1], b - a, rate, nodes)
-        mesh.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
+        grading.turning(integrands, x[a : b + 1], y[a : b + 1], b - a, symmetric, here, load, work, rate)
+        grading.node_density(x[a : b + 1], b - a, rate, nodes)
+        grading.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
     own = fill(course, edges, new_x, n, n, cells)
     fits = newton.admissible(density, new_x, new_y, n, own, load)
     if free and not fits:
-        mesh.least_between(x, cosine, n, new_x, least)
-        mesh.ease(integrands, new_x, new_y, n, least, own, load)
+        grading.least_between(x, cosine, n, new_x, least)
+        grading.ease(integrands, new_x, new_y, n, least, own, load)
         fits = newton.admissible(density, new_x, new_y, n, own, load)
     for i in range(n + 1):
         x[i], y[i] = new_x[i], new_y[i]
@@ -128,7 +147,7 @@ def split(x, n, edges, factor, out):
     """A finer mesh: each cell of the base mesh in ``factor``, smoothly within each segment."""
     for s in range(len(edges) - 1):
         a, b = edges[s], edges[s + 1]
-        mesh.split(x[a : b + 1], b - a, factor, out[a * factor : b * factor + 1])
+        grading.split(x[a : b + 1], b - a, factor, out[a * factor : b * factor + 1])
 
 
 @kernel
@@ -140,10 +159,10 @@ def foresee(fine, n, work):
     for i in range(n // 2 + 1):
         half_x[i] = fine[2, 2 * i]
         change[i] = 0.25 * (fine[4, 2 * i] - fine[3, i])
-    mesh.prolong(half_x, change, n // 2, fine[2], both)
+    grading.prolong(half_x, change, n // 2, fine[2], both)
     for i in range(n + 1):
         both[i] += fine[4, i]
-    mesh.prolong(fine[2], both, n, fine[0], fine[1])
+    grading.prolong(fine[2], both, n, fine[0], fine[1])
 
 
 @kernel
@@ -163,88 +182,118 @@ def go_finer(x, n, edges, doublings, fine, work):
 
 
 @kernel
-def solve(
-    density, conjugate, integrands, scales, x, y, tube, load, goal, direction, target, mu, regrades, accuracy,
-    fine, work, table, out,
-):  # fmt: skip
+def on_mesh(functional, y, mesh, load, target, mu, rate, tolerance, work):
+    """The state on one mesh, ``y`` in place: ``(status, unstable directions, multiplier, rate of convergence, error that
+    the last step left)``.
+    """
+    if target.any:
+        status, unstable, mu, _ = held.solve_held(
+            functional, y, mesh, load, target, mu, tolerance, newton.MAX_ITERATIONS, work
+        )
+        return status, unstable, mu, rate, tolerance
+    status, unstable, rate, error = newton.solve(functional.density, y, mesh, load, rate, tolerance, work)
+    return status, unstable, mu, rate, error
+
+
+@kernel
+def rescue(functional, room, level, guess, mesh, load):
+    """Ease a guess that leaves a cell no room, by the solution on the mesh before; whether all have room then."""
+    x, y, fine, n = room.x, room.y, room.fine, len(room.x) - 1
+    if level == 0 and mesh.free:
+        ease(functional.integrands, x, y, n, guess, mesh, load, room.work)
+    elif level > 1 and mesh.free:
+        ease(functional.integrands, fine[2], fine[4], mesh.n // 2, guess, mesh, load, room.work)
+    return make_admissible(functional.density, mesh.x, guess, mesh.n, mesh.cells, load)
+
+
+@kernel
+def tell(functional, y, mesh, base, center, mu, load, layer, row):
+    """Write the outputs on one mesh, nested in one of ``base`` cells, to a ``row`` of the table; ``layer`` is where the base
+    mesh has it, and the stretch beyond (:func:`.middle.node`). Returns whether the kind of cell changes along the tube,
+    and the error of the stretch in the middle that no mesh shows.
+    """
+    broken = integrate(functional.integrands, mesh.x, y, mesh.n, mesh.cells, load, row)
+    row[MIDDLE], row[MULTIPLIER], missed = y[center * mesh.n // base], mu, 0.0
+    if mesh.free:
+        row[MIDDLE], missed = middle.stretch(
+            functional.density, mesh.x, y, mesh.n, layer[0], base, layer[1], cell_at(mesh.cells, 0), load
+        )
+    return broken, missed
+
+
+@kernel
+def judge(functional, room, level, cells, load, target, error, missed, broken):
+    """Values and bounds from the last four rows of the table, into ``out``; returns the largest scaled bound."""
+    x, out = room.x, room.out
+    units, floors = functional.scales(room.table[level], largest_sizes(cells), load, x[len(x) - 1] - x[0], error)
+    for k in range(OUTPUTS):
+        out[2, k], out[3, k] = units[k], floors[k]
+    if target.any:  # the multiplier counts in units of its direction
+        direction = target.direction
+        unit = max(abs(direction.p), max(abs(direction.f), abs(direction.m)))
+        out[2, MULTIPLIER] /= max(unit, 1.0)
+        out[3, MULTIPLIER] /= unit
+    return extrapolate(room.table, level, out[2], out[3], missed, broken, out[0], out[1])
+
+
+@kernel
+def next_mesh(room, edges, level):
+    """The mesh after this one, and a first guess on it: ``(row of the table, cells, nodes, guess)``. The base mesh (row 1)
+    comes first, then half of it (row 0), then it is doubled, and again, ...
+    """
+    x, y, fine, n = room.x, room.y, room.fine, len(room.x) - 1
+    if level == 1:
+        for i in range(n // 2 + 1):
+            fine[2, i], fine[3, i] = x[2 * i], y[2 * i]
+        return 0, n // 2, fine[2], fine[3]
+    if level == 0:
+        level = 1
+        for i in range(n + 1):
+            fine[0, i], fine[1, i] = x[i], y[i]
+    go_finer(x, n, edges, level - 1, fine, room.work)
+    return level + 1, n << level, fine[0], fine[1]
+
+
+@kernel
+def solve(functional, room, tube, load, target, mu, regrades, accuracy):
     """Solve on nested meshes until every bound meets ``accuracy``.
 
-    ``tube`` is a :class:`.properties_along.Tube`; of one that is solved by half the last node is free. ``x`` and ``y``
-    are the graded base mesh and a first guess, replaced by the adapted mesh and its solution: the next call's warm
-    start. ``fine`` is scratch for the finer meshes, left as :mod:`finest` describes. ``out`` is (values, bounds,
-    scales, floors), shape (4, OUTPUTS).
+    ``tube`` is a :class:`.properties_along.Tube`; of one that is solved by half the last node is free. The ``room``, or
+    what has all that a :class:`Room` has, begins with a guess, and the multiplier of the :class:`.held.Target` with about
+    ``mu``; its base mesh and guess are replaced by the adapted mesh and its solution: the next call's warm start.
 
     Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
     """
-    n = len(x) - 1
+    n, table = len(room.x) - 1, room.table
     course, edges, cells, free, center, _ = tube
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
-    error, coarser, where, far = tolerance, tolerance, middle.NOT_LONG, 1.0
-    passes, level, count, on_base = 0, 1, n, mu
-    unstable, rate, shrunk = 0, newton.UNKNOWN, False
-    xs, ys = x, y
+    error, layer, on_base, rate = tolerance, (middle.NOT_LONG, 1.0), mu, newton.UNKNOWN
+    passes, level, count, shrunk, xs, ys = 0, 1, n, False, room.x, room.y
     while True:
-        own = fill(course, edges, xs, count, n, cells)
-        coarser = error
-        if goal == PLAIN:
-            status, unstable, rate, error = newton.solve(density, xs, ys, count, free, own, load, rate, tolerance, work)
-        else:
-            status, unstable, mu, _ = held.solve_held(
-                density, conjugate, xs, ys, count, free, own, load, direction, mu, target, tolerance, newton.MAX_ITERATIONS,
-                work,
-            )  # fmt: skip
+        own, coarser = Mesh(xs, count, free, fill(course, edges, xs, count, n, cells)), error
+        status, unstable, mu, rate, error = on_mesh(functional, ys, own, load, target, mu, rate, tolerance, room.work)
+        now = loaded(load, target.direction, mu)
         if status == newton.INFEASIBLE and not shrunk:
             shrunk = True
-            now = loaded(load, direction, mu)
-            if level == 0 and free:
-                ease(density, integrands, x, y, n, xs, ys, count, own, now, work)
-            elif level > 1 and free:
-                ease(density, integrands, fine[2], fine[4], count // 2, xs, ys, count, own, now, work)
-            if make_admissible(density, xs, ys, count, own, now):
+            if rescue(functional, room, level, ys, own, now):
                 continue
         if status != newton.CONVERGED:
             return status, unstable, max(level - 1, 0), on_base
         shrunk = False
-        now = loaded(load, direction, mu)
         if level == 1 and passes < regrades:
-            adapt(density, integrands, x, y, n, tube, now, work)
+            adapt(functional, room.x, room.y, n, tube, now, room.work)
             passes += 1
             continue
-
-        row = table[level]
-        broken = integrate(integrands, xs, ys, count, own, now, row)
-        row[MIDDLE], row[MULTIPLIER], missed = ys[center * count // n], mu, 0.0
-        if free:
-            if level == 1:
-                where, far = middle.node(density, xs, ys, n, cell_at(own, 0), now, accuracy)
-            row[MIDDLE], missed = middle.stretch(density, xs, ys, count, where, n, far, cell_at(own, 0), now)
+        if level == 1 and free:
+            layer = middle.node(functional.density, xs, ys, n, cell_at(own.cells, 0), now, accuracy)
+        broken, missed = tell(functional, ys, own, n, center, mu, now, layer, table[level])
         if level >= 3:
-            units, floors = scales(row, largest_sizes(own), now, x[n] - x[0], max(error, coarser))
-            for k in range(OUTPUTS):
-                out[2, k], out[3, k] = units[k], floors[k]
-            if goal == HELD:  # the multiplier counts in units of its direction
-                unit = max(abs(direction.p), max(abs(direction.f), abs(direction.m)))
-                out[2, MULTIPLIER] /= max(unit, 1.0)
-                out[3, MULTIPLIER] /= unit
-            met = extrapolate(table, level, out[2], out[3], missed, broken, out[0], out[1]) <= accuracy
-            if met or level == MAX_DOUBLINGS + 1:
-                finest.leave_loads(
-                    table[:, MULTIPLIER], level, out[0, MULTIPLIER], direction, max(error, coarser), fine
-                )
-                return newton.CONVERGED if met else UNREACHED, unstable, level - 1, on_base
-
-        # order of the meshes: base (row 1), half of it (row 0), then double, double again, ...
-        if level == 1:
-            on_base = mu
-            level, count = 0, n // 2
-            xs, ys = fine[2], fine[3]
-            for i in range(count + 1):
-                xs[i], ys[i] = x[2 * i], y[2 * i]
-            continue
-        if level == 0:
-            level, mu = 1, on_base
-            for i in range(n + 1):
-                fine[0, i], fine[1, i] = x[i], y[i]
-        go_finer(x, n, edges, level - 1, fine, work)
-        level += 1
-        count, xs, ys = n << (level - 1), fine[0], fine[1]
+            left = max(error, coarser)
+            largest = judge(functional, room, level, own.cells, now, target, left, missed, broken)
+            if largest <= accuracy or level == MAX_DOUBLINGS + 1:
+                multiplier = room.out[0, MULTIPLIER]
+                finest.leave_loads(table[:, MULTIPLIER], level, multiplier, target.direction, left, room.fine)
+                return newton.CONVERGED if largest <= accuracy else UNREACHED, unstable, level - 1, on_base
+        on_base = mu if level == 1 else on_base
+        mu = on_base if level == 0 else mu
+        level, count, xs, ys = next_mesh(room, edges, level)

@@ -9,6 +9,10 @@ likes (:func:`..cells.behind`); a state is admissible where room > 0 and y > 0. 
 ``free`` (a plane of symmetry: the natural condition).
 """
 
+from typing import NamedTuple
+
+import numpy as np
+
 from ...jit import kernel
 from ..cells import behind, cell_at, nothing_yet, of_length
 
@@ -22,13 +26,44 @@ CAUTION = 10.0  # times the rate seen so far
 CONVERGED, STALLED, INFEASIBLE = 0, 1, 2
 
 
-@kernel
-def assemble(density, x, y, n, cells, load, convex, least, room, g, d, e):
-    """Gradient ``g`` and Hessian (diagonal ``d``, off-diagonal ``e``) of -J on n cells; False if not admissible.
+class Mesh(NamedTuple):
+    """The first n cells between nodes ``x``; whether the last node is ``free``; and what varies along them."""
 
-    The ``room`` of each cell is written, and refused where it is not above MIN_ROOM of ``least``. ``convex`` drops
+    x: np.ndarray
+    n: int
+    free: bool
+    cells: np.ndarray
+
+
+class System(NamedTuple):
+    """Scratch (> n,) of one step: gradient g; Hessian, d on the diagonal and e beside it, and its inverse pivots; step and
+    trial; room that cells have, and the least that they may have been left with.
+    """
+
+    g: np.ndarray
+    d: np.ndarray
+    e: np.ndarray
+    inverse: np.ndarray
+    step: np.ndarray
+    trial: np.ndarray
+    room: np.ndarray
+    least: np.ndarray
+
+
+@kernel
+def system_in(work):
+    """The :class:`System` in the first rows of scratch."""
+    return System(work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7])
+
+
+@kernel
+def assemble(density, x, y, n, cells, load, convex, system):
+    """Gradient and Hessian of -J on n cells, into the :class:`System`; False if not admissible.
+
+    The room of each cell is written, and refused where it is not above MIN_ROOM of the least. ``convex`` drops
     whatever makes a cell's own Hessian indefinite: far from the solution every step is a descent then.
     """
+    g, d, e, room, least = system.g, system.d, system.e, system.room, system.least
     fits = True
     varying = len(cells) > 1
     cell = cell_at(cells, 0)
@@ -114,20 +149,22 @@ def new_rate(rate, size, before):
 
 
 @kernel
-def solve(density, x, y, n, free, cells, load, rate, tolerance, work):
+def solve(density, y, mesh, load, rate, tolerance, work):
     """Damped Newton from ``y`` (changed in place), to a relative error of ``tolerance``.
 
     Returns ``(status, negative pivots, rate, error)``; the rate of convergence seen on one mesh serves the next; the last
     step may have left the relative ``error``. ``work`` is scratch of shape (13, > n).
     """
-    g, d, e, inverse, step, trial, room, least = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
+    x, n, free, cells = mesh
+    system = system_in(work)
+    g, d, e, inverse, step, trial, room, least = system
     first, last = 1, n if free else n - 1
     for i in range(n + 1):
         trial[i], least[i] = y[i], 0.0
     convex, negative, halvings, iterations = False, 0, 0, 0
     size, before, fraction, slope = 1e300, 1e300, 0.0, 0.0
     while iterations < MAX_ITERATIONS and halvings < MAX_HALVINGS:
-        admitted = assemble(density, x, trial, n, cells, load, convex, least, room, g, d, e)
+        admitted = assemble(density, x, trial, n, cells, load, convex, system)
         if iterations == 0 and not admitted:
             return INFEASIBLE, 0, rate, tolerance
         if iterations > 0 and not convex:

@@ -16,9 +16,10 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..either import isnt, select, some
 from . import membrane
+from .fibers import BOTH_TAUT, both_reach, given_at, is_taut, lacking, multipliers, slopes_at, taut_twist
 from .physical import LEAST, NO_ROOM, kind_of, place, place_beside
-from .relaxed import BOTH_TAUT, beside, both_reach, is_taut, lacking, multipliers, taut_twist, under
-from .wall import has_two_families, least_square, may_go_slack, rises, slopes, stored
+from .relaxed import beside, under
+from .wall import has_two_families, least_square, may_go_slack, rises, stored
 
 LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it meets
 
@@ -43,12 +44,12 @@ def levelled(y, level, cell, load):
     """``(R, G - 1, psi, taut alpha, taut beta)``, whatever the neighbours are. The density is convex in R: from the
     second step on Newton's method comes from above.
     """
-    area, m, wall = load.e * cell[2], load.m, load.wall
+    given = given_at(y, 0.0 * y, cell, load)
     R = max(load.p * y * y + load.f, NO_ROOM)
     _, G_1, psi, alpha, beta = place(y, 0.0 * y, R, cell, load)
     going = y > 0.0
     for _ in range(LEVELS):
-        better = under((level, level), y, G_1, psi, m, area, load.rubber, wall)
+        better = under((level, level), given, G_1, psi)
         change = abs(better - R)
         R = select(going, better, R)
         going = going & (change > CLOSE * R)
@@ -114,7 +115,7 @@ def level_if_taut(y, level, cell, load):
     W, W_y, W_G, W_p = rises(y, G_1, psi, area, load.rubber, load.wall)
     s = sqrt(1.0 + G_1)
     R, both = max((level + W - m * psi) / s, NO_ROOM), y == y
-    a, b = multipliers(y, s, psi, both, both, H, D, R, m, W_G, W_p)
+    a, b = multipliers(y, s, psi, (both, both), cell, R, m, W_G, W_p)
     ta, tb = H + D + psi, H - D + psi
     L_y = 2.0 * load.p * y * s - W_y - 2.0 * y * (a * ta * ta + b * tb * tb)
     room = room_of(y, 1.0 + G_1, load)
@@ -131,9 +132,9 @@ def room_of(y, G, load):
 @kernel
 def level_where_slack(y, level, cell, load, near):
     """:func:`at_level` where families may be slack."""
-    H, D, gg, wall, m = cell[0], cell[1], load.gamma * load.gamma, load.wall, load.m
-    area, still = load.e * cell[2], 0.0 * y
-    known, kind, G_1, psi, dG, dpsi, W, R = beside(y, still, H, D, gg, (level, level), m, area, load.rubber, wall, near)
+    H, D, gg, wall, still = cell[0], cell[1], load.gamma * load.gamma, load.wall, 0.0 * y
+    given = given_at(y, still, cell, load)
+    known, kind, G_1, psi, dG, dpsi, W, R = beside(given, (level, level), near)
     alpha, beta = is_taut(kind)
     lost = isnt(known)
     if some(lost):
@@ -141,7 +142,7 @@ def level_where_slack(y, level, cell, load, near):
         R, G_1, psi = select(lost, other, R), select(lost, wide, G_1), select(lost, twist, psi)
         dG, dpsi = select(lost, still, dG), select(lost, still, dpsi)
         alpha, beta = (lost & with_alpha) | (known & alpha), (lost & with_beta) | (known & beta)
-        V = slopes(y, G_1, psi, area, load.rubber, wall)
+        V = slopes_at(given, G_1, psi)
         W = (
             select(lost, V[0], W[0]), select(lost, V[1], W[1]), select(lost, V[2], W[2]), select(lost, V[3], W[3]),
             select(lost, V[4], W[4]), select(lost, V[5], W[5]), select(lost, V[6], W[6]), select(lost, V[7], W[7]),
@@ -150,7 +151,7 @@ def level_where_slack(y, level, cell, load, near):
     W_y, W_G, W_p, _, W_yG, W_yp, W_GG, W_Gp, _ = W
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     i = 1.0 / s
-    a, b = multipliers(y, s, psi, alpha, beta, H, D, R, m, W_G, W_p)
+    a, b = multipliers(y, s, psi, (alpha, beta), cell, R, load.m, W_G, W_p)
     ta, tb = H + D + psi, H - D + psi
     turned, squared = a * ta + b * tb, a * ta * ta + b * tb * tb
     # the changes that are not made yet do something where one family is taut, or none

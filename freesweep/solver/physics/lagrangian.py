@@ -16,6 +16,7 @@ from ...jit import kernel
 from ..cells import as_expected, expecting, passed_on, point_of
 from ..load import fibers_alone
 from . import body, membrane, over_cell, physical
+from .fibers import spares
 from .first_integral import at_level, level_of, summed  # noqa: F401
 from .membrane import (  # noqa: F401
     DRAWN_IN,
@@ -30,7 +31,6 @@ from .membrane import (  # noqa: F401
     scales,
     strain_energy,
 )
-from .relaxed import spares
 from .wall import has_two_families
 
 

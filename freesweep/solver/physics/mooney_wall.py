@@ -6,9 +6,27 @@ all first and second derivatives.
 """
 
 from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
 
 from ...jit import kernel
 from .membrane import excess
+
+
+class Layers(NamedTuple):
+    """A wall as layers: its area, k, and rho_i^2; how many there are, where their rule begins among the ``places`` and
+    ``weights`` of all; and the mean of 1/rho^2 over them.
+    """
+
+    area: float
+    k: float
+    inner: float
+    count: int
+    at: int
+    places: np.ndarray
+    weights: np.ndarray
+    reciprocal: float
 
 
 @kernel
@@ -20,8 +38,9 @@ def weigh(area, inner, count, reciprocal):
 
 
 @kernel
-def stored(y, G_1, psi, area, c, k, inner, count, places, weights, at):
+def stored(y, G_1, psi, c, layers):
     """W alone."""
+    area, k, inner, count, at, places, weights, _ = layers
     G = 1.0 + G_1
     e = 1.0 / G
     root = sqrt(e)
@@ -42,8 +61,9 @@ def stored(y, G_1, psi, area, c, k, inner, count, places, weights, at):
 
 
 @kernel
-def slopes(y, G_1, psi, area, c, k, inner, count, places, weights, at, reciprocal):
-    """With the mean of 1/rho^2 over the layers: ``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
+def slopes(y, G_1, psi, c, layers):
+    """``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
+    area, k, inner, count, at, places, weights, reciprocal = layers
     G = 1.0 + G_1
     e = 1.0 / G
     root = sqrt(e)
@@ -82,8 +102,9 @@ def slopes(y, G_1, psi, area, c, k, inner, count, places, weights, at, reciproca
 
 
 @kernel
-def rises(y, G_1, psi, area, c, k, inner, count, places, weights, at, reciprocal):
+def rises(y, G_1, psi, c, layers):
     """``(W, W_y, W_G, W_psi)``, in one go along the layers."""
+    area, k, inner, count, at, places, weights, reciprocal = layers
     G = 1.0 + G_1
     e = 1.0 / G
     root = sqrt(e)

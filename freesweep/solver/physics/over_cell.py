@@ -18,16 +18,29 @@ are looked for first; these functions hand on, last, what the next one may have.
 the cell's middle.
 """
 
+from typing import NamedTuple
+
 from ...jit import kernel
 from ..cells import point_of
 from ..either import select, some
 from . import body, in_a_cell, physical
-from .relaxed import is_taut, lacking
+from .fibers import is_taut, lacking
 from .wall import may_go_slack
 
 GAUSS = 0.28867513459481287  # of a cell: the two points lie so far from its middle
-MIXED = 4.0  # beside the kinds of :mod:`relaxed`
+MIXED = 4.0  # beside the kinds of :mod:`fibers`
 SMALLEST = 1e-300
+
+
+class Cell(NamedTuple):
+    """A cell of a mesh: stretch in its middle, slope, the tube's point there, length, load, and its change."""
+
+    y: float
+    v: float
+    point: tuple
+    h: float
+    load: tuple
+    direction: tuple
 
 
 @kernel
@@ -136,17 +149,19 @@ def along_the_cell(part, y, v, cell, load, direction):
         low = select(ends_alpha, at_alpha, select(ends_beta, at_beta, zero))  # others in a vector just go along
         high = select(ends_beta, at_beta, low)
         low, high = min(low, high), max(low, high)
-        total, least = of_part(part, -0.5 * h, low, nothing, room, y, v, point, h, load, direction, near)
+        own = Cell(y, v, point, h, load, direction)
+        total, least = of_part(part, -0.5 * h, low, nothing, room, own, near)
         if some(changes & (high > low)):
-            total, least = of_part(part, low, high, total, least, y, v, point, h, load, direction, near)
-        total, least = of_part(part, high, 0.5 * h, total, least, y, v, point, h, load, direction, last)
+            total, least = of_part(part, low, high, total, least, own, near)
+        total, least = of_part(part, high, 0.5 * h, total, least, own, last)
         whole, room = chosen(changes, total, whole), select(changes, least, room)
     return room, whole, select(changes, MIXED, one.kind), last
 
 
 @kernel
-def of_part(part, begin, end, total, room, y, v, point, h, load, direction, near):
+def of_part(part, begin, end, total, room, cell, near):
     """Five sums and the least room with the part of the cell from ``begin`` to ``end``."""
+    y, v, point, h, load, direction = cell
     half, middle = GAUSS * (end - begin), 0.5 * (begin + end)
     weight = 0.5 * (end - begin) / h
     for k in range(2):

@@ -17,19 +17,20 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..cells import nothing_yet
 from ..either import isnt, select, some
-from .relaxed import (
+from .fibers import (
     ALPHA_TAUT,
     BETA_TAUT,
     BOTH_TAUT,
     NONE_TAUT,
-    beside,
     both_reach,
+    given_at,
     is_taut,
     multipliers,
-    settle,
+    slopes_at,
     spread_of,
     taut_twist,
 )
+from .relaxed import beside, settle
 from .wall import least_square, leaves_choice, lies_inside, slopes, stored
 
 NO_ROOM = 1e-30  # as in :mod:`membrane`
@@ -76,9 +77,7 @@ def place(y, v, T, cell, load):
     """``(room, G - 1, psi, taut alpha, taut beta)`` at one point under the resultant T; see :func:`relaxed.settle`."""
     H, D, gg, wall = cell[0], cell[1], load.gamma * load.gamma, load.wall
     if wall[2] > 0.0:
-        room, G_1, psi, alpha, beta = settle(
-            y, v, H, D, gg, max(T, NO_ROOM), load.m, load.e * cell[2], load.rubber, wall
-        )
+        room, G_1, psi, alpha, beta = settle(given_at(y, v, cell, load), max(T, NO_ROOM))
         return min(room, T), max(G_1, LEAST - 1.0), psi, alpha, beta
     psi, G_1 = taut_twist(y, H, gg), both_reach(y, H, D, gg, gg - 1.0)
     room, least = min(1.0 + G_1 - v * v, T), least_square(y, max(1.0 + G_1, NO_ROOM), wall)
@@ -93,19 +92,17 @@ def place_beside(y, v, T, cell, load, near):
     Returns ``(room, G - 1, psi, dG, dpsi, taut alpha, taut beta, slopes of W)``; the last changes are not made yet, and too
     small to look once more.
     """
-    wall, area, zero = load.wall, load.e * cell[2], 0.0 * y
-    if not wall[2] > 0.0:
+    given, zero = given_at(y, v, cell, load), 0.0 * y
+    if not load.wall[2] > 0.0:
         room, G_1, psi, alpha, beta = place(y, v, T, cell, load)
-        return room, G_1, psi, zero, zero, alpha, beta, slopes(y, G_1, psi, area, load.rubber, wall)
-    low, widest, _, _ = spread_of(y, v, cell[0], cell[1], load.gamma * load.gamma, wall)
+        return room, G_1, psi, zero, zero, alpha, beta, slopes_at(given, G_1, psi)
+    low, widest, _, _ = spread_of(given)
     room = min(widest - low, T)
-    known, kind, G_1, psi, dG, dpsi, W, _ = beside(
-        y, v, cell[0], cell[1], load.gamma * load.gamma, (max(T, NO_ROOM),), load.m, area, load.rubber, wall, near
-    )
+    known, kind, G_1, psi, dG, dpsi, W, _ = beside(given, (max(T, NO_ROOM),), near)
     alpha, beta = is_taut(kind)
     if some(isnt(known)):
         other, width, twist, with_alpha, with_beta = place(y, v, T, cell, load)
-        V = slopes(y, width, twist, area, load.rubber, wall)
+        V = slopes_at(given, width, twist)
         room, G_1, psi = select(known, room, other), select(known, G_1, width), select(known, psi, twist)
         dG, dpsi = select(known, dG, zero), select(known, dpsi, zero)
         alpha, beta = (known & alpha) | (isnt(known) & with_alpha), (known & beta) | (isnt(known) & with_beta)
@@ -128,7 +125,7 @@ def state(y, v, cell, load, near):
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
     i = 1.0 / s
     i3 = i * i * i
-    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, H, D, T, m, W_G, W_p)
+    a, b = multipliers(y, s, psi, (taut_alpha, taut_beta), cell, T, m, W_G, W_p)
     ta, tb = H + D + psi, H - D + psi
     turned, squared = a * ta + b * tb, a * ta * ta + b * tb * tb
     L_y, L_v = T_y * s - W_y - 2.0 * y * squared, -T * v * i
@@ -272,7 +269,7 @@ def at_slope(y, v, cell, load):
     room, G_1, psi, taut_alpha, taut_beta = place(y, v, T, cell, load)
     _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load.e * cell[2], load.rubber, load.wall)
     s = sqrt(max(1.0 + G_1 - v * v, NO_ROOM))
-    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], T, load.m, W_G, W_p)
+    a, b = multipliers(y, s, psi, (taut_alpha, taut_beta), cell, T, load.m, W_G, W_p)
     return room, a, b
 
 
@@ -286,5 +283,5 @@ def at_flux(y, flux, cell, load):
     _, G_1, psi, taut_alpha, taut_beta = place(y, 0.0, pull, cell, load)
     _, W_G, W_p, _, _, _, _, _, _ = slopes(y, G_1, psi, load.e * cell[2], load.rubber, load.wall)
     s = sqrt(max(1.0 + G_1, NO_ROOM))
-    a, b = multipliers(y, s, psi, taut_alpha, taut_beta, cell[0], cell[1], pull, load.m, W_G, W_p)
+    a, b = multipliers(y, s, psi, (taut_alpha, taut_beta), cell, pull, load.m, W_G, W_p)
     return psi, G_1, a, b

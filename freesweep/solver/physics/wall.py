@@ -200,14 +200,20 @@ def energy(y, G_1, psi, area, rubber, wall):
 
 
 @kernel
+def layered(area, wall):
+    """The wall as layers."""
+    count = layers(area, wall)
+    return mooney_wall.Layers(
+        area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS, reciprocal_of(area, wall, count)
+    )
+
+
+@kernel
 def stored(y, G_1, psi, area, rubber, wall):
     """W alone."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[0]
-    count = layers(area, wall)
-    return mooney_wall.stored(
-        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count)
-    )
+    return mooney_wall.stored(y, G_1, psi, rubber[0], layered(area, wall))
 
 
 @kernel
@@ -215,11 +221,7 @@ def slopes(y, G_1, psi, area, rubber, wall):
     """The derivatives of :func:`energy`, without W."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[1:]
-    count = layers(area, wall)
-    return mooney_wall.slopes(
-        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count),
-        reciprocal_of(area, wall, count),
-    )  # fmt: skip
+    return mooney_wall.slopes(y, G_1, psi, rubber[0], layered(area, wall))
 
 
 @kernel
@@ -227,11 +229,7 @@ def rises(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi)``."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[:4]
-    count = layers(area, wall)
-    return mooney_wall.rises(
-        y, G_1, psi, area, rubber[0], wall[0], wall[1], count, PLACES, WEIGHTS, first_place(count),
-        reciprocal_of(area, wall, count),
-    )  # fmt: skip
+    return mooney_wall.rises(y, G_1, psi, rubber[0], layered(area, wall))
 
 
 @kernel
