@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 
 
 def _plain(value):
@@ -18,6 +19,11 @@ def _plain(value):
 def text(content) -> str:
     """Indented JSON."""
     return json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
+
+
+def tell_kept(path, is_json) -> None:
+    """Prints where something was kept; beside JSON, which programs read to its end, on standard error."""
+    print(path, file=sys.stderr if is_json else sys.stdout)
 
 
 def of_states(dataset) -> str:

@@ -263,11 +263,11 @@ def asked_in_units(options):
 def _show(dataset, options):
     from ..atlas.files import write_whole
     from ..report import shown_in, table
-    from .as_json import of_states
+    from .as_json import of_states, tell_kept
 
     print(of_states(dataset) if options.json else table(dataset, shown_in(asked_in_units(options))))
     if note := dataset.attrs.get("thin_wall_note"):
         print(f"freesweep: note: {note}", file=sys.stderr)
     if options.out:
         write_whole(options.out, dataset.to_netcdf(engine="netcdf4"))
-        print(options.out)
+        tell_kept(options.out, options.json)

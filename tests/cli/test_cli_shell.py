@@ -73,12 +73,13 @@ def printed(capsys, *words):
     return json.loads(capsys.readouterr().out)
 
 
-def test_tables_are_printed_as_json_too(capsys):
+def test_tables_are_printed_as_json_too(capsys, tmp_path):
     (state,) = printed(capsys, "lock", *TUBE, "--json")["points"]
     assert state["deformed_length"] == fs.lock(fs.Actuator(
         alpha=30, beta=-30, length=0.192, radius=4.76e-3, wall=1.59e-3, material=fs.NeoHookean(1e5)
     )).deformed_length.item()  # fmt: skip
     assert state["status"] == "ok"
+    assert printed(capsys, "lock", *TUBE, "--json", "-o", str(tmp_path / "kept.nc"))["points"] == [state]
     held = printed(capsys, "info", ATLAS, "--json")
     assert held["axes"]["pressure"]["units"] == "Pa"
     assert held["statuses"]["status"] == {"ok": 23616, "degenerate": 1476}

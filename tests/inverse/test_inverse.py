@@ -504,6 +504,13 @@ def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, cap
     assert picture.stat().st_size > 20_000
 
 
+def test_a_name_that_no_picture_can_have_is_refused_before_the_search(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("freesweep.inverse.designing.find", lambda **_: pytest.fail("searched"))
+    wish = str(ROOT / "sweeps" / "wishes" / "rotator.toml")
+    assert main(["design", wish, "--picture", str(tmp_path / "candidates.jpg")]) == 2
+    assert "--picture: found" in capsys.readouterr().err
+
+
 def test_a_rubber_that_was_chosen_has_its_name_in_table_file_and_picture():
     own = fs.NeoHookean(1e5)
     goals = [fs.Goal("stroke", at_least=0.1, pressure=1e5)]
