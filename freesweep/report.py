@@ -22,9 +22,9 @@ THREADS = {  # what families without a pull do: loose ones go slack, bonded ones
 }
 
 
-def quantity(value, units) -> str:
-    """A number in everyday units."""
-    unit, scale = SHOWN.get(units, (units.removeprefix("1"), 1.0))
+def quantity(value, units, shown=SHOWN) -> str:
+    """A number in everyday units, or in those that :func:`shown_in` finds."""
+    unit, scale = shown.get(units, (units.removeprefix("1"), 1.0))
     return f"{value * scale:.6g} {unit}".rstrip()
 
 

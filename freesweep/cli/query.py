@@ -66,7 +66,8 @@ def _axes(options):
     for name in PARAMETERS:
         if (given := getattr(options, name)) is not None:
             try:
-                axes[name] = quantity(given, PARAMETERS[name].units)
+                quantity(given, PARAMETERS[name].units)
+                axes[name] = given  # with its unit, in which faults are told
                 units[name] = unit_of(given)
             except ValueError as error:
                 faults.append(f"--{name.replace('_', '-')}: {error}")

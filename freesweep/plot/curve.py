@@ -14,7 +14,7 @@ from ..description.quantities import Quantity
 from ..status import VALUED
 from . import style
 from .between import between
-from .choice import DESIGN, check_name, choose, dimensions, read_selection
+from .choice import DESIGN, check_name, choose, dimensions, read_selection, warn_missed
 from .display import absolute, axis_label, shown_units
 from .plane import status_of
 
@@ -137,6 +137,7 @@ def curve(
         check_name(each, [name for name in dims if name != along], f"further dimension of {variable}")
     dataset = between(dataset, variable, select, (along, each))
     point, index = choose(dataset, select, (along, each))
+    warn_missed(point)
     plane = dataset.isel(index)
     nodes = [None] if each is None else _nodes(dataset.sizes[each])
     shown = absolute(variable)

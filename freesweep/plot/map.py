@@ -12,7 +12,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from ..description.quantities import Quantity
 from . import glyph, regions, style
-from .choice import read_selection
+from .choice import read_selection, warn_missed
 from .display import display, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, plane
@@ -53,6 +53,7 @@ def design_map(
     dataset without alpha and beta as dimensions.
     """
     sheet = plane(dataset, variable, select)
+    warn_missed(sheet.point)
     with style.context():
         ax = style.new_axes(*SIZE) if ax is None else ax
         values = shown_values(sheet, variable)

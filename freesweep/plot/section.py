@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from .. import closed_form
 from ..description.quantities import Quantity
 from . import style
-from .choice import check_name, dimensions, read_selection
+from .choice import check_name, dimensions, read_selection, warn_missed
 from .display import axis_label, describe, display, shown_units, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, section
@@ -44,6 +44,7 @@ def section_map(
     Raises ValueError for unknown names, and axes that the variable does not have.
     """
     sheet = section(dataset, variable, x, y, select)
+    warn_missed(sheet.point)
     with style.context():
         ax = style.new_axes(*SIZE) if ax is None else ax
         values = shown_values(sheet, variable)
@@ -88,6 +89,7 @@ def multiples(
         ]
         for row in rows
     ]
+    warn_missed(sheets[0][0].point)
     with style.context():
         figure = style.new_figure(style.PAGE, PANEL * len(rows) + 34.0) if figure is None else figure
         axes = figure.subplots(len(rows), len(nodes[0]), sharex=True, sharey=True, squeeze=False)

@@ -13,7 +13,7 @@ from ..description.quantities import Quantity
 from ..status import VALUED
 from . import style
 from .between import between
-from .choice import check_name, read_selection
+from .choice import check_name, read_selection, warn_missed
 from .display import axis_label
 from .fill import draw_failures, edges
 from .plane import Plane, section
@@ -62,6 +62,7 @@ def validity_map(
     select = read_selection(select)
     dataset = between(dataset, host, select, (x, y))  # its flags with it
     sheet = scaled(section(dataset, host, x, y, select))
+    warn_missed(sheet.point)
     kind = np.zeros(sheet.reason.shape) if slack is None else _slack(dataset, host, slack, x, y, select)
     solved = np.isin(sheet.reason, VALUED)
     with style.context():
