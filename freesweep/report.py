@@ -101,7 +101,6 @@ def _flags(state):
 
 
 def aligned(rows):
-    """Lines of columns, flush right."""
     """Rows of texts as lines, columns set flush right."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
