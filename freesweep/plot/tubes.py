@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 WIDTH = style.PAGE  # of a figure of its own [mm]
 MARGIN = 0.02  # beside a shape, over its length
-DASHED = {True: "slack threads", False: "fibers that would push"}  # whether they are loose
+DASHED = {"loose": "slack threads", "bonded": "fibers that would push"}
 
 
 class _Layout(NamedTuple):
@@ -60,9 +60,10 @@ def shape_plot(tube: Actuator, *states: "xr.Dataset", titles: Sequence[str] = ()
     layout = _layout(shapes)
     with style.context():
         ax = style.new_axes(*size_of(tube, *states)) if ax is None else ax
+        fibers = ["bonded", *(state.attrs.get("fibers", "bonded") for state in states)]  # of each its own
         for k, (shape, lift, name) in enumerate(zip(shapes, layout.lifts, names)):
             draw_shape(ax, shape, style.AFTER if k else style.BEFORE, lift)
-            slack = f", dashed: {DASHED[tube.is_loose]}" if np.any(shape.slack) else ""
+            slack = f", dashed: {DASHED[fibers[k]]}" if np.any(shape.slack) else ""
             _name(ax, shape, name, layout.left, lift + shape.radius.max() + 0.25 * layout.words, k, slack)
         _name_families(ax, tube, layout.right, layout.lifts[0] + shapes[0].radius.max() + 0.25 * layout.words)
         margin = MARGIN * (layout.right - layout.left)
