@@ -1,5 +1,7 @@
 """Tolerances of manufacture: how far each output spreads, and which tolerance matters."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +25,7 @@ def tolerance(
     *,
     accuracy: float = 1e-6,
     **tolerances: Quantity,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """The standard deviation of each output of :func:`freesweep.inflate`, to first order in independent ``tolerances``.
 
     Parameters

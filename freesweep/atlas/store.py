@@ -1,5 +1,7 @@
 """Atlases as netCDF4 files: opened lazily, once they are known to be harmless."""
 
+from __future__ import annotations
+
 import functools
 import warnings
 from collections.abc import Sequence
@@ -50,7 +52,7 @@ class Atlas:
     Pickled, it is the path: it is opened anew where it arrives, once in a process.
     """
 
-    data: "xr.Dataset"
+    data: xr.Dataset
     path: Path
 
     def __post_init__(self):
@@ -105,7 +107,7 @@ class Atlas:
         refine: bool = False,
         x: Quantities | None = None,
         **axes: Quantities,
-    ) -> "xr.Dataset":
+    ) -> xr.Dataset:
         """What the atlas says of any design and load within its grid.
 
         Parameters
@@ -128,7 +130,7 @@ class Atlas:
 
         return query(self._reader, axes, variables, method, refine, x)
 
-    def curve(self, along: str, values: Quantities | None = None, **query: Any) -> "xr.Dataset":
+    def curve(self, along: str, values: Quantities | None = None, **query: Any) -> xr.Dataset:
         """Answers along one axis, such as "pressure": :meth:`query` at ``values`` or at 201 of them over its range.
 
         A force-stroke or torque-rotation family is the curve of an atlas with held lengths or rotations along that axis.
@@ -138,7 +140,7 @@ class Atlas:
 
         return curve(self._reader, along, values, query)
 
-    def interpolator(self, names: str | Sequence[str]) -> "Interpolator":
+    def interpolator(self, names: str | Sequence[str]) -> Interpolator:
         """A callable for loops and optimizers: ``f(*values, gradient=False)``, see
         :class:`freesweep.query.interpolator.Interpolator`.
 
@@ -178,7 +180,7 @@ class Atlas:
         """Let go of the file."""
         self.data.close()
 
-    def __enter__(self) -> "Atlas":
+    def __enter__(self) -> Atlas:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,5 +1,7 @@
 """What a calibration found: parameters, how exactly they are known, and what the bench reads by them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -61,7 +63,13 @@ class Calibration:
     quantile: float = 1.96
     parameters: object = field(default=None, repr=False)
 
-    def band(self, quantity: str, pressure: Quantities, *, actuator: int = 0, **imposed: Quantities) -> "xr.Dataset":
+    def __repr__(self):
+        """What the shell prints."""
+        from .report import table
+
+        return table(self)
+
+    def band(self, quantity: str, pressure: Quantities, *, actuator: int = 0, **imposed: Quantities) -> xr.Dataset:
         """What the bench would read in a load case, with the band in which 95 % of readings are expected, as a Dataset.
 
         ``quantity`` is deformed_length, rotation, force ... under ``pressure`` [Pa] and what is ``imposed`` (force, torque,

@@ -1,5 +1,7 @@
 """The picture of a calibration: each measured curve with the model's and its band, and what is left below it."""
 
+from __future__ import annotations
+
 import textwrap
 from collections.abc import Callable
 from pathlib import Path

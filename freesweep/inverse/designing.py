@@ -1,5 +1,7 @@
 """Inverse design: the tubes that do what is wished for."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -43,7 +45,7 @@ def design(
     atlas: Atlas | None = None,
     seed: int = 0,
     tolerances: Mapping[str, Any] | None = None,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Tubes that do what is wished for, the best ones first.
 
     Parameters

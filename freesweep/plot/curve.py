@@ -1,5 +1,7 @@
 """Curves: a variable of a dataset along one of its dimensions, with its error bound as a band and its flags."""
 
+from __future__ import annotations
+
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -110,7 +112,7 @@ def spread(places, step):
 
 
 def curve(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "deformed_length",
     along: str = "pressure",
     each: str | None = None,

@@ -1,5 +1,7 @@
 """The map of the design space: one variable of an atlas over the two fiber angles, in the manner of Figure 1-2."""
 
+from __future__ import annotations
+
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -28,7 +30,7 @@ COARSE = 12.0  # [degree]: wider grids are drawn node by node, without contours 
 
 
 def design_map(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "rotation",
     ax: Axes | None = None,
     paths: bool = True,

@@ -1,5 +1,7 @@
 """An actuator in motion: its shape along pressure as an animated GIF, over the outline it had without pressure."""
 
+from __future__ import annotations
+
 import io
 import os
 import warnings
@@ -69,7 +71,7 @@ def _words(state, shape):
 
 
 def save_motion(
-    tube: Actuator, states: "xr.Dataset", path: str | os.PathLike[str], resolution: float = RESOLUTION
+    tube: Actuator, states: xr.Dataset, path: str | os.PathLike[str], resolution: float = RESOLUTION
 ) -> Path:
     """Writes the motion as a GIF that runs forth and back, with ``resolution`` in dots per inch, and returns its path.
 

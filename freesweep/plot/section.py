@@ -1,5 +1,7 @@
 """Maps of an atlas over any two of its axes, alone or as small multiples along others, in one set of colours."""
 
+from __future__ import annotations
+
 import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -30,7 +32,7 @@ LEGEND_COLUMN = 43.0  # [mm]
 
 
 def section_map(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "rotation",
     x: str = "alpha",
     y: str = "beta",
@@ -58,7 +60,7 @@ def section_map(
 
 
 def multiples(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "rotation",
     x: str = "alpha",
     y: str = "beta",

@@ -1,5 +1,7 @@
 """Several shapes of one actuator below each other, to one scale: undeformed on top, then deformed."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -49,7 +51,7 @@ def size_of(tube: Actuator, *states) -> tuple[float, float]:
     return WIDTH, -layout.bottom / layout.span * (WIDTH - 4.0) + 14.0
 
 
-def shape_plot(tube: Actuator, *states: "xr.Dataset", titles: Sequence[str] = (), ax: Axes | None = None) -> Axes:
+def shape_plot(tube: Actuator, *states: xr.Dataset, titles: Sequence[str] = (), ax: Axes | None = None) -> Axes:
     """The undeformed actuator on top, in blue, and below it each of ``states`` in red; returns the Axes.
 
     A state is a Dataset of one load, from ``lock``, ``inflate``, ``blocked_force`` or the like; ``titles`` names each.

@@ -1,5 +1,7 @@
 """Validity of an atlas: where it has results, which fibers would have to push there, what is unstable, what fails."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -45,7 +47,7 @@ PANEL = 75.0  # height of a map [mm]
 
 
 def validity_map(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     of: str = "equilibrium",
     x: str = "alpha",
     y: str = "beta",
@@ -88,7 +90,7 @@ def validity_map(
 
 
 def validity_maps(
-    datasets: "Sequence[xr.Dataset]",
+    datasets: Sequence[xr.Dataset],
     of: str = "equilibrium",
     x: str = "alpha",
     y: str = "beta",

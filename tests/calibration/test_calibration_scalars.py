@@ -192,6 +192,7 @@ def test_the_picture_is_drawn_in_the_style_of_the_house():
 
 def test_intervals_that_only_rounding_parts_are_called_the_same():
     found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    assert repr(found) == table(found)  # as the shell prints it
     rounded = replace(found, profile_intervals=found.intervals * (1.0 + 1e-12))
     assert "by profile likelihood" not in table(rounded)
     farther = replace(found, profile_intervals=np.add(found.intervals, [[1e4, 0.0], [0.0, 0.0], [0.0, 0.0]]))
