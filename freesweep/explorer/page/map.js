@@ -120,14 +120,12 @@ const LINES = {
   diagonal_cross: "M0 11L8 0M6 11L14 0M12 11L20 0M0 0L8 11M6 0L14 11M12 0L20 11", horizontal_line: "M0 3H18M0 8H18",
   cross: "M0 3H18M0 8H18M4 0V11M9 0V11M14 0V11", dot: "M3 3h1M9 3h1M15 3h1M6 8h1M12 8h1", ring: "M3 5h2M8 5h2M13 5h2", blank: "",
 };
-const PUSH = "a family of threads that would have to push, which it cannot";
-
 function drawLegend(kinds) {
   const box = byId("legend"), of = kinds.join() + state.dark;
   if (box.dataset.of === of) return;
   box.dataset.of = of;
   box.innerHTML = kinds.map((kind) => {
-    const words = kind < 100 ? facts.statuses[kind].meaning : facts.slack[kind - 100], title = kind < 100 ? facts.statuses[kind].sentence : PUSH;
+    const words = kind < 100 ? facts.statuses[kind].meaning : facts.slack[kind - 100], title = kind < 100 ? facts.statuses[kind].sentence : facts.slack_sentence;
     return `<span title="${title.replaceAll('"', "'")}"><svg><rect width="18" height="11" fill="${isFailed(kind) && kind < 100 ? "var(--blank)" : "none"}"/>` +
       `<path d="${LINES[facts.hatches[kind]]}" stroke="var(--quiet)" fill="none"/></svg>${words}</span>`;
   }).join("");
