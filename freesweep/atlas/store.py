@@ -36,6 +36,11 @@ UNSEALED = (
     "has no seal: it was changed after it was written, or freesweep did not write it; no bound in it is vouched for"
 )
 
+SINGLE = (
+    "is no atlas: it holds states of one actuator, as inflate, lock and block keep them; freesweep plot curve draws them,"
+    " xarray.open_dataset reads them"
+)
+
 
 class AtlasError(ValueError):
     """A file that is no atlas, or not the one asked for."""
@@ -204,6 +209,8 @@ def open_atlas(path: str | PathLike[str]) -> Atlas:
     data = open_results(path)
     try:
         found = data.attrs.get("freesweep_format")
+        if found is None and "status" in data and "x" in data.dims:
+            raise AtlasError(f"{path} {SINGLE}")
         if found != FORMAT or "status" not in data:
             raise AtlasError(f"{path} is no freesweep atlas of format {FORMAT} (found format {found!r:.40})")
         if wrong := [fault for fault, _ in zip(faults(data), range(MOST_FAULTS))]:
