@@ -86,15 +86,19 @@ def of_calibration(found) -> str:
     return text({"parameters": parameters, "measured": measured, **about, "material": repr(found.material)})
 
 
-def of_comparisons(path, comparisons) -> str:
-    """Largest differences of an atlas from the second method, beside the stored bounds."""
-    rows = {
-        one.name: {
+def of_comparisons(path, comparisons, faults=()) -> str:
+    """What is wrong with an atlas, and its largest differences from the second method, beside the stored bounds."""
+    from ..atlas.schema import VARIABLES
+
+    rows = {}
+    for one in comparisons:
+        worst = int(one.difference.argmax()) if one.difference.size else None
+        rows[one.name] = {
             "judged": one.difference.size,
             "unjudged": one.unjudged,
-            "largest_difference": max(one.difference, default=None),
+            "largest_difference": None if worst is None else one.difference[worst],
+            "its_bound": None if worst is None else one.bound[worst],
             "broken": one.broken.sum(),
+            "units": VARIABLES[one.name].units,
         }
-        for one in comparisons
-    }
-    return text({"atlas": str(path), "whole": True, "resolved": rows})
+    return text({"atlas": str(path), "whole": not faults, "faults": list(faults), "resolved": rows})
