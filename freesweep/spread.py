@@ -11,6 +11,7 @@ from .description.actuator import Actuator
 from .description.faults import ActuatorError
 from .description.given import described, read_number
 from .description.quantities import Quantity
+from .description.unit_warnings import tolerance_doubts, warn_of
 from .statics import LOADS, inflate
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ def tolerance(
     }
     if faults:
         raise ActuatorError(faults)
+    warn_of(tolerance_doubts(tube.design(), spread), stacklevel=2)
     names = list(spread)
     found = inflate(tube, pressure, force, torque, accuracy=accuracy, derivatives=names)
     for output in SHAPE:

@@ -13,7 +13,7 @@ from ..description.faults import ActuatorError
 from ..description.given import described
 from ..description.options import read_count
 from ..description.quantities import Names
-from ..description.unit_warnings import warn_of
+from ..description.unit_warnings import tolerance_doubts, warn_of
 from ..report import SHOWN
 from . import freedom, wishes
 from .candidates import Found, gather
@@ -102,7 +102,8 @@ def find(
             )
     if faults:
         raise ActuatorError(faults)
-    warn_of(doubts_of(space, [*asked, *kept]), stacklevel=3)
+    doubts = [*doubts_of(space, [*asked, *kept]), *tolerance_doubts(template.design(), allowed)]
+    warn_of(doubts, stacklevel=3)
     misfit = make(space, asked, kept)._replace(shown=shown)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
     made = _searched(first, objectives, count, seed, atlas, allowed)

@@ -159,7 +159,8 @@ class _Asked:
                 return np.zeros(1), np.zeros(1)
             ends = pair
         elif ways == ["value"]:
-            ends = value, value
+            column = _column(f"{where}: {self.output}", value, unit, faults)
+            return (np.zeros(1),) * 2 if column is None else (column, column)
         else:
             ends = self.at_least, self.at_most
         none = (np.full(1, -np.inf), np.full(1, np.inf))

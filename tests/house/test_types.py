@@ -180,6 +180,14 @@ def test_objects_say_what_they_are_in_a_line():
         assert repr(asked) == "<Interpolator of rotation, volume over alpha, beta, length, radius, pressure>"
 
 
+def test_kinds_of_pictures_are_there_without_an_import():
+    code = "import freesweep as fs; assert fs.plot.map.design_map and fs.plot.style.save; print(*dir(fs.plot))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=CHILD_ENVIRONMENT)
+    assert done.stdout == "curve map motion section style tubes validity\n", done.stderr
+    with pytest.raises(AttributeError, match="it has curve, map"):
+        fs.plot.maps  # noqa: B018
+
+
 def test_dir_shows_what_is_public():
     assert set(dir(fs)) == {*fs.__all__, "__version__", "plot", "status"}
     assert all(hasattr(fs, name) for name in dir(fs))

@@ -456,6 +456,12 @@ def test_what_a_bound_or_a_limit_costs_is_said():
     assert "0.1 mm more of radius would buy" in short.attrs["summary"]
 
 
+def test_a_fault_of_a_goal_is_told_once():
+    with pytest.raises(fs.ActuatorError) as fault:
+        fs.Goal("rotation", "90 mm", pressure=1e5)
+    assert len(fault.value.faults) == 1
+
+
 def test_a_limit_is_a_range():
     with pytest.raises(fs.ActuatorError, match="at_least, at_most or between"):
         fs.Limit("rotation", 3, pressure=1e5)
