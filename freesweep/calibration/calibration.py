@@ -20,6 +20,7 @@ from .scatter import estimated
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +80,15 @@ class Calibration:
         from .band import band_of
 
         return band_of(self, quantity, pressure, actuator, **imposed)
+
+    def picture(self) -> Figure:
+        """Each measured curve with the model's and its band, and what is left below; ``freesweep.plot.style.save`` keeps it.
+
+        Dots: what was measured (rings: slack muscles); lines: the model; bands: where 95 % of readings are expected.
+        """
+        from .picture import picture
+
+        return picture(self)
 
     @property
     def standard_errors(self) -> np.ndarray:

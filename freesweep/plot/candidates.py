@@ -23,7 +23,7 @@ def draw(found, curves, shapes) -> Figure:
     (:mod:`freesweep.inverse.shown`).
     """
     with style.context():
-        figure = Figure(figsize=(SIZE[0] / style.INCH, SIZE[1] / style.INCH), layout="constrained")
+        figure = style.new_figure(*SIZE)
         names = [f"curve {k}" for k in range(len(curves))]
         axes = figure.subplot_mosaic([["angles", *names], ["shapes"] * (1 + len(names))], height_ratios=(3, 2))
         _draw_angles(axes["angles"], found)

@@ -186,6 +186,7 @@ def test_the_picture_is_drawn_in_the_style_of_the_house():
     assert not any(ax.spines[side].get_visible() for ax in figure.axes for side in ("top", "right"))
     assert (bottom.get_xlabel(), other.get_ylabel()) == ("pressure [psi]", "force [lbf]")
     assert [text.get_text() for text in other.texts if text.get_gid() == "end"] == ["14.5 psi", "43.51 psi"]
+    assert [len(ax.lines) for ax in found.picture().axes] == [len(ax.lines) for ax in figure.axes]
     (key,) = figure.legends
     assert [text.get_text() for text in key.get_texts()][-1] == "slack muscle"
 
