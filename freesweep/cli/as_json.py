@@ -62,7 +62,9 @@ def of_candidates(found) -> str:
         "python": found["python"].values.tolist()
     }
     rows = [dict(zip(named, values)) for values in zip(*named.values())]
-    return text({"summary": found.attrs["summary"], "candidates": rows})
+    return text(
+        {name: found.attrs[name] for name in ("summary", "prices") if found.attrs.get(name)} | {"candidates": rows}
+    )
 
 
 def of_calibration(found) -> str:

@@ -4,8 +4,11 @@ import csv as files
 import io
 from typing import NamedTuple
 
+import numpy as np
+
 from ..report import FAMILIES, SHOWN, THREADS, aligned
-from .in_units import shown_unit, title_parts
+from ..status import STATUSES
+from .in_units import shown_unit, title_parts, unit_of
 
 NAMES = ("alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "pressure", "force", "torque")
 MISSED = "!"
@@ -13,23 +16,25 @@ WIDTH = 120  # letters of a line that a screen shows
 
 
 def columns_of(found):
-    """(heading, values (candidates,)) of everything that is one number each."""
+    """(heading, values (candidates,)) of everything that is one number each, with its kept unit; statuses in words."""
     for name in found.data_vars:
         variable = found[name]
-        if variable.dims == ("candidate",) and name != "python":
-            yield f"{name} [{variable.attrs['units']}]" if "units" in variable.attrs else name, variable.values
+        if name == "status":
+            yield name, np.array([STATUSES[code].meaning for code in variable.values])
+        elif variable.dims == ("candidate",) and name != "python":
+            yield _headed(name, variable.attrs.get("units", "1")), variable.values
         elif variable.dims == ("candidate", "knot"):
             for k in range(variable.sizes["knot"]):
                 yield f"{name}[{k}] [{variable.attrs['units']}]", variable.values[:, k]
     for group in ("goal", "limit"):
         for k in range(found.sizes.get(group, 0)):
-            title = found[group].values[k]
-            yield f"{title}", found[f"{group}_value"].values[:, k]
+            title = _kept(found[group].values[k])
+            yield title, found[f"{group}_value"].values[:, k]
             yield f"{title}: error", found[f"{group}_error"].values[:, k]
             if f"{group}_spread" in found:
                 yield f"{title}: spread", found[f"{group}_spread"].values[:, k]
     for k in range(found.sizes.get("minimized", 0)):
-        yield f"least {found['minimized'].values[k]}", found["objective"].values[:, k]
+        yield f"least {_kept(found['minimized'].values[k])}", found["objective"].values[:, k]
 
 
 def csv(found) -> str:
@@ -122,7 +127,13 @@ def _below(numbers, columns):
 
 
 def _headed(name, unit):
-    return f"{name} [{unit}]" if unit else name
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
+def _kept(title):
+    """A wish's title with the unit that its output is kept in."""
+    output, at, state = title.partition(" at ")
+    return f"{_headed(output, unit_of(output))}{at}{state}"
 
 
 def _title(title, shown):

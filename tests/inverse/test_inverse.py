@@ -496,7 +496,8 @@ def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, cap
     assert "meet every goal and keep every limit" in said
     assert "fs.Actuator(" in said
     rows = list(csv.reader(out.read_text(encoding="utf-8").splitlines()))
-    assert {"alpha [degree]", "radius [m]", "rotation at pressure 100000 Pa", "python"} <= set(rows[0])
+    assert {"alpha [degree]", "radius [m]", "rotation [degree] at pressure 100000 Pa", "python"} <= set(rows[0])
+    assert {row[rows[0].index("status")] for row in rows[1:]} == {"ok"}
     assert len({len(row) for row in rows}) == 1
     # those that do it first, of these those in which no thread would push, which the table marks; in units of the wish
     found = [dict(zip(rows[0], row)) for row in rows[1:]]
