@@ -1,6 +1,7 @@
 """The command `freesweep calibrate`: parses and calls."""
 
 from ..description.tube_model import FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
+from .shell import ends_in
 from .single import CONSTANTS, add_rubber, read_options, read_rubber
 
 NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
@@ -56,7 +57,9 @@ def add_calibrate(commands):
     )
     for name, choices in (("model", MODELS), ("wall-model", WALL_MODELS), ("fibers", FIBERS)):
         command.add_argument(f"--{name}", choices=tuple(choices), help="of all actuators, as in freesweep inflate")
-    command.add_argument("-o", "--out", metavar="FILE.nc", help="keep parameters, covariance and curves as netCDF4")
+    command.add_argument(
+        "-o", "--out", type=ends_in(".nc"), metavar="FILE.nc", help="keep parameters, covariance and curves as netCDF4"
+    )
     command.add_argument(
         "--report", metavar="FILE", help="a page to send around (.html), or its picture (.png, .svg, .pdf)"
     )

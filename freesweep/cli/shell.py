@@ -55,6 +55,17 @@ def _meant(word, known):
     return f"did you mean {near[0]}? " if near else ""
 
 
+def ends_in(*suffixes):
+    """A type of arguments: names of files that end in one of ``suffixes``, which say what is written."""
+
+    def name(text):
+        if not text.lower().endswith(suffixes):
+            raise argparse.ArgumentTypeError(f"found {text!r:.60}; the suffix must be one of {', '.join(suffixes)}")
+        return text
+
+    return name
+
+
 class Completion(argparse.Action):
     """Prints a script that completes commands, options and files: ``--print-completion bash``."""
 
