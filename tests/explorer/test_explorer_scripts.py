@@ -85,6 +85,19 @@ def test_what_is_pinned_leaves_as_the_tube_that_it_is(kind, tmp_path):
         assert numbers[name] == float(str(getattr(tube, name)).removeprefix("geodesic ").removesuffix(" deg"))
 
 
+def test_a_sketch_of_a_body_has_its_taper_and_bulge(tmp_path):
+    """Till the solver has spoken, and on a page without one: the outline at rest was that of a tube."""
+    given, pin = ATLASES["bodies"]
+    with fs.sweep(**SIZES | given, out=tmp_path / "atlas.nc") as atlas:
+        known = facts(Desk(atlas))
+        tube = tube_of(Desk(atlas), pin | {"pressure": 0.0})
+    scripts = ("state", "units", "provider", "export", "shape")
+    script = f"all = whole({json.dumps(pin)}), sketch(all, all.length, fiberRadius(all), 0).radius"
+    radius = told(known, f"(() => {{ let all; return ({script}); }})()", scripts)
+    share = np.linspace(0.0, 1.0, len(radius))
+    np.testing.assert_allclose(radius, 1e3 * tube.fiber_surface_at(share), rtol=1e-12)
+
+
 def atlas_families(tube):
     return [name for name in ("alpha", "beta") if getattr(tube, name) is not None]
 
