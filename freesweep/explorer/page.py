@@ -79,7 +79,7 @@ def facts(desk) -> dict:
         "axes": axes, "fixed": fixed, "designs": desk.labels, "along": desk.along, "design_axes": desk.design_axes,
         "loads": [name for name in desk.axes if name in LOADS],
         "units_of": {name: parameter.units for name, parameter in PARAMETERS.items()},
-        "model": {"energy": frame.energy, **frame.model._asdict()}, 
+        "model": {"energy": frame.energy, **frame.model._asdict()},
         "fiber_share": frame.fiber_share, "in_numbers": frame.in_numbers, "families": list(frame.families),
         "rules": {name: RULES[name] for name in frame.bodies.rules} if frame.bodies else {},
         "by_design": {name: frame.values[name].tolist() for name in frame.by_design if desk.labels},
