@@ -17,6 +17,7 @@ from .family import SLACK_FLAGS, TOLD_FROM, family_of
 from .grid import GridPoints, GridStates, Stored
 from .locate import Nodes
 from .missing_nodes import cell_codes, fill, weights_beyond
+from .part import Part
 from .placing import HELD_NAMES, packed, placing, whole_axes
 from .predictor import Predictor
 from .reference import COLUMNS
@@ -43,7 +44,7 @@ class Table:
     """
 
     def __init__(self, data, frame, key, box=None):
-        self.data, self.frame = data, frame
+        self.frame = frame
         self.family = family_of(key, frame.bodies is not None)
         self.predictor = Predictor(frame.model, frame.energy, frame.bodies, frame.families)
         self.names = frame.axes_of(self.family.variables)
@@ -58,15 +59,16 @@ class Table:
         self.shape = np.array([len(axis.nodes) for axis in self.axes], np.int64)
         self.strides = np.array([int(np.prod(self.shape[k + 1 :])) for k in range(len(self.shape))], np.int64)
         self.size = int(np.prod(self.shape))
+        self.part = Part(data, self.names, self.box, self.shape)
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
         self.knots, self.windows, self.coordinates = packed(self.axes, self.ranks)
         self.known, self.columns, self.fixed, self.nearest = placing(frame, self.family, self.names)
-        self._variables, self._spare, self._stored, self._errors, self._states, self._taut = {}, [], {}, {}, None, None
+        self._variables, self._spare, self._states, self._taut = {}, [], None, None
         self._making = {}  # locks of what one thread makes and others may ask for meanwhile
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
-        slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
+        slack = self.part.grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
         self.is_kinked = self.has_slack and self.predictor.is_physical  # numbers have kinks where slack begins or ends
         # of held loose tubes there is no closed form, nor of where held ones are slack
         held = self.family.kind in HELD_NAMES.values()
@@ -89,29 +91,18 @@ class Table:
         """What numbers are put in with beyond the last of those that there are."""
         return weights_beyond(self._nodes, self.shape)
 
-    def _grid(self, name):
-        """A stored variable over the axes of the table (nodes,), the kernels' own axes among them."""
-        variable = self.data[name]
-        part = {name: slice(*self.box[name]) if name in self.names else 0 for name in variable.dims}
-        array = np.asarray(variable.isel(part).values)
-        array = array[tuple(slice(None) if name in variable.dims else None for name in self.names)]
-        array = array.reshape(array.shape + (1,) * self.padding)
-        if array.size < self.size:
-            array = np.broadcast_to(array, self.shape)
-        return np.ascontiguousarray(array).ravel()
-
     def _codes(self):
         """Status of each node in the low half of a byte, above it the flag that nodes must share to be mixed."""
         status, flag = self.family.status, self.family.flag
         codes = np.zeros(self.size, np.uint8)
         if status:
-            codes |= self._grid(status).astype(np.uint8)
+            codes |= self.part.grid(status).astype(np.uint8)
         if self.has_flag:
-            codes |= self._grid(flag).astype(np.uint8) << 4
+            codes |= self.part.grid(flag).astype(np.uint8) << 4
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
             flags = self._taut_nodes()
             for name, variable in self.family.variables.items():
-                flags = flags | (self._grid(name) > A_POINT) * np.uint8(SLACK_FLAGS[variable])
+                flags = flags | (self.part.grid(name) > A_POINT) * np.uint8(SLACK_FLAGS[variable])
             codes |= self._beyond_rest(flags) << 4
         return codes
 
@@ -134,34 +125,18 @@ class Table:
             return codes >> 4 == 1
         return (codes & 15 == OK) | (codes & 15 == INACCURATE)
 
-    def stored(self, name):
-        """The numbers of the atlas, bit for bit (nodes,)."""
-        if name not in self._stored:
-            self._stored[name] = self._grid(name)
-        return self._stored[name]
-
-    def errors(self, name):
-        """The bounds of the atlas (nodes,); zero where it holds none."""
-        if name not in self._errors:
-            self._errors[name] = self._bounds(name)
-        return self._errors[name]
-
-    def _bounds(self, name):
-        bound = f"{name}_error"
-        return self._grid(bound) if bound in self.frame.dims else np.zeros(self.size, np.float32)
-
     def forget(self, name):
         """Let go of the arrays of one variable, of which the largest are used again."""
         for side in self.sides:
             if gone := self._variables.pop((name, side), None):
                 self._spare.append(gone.values)
-        for kept in (self._stored, self._errors):
-            kept.pop(name, None)
+        self.part.forget(name)
 
     def release(self):
         """Let go of the arrays of all variables."""
-        for kept in (self._variables, self._spare, self._stored, self._errors):
-            kept.clear()
+        self._variables.clear()
+        self._spare.clear()
+        self.part.forget()
 
     def variable(self, name, side) -> Interpolant:
         """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
@@ -234,7 +209,7 @@ class Table:
 
     def _end_effects(self, name):
         """End effects of the stored numbers and their bounds, (nodes,)."""
-        stored, errors = self._grid(name), self._bounds(name)
+        stored, errors = self.part.grid(name), self.part.bounds(name)
         if self.family.kind == reference.NONE:
             return np.where(self.is_number(self.codes[0]), stored, np.nan), errors.astype(np.float32)
         effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)
