@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +19,11 @@ from ..plot.curve import LETTER, draw_line, label_ends
 from .branches import curves_of
 from .calibration import Calibration
 from .measured import COLUMNS, Measurement
+from .predicted import Predictor
 from .report import USUAL
 
 MOST = 2  # quantities beside each other
+PLACES = 31  # of the model along a curve, beside those that were measured
 HEIGHTS = (3.0, 1.0)  # of curves, and of what is left
 WIDTH, HEIGHT, KEY = 0.5 * style.PAGE, 100.0, 8.0  # of one quantity, and of the key below all [mm]
 ALONE = 1.4 * WIDTH  # one that has the page for itself [mm]
@@ -37,9 +40,10 @@ def picture(found: Calibration, shown: dict = USUAL) -> Figure:
     figure = style.new_figure(WIDTH * columns if columns > 1 else ALONE, HEIGHT * rows + KEY)
     with style.context():
         axes = figure.subplots(2 * rows, columns, squeeze=False, height_ratios=HEIGHTS * rows)
+        models = [between(found, k) for k in range(len(found.measurements))]
         for place, (k, name) in enumerate(pairs):
             row, column = divmod(place, columns)
-            _draw(found, k, name, shown, *axes[2 * row : 2 * row + 2, column])
+            _draw(found, k, name, shown, models[k], *axes[2 * row : 2 * row + 2, column])
         for ax in axes[-2:, (len(pairs) - 1) % columns + 1 :].ravel():
             ax.remove()
         _key(figure, any(m.slack.any() for m in found.measurements))
@@ -51,22 +55,59 @@ def png(found: Calibration, shown: dict = USUAL) -> bytes:
     return style.drawn(picture(found, shown), Path("picture.png"), 150.0)
 
 
-def _draw(found, k, name, shown, top, bottom):
-    """One quantity of one measurement, curve by curve."""
+def between(found: Calibration, k: int) -> list:
+    """The model along each curve of a measurement, between its states, too: ``(states, predicted)``, where ``states`` is a
+    measurement of what was imposed there, and ``predicted`` (n, measured), NaN where the model has no state.
+    """
+    measurement, parameters = found.measurements[k], found.parameters
+    curve, swept = curves_of(measurement)
+    along = measurement.pressure if swept == "pressure" else measurement.imposed(swept)
+    columns = {name: getattr(measurement, name) for name in ("pressure", *COLUMNS)}
+    columns = {name: array for name, array in columns.items() if array is not None}
+    setup = parameters.setups((found.values - parameters.offset) / parameters.unit)[k]
+    made = []
+    for number in np.unique(curve):
+        rows = np.flatnonzero(curve == number)
+        rows = rows[np.argsort(along[rows], kind="stable")]
+        places = np.union1d(along[rows], np.linspace(along[rows[0]], along[rows[-1]], PLACES))
+        states = replace(
+            measurement, **{name: np.interp(places, along[rows], array[rows]) for name, array in columns.items()},
+            contraction=None, stroke=None, length_as=measurement.length_as, sigma={}, branch=None, half_width={},
+        )  # fmt: skip
+        made.append((states, _predicted(states, setup)))
+    return made
+
+
+def _predicted(states, setup):
+    """What the model says of states (n, measured); of pushes that nobody measured, which are told roughly only, nothing."""
+    predictor = Predictor([states])
+    for _ in range(2):  # of short tubes what vectors miss is corrected
+        predictor.predict([[setup]])
+        predictor.refresh([setup])
+    ((predicted,),) = predictor.predict([[setup]])
+    if "force" in states.measured:
+        force = predicted[:, states.measured.index("force")]
+        force[(force < 0.0) & (states.force >= 0.0)] = np.nan
+    return predicted
+
+
+def _draw(found, k, name, shown, models, top, bottom):
+    """One quantity of one measurement, curve by curve; ``models`` as of :func:`between`."""
     measurement = found.measurements[k]
     curve, swept = curves_of(measurement)
     across, place = axis(measurement, swept, shown)
     label, scaled = axis(measurement, name, shown)
+    at = measurement.measured.index(name)
     along = place(measurement.pressure if swept == "pressure" else measurement.imposed(swept))
-    value = scaled(getattr(measurement, name))
-    model = scaled(found.predicted[k][:, measurement.measured.index(name)])
+    value, model = scaled(getattr(measurement, name)), scaled(found.predicted[k][:, at])
     half = abs(scaled(found.quantile * found.sigma[name] + found.hysteresis.get(name, 0.0)) - scaled(0.0))
     slack = measurement.slack if name == "force" else np.zeros(len(measurement), bool)
     lines = []
-    for number, colour in zip(np.unique(curve), style.ramp(curve.max() + 1)):
+    for number, colour, (states, predicted) in zip(np.unique(curve), style.ramp(curve.max() + 1), models):
         rows = np.flatnonzero(curve == number)
         rows = rows[np.argsort(along[rows], kind="stable")]
-        lines.append(draw_line(top, along[rows], model[rows], error=np.full(len(rows), half), color=colour))
+        x = place(states.pressure if swept == "pressure" else states.imposed(swept))
+        lines.append(draw_line(top, x, scaled(predicted[:, at]), error=np.full(len(x), half), color=colour))
         for hangs, face in ((False, colour), (True, style.PAPER)):
             own = rows[slack[rows] == hangs]
             top.plot(along[own], value[own], color=colour, markerfacecolor=face, **DOT)

@@ -13,7 +13,7 @@ from commands import refused, run
 import freesweep
 from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, calibrate, inflate
 from freesweep.calibration.parameters import Setup
-from freesweep.calibration.picture import axis, picture, words_of
+from freesweep.calibration.picture import axis, between, picture, words_of
 from freesweep.calibration.predicted import Asked, Predictor, scalar
 from freesweep.calibration.report import shown_as, table
 from freesweep.cli import DONE
@@ -189,6 +189,23 @@ def test_the_picture_is_drawn_in_the_style_of_the_house():
     assert [len(ax.lines) for ax in found.picture().axes] == [len(ax.lines) for ax in figure.axes]
     (key,) = figure.legends
     assert [text.get_text() for text in key.get_texts()][-1] == "slack muscle"
+
+
+def test_a_model_is_drawn_between_what_was_measured_and_goes_through_what_it_says_there():
+    """Chords between few states had corners that no muscle has."""
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    for k, measurement in enumerate(found.measurements):
+        joined = [(states, predicted[:, 0]) for states, predicted in between(found, k)]
+        assert sum(len(states) for states, _ in joined) > 2 * len(measurement)
+        said = {}
+        for states, model in joined:
+            said |= dict(zip(zip(states.pressure, states.imposed("deformed_length")), model))
+        for row, value in enumerate(found.predicted[k][:, 0]):
+            drawn = said[measurement.pressure[row], measurement.imposed("deformed_length")[row]]
+            if value >= 0.0:
+                assert drawn == pytest.approx(value, rel=1e-6)
+            else:
+                assert np.isnan(drawn)  # a push that was not measured
 
 
 def test_intervals_that_only_rounding_parts_are_called_the_same():
