@@ -16,6 +16,8 @@ Of threads that cannot push they hold where both families pull (:func:`held_shar
 where the tube deforms and only the held state (``freesweep.blocked_torque``) tells. The locked uniform tube is the same.
 """
 
+from __future__ import annotations
+
 import functools
 import inspect
 from collections.abc import Callable

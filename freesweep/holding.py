@@ -7,6 +7,8 @@ or rotation found is changed to the value asked for: ``held_path`` says so. A tu
 or turned, as its loads rise, and let go to that value.
 """
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,7 +44,7 @@ def blocked_force(
     x: Quantities | None = None,
     accuracy: float = 1e-6,
     derivatives: Names = None,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """The axial force that holds the deformed length, the free end being free to rotate (Eqs. 2.16, 2.18).
 
     Parameters
@@ -77,7 +79,7 @@ def blocked_torque(
     x: Quantities | None = None,
     accuracy: float = 1e-6,
     derivatives: Names = None,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """The torque that holds the rotation of the free end, the length being free (Eqs. 2.19, 2.20).
 
     Parameters

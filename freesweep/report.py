@@ -22,9 +22,9 @@ THREADS = {  # what families without a pull do: loose ones go slack, bonded ones
 }
 
 
-def quantity(value, units) -> str:
-    """A number in everyday units."""
-    unit, scale = SHOWN.get(units, (units.removeprefix("1"), 1.0))
+def quantity(value, units, shown=SHOWN) -> str:
+    """A number in everyday units, or in those that :func:`shown_in` finds."""
+    unit, scale = shown.get(units, (units.removeprefix("1"), 1.0))
     return f"{value * scale:.6g} {unit}".rstrip()
 
 
@@ -101,7 +101,6 @@ def _flags(state):
 
 
 def aligned(rows):
-    """Lines of columns, flush right."""
     """Rows of texts as lines, columns set flush right."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]

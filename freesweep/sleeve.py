@@ -11,6 +11,8 @@ Forces measured on a sleeve (Figure 3-13) are lower than these by almost half: a
 actuator pulls with, and no model here knows it. Take the values for upper bounds.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -57,7 +59,7 @@ class Helix:
             raise ActuatorError(faults)
 
     @classmethod
-    def around(cls, radius: Quantity, length: Quantity, height: Quantity) -> "Helix":
+    def around(cls, radius: Quantity, length: Quantity, height: Quantity) -> Helix:
         """The helix of an actuator of a ``length`` on an arm of a ``radius``, both ends a ``height`` apart [m].
 
         The source takes the arm's radius; add the actuator's outer radius for its middle line. Raises
@@ -86,7 +88,7 @@ class Helix:
         """Angle of the actuator from the arm's axis [degree]."""
         return float(np.degrees(np.arccos(self.height / self.length)))
 
-    def shortened(self, length: Quantity) -> "Helix":
+    def shortened(self, length: Quantity) -> Helix:
         """The helix of the same ends and turns once its actuator has another ``length`` [m]: its radius follows."""
         return Helix(length=length, height=self.height, turns=self.turns)
 
@@ -133,7 +135,7 @@ def _tension(force):
 
 def constriction(
     tube: Actuator, helix: Helix, pressure: Quantities, *, friction: Quantity = 0.0, accuracy: float = 1e-6
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """What an actuator wound around an arm presses with (sections 3.3 and 3.4).
 
     Parameters

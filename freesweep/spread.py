@@ -1,5 +1,7 @@
 """Tolerances of manufacture: how far each output spreads, and which tolerance matters."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +11,7 @@ from .description.actuator import Actuator
 from .description.faults import ActuatorError
 from .description.given import described, read_number
 from .description.quantities import Quantity
+from .description.unit_warnings import tolerance_doubts, warn_of
 from .statics import LOADS, inflate
 
 if TYPE_CHECKING:
@@ -23,7 +26,7 @@ def tolerance(
     *,
     accuracy: float = 1e-6,
     **tolerances: Quantity,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """The standard deviation of each output of :func:`freesweep.inflate`, to first order in independent ``tolerances``.
 
     Parameters
@@ -52,6 +55,7 @@ def tolerance(
     }
     if faults:
         raise ActuatorError(faults)
+    warn_of(tolerance_doubts(tube.design(), spread), stacklevel=2)
     names = list(spread)
     found = inflate(tube, pressure, force, torque, accuracy=accuracy, derivatives=names)
     for output in SHAPE:

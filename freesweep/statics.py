@@ -1,5 +1,7 @@
 """Statics of one actuator: the locked shape, and inflation under force and torque. Results are xarray Datasets."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,7 +32,7 @@ UNLOCKED = (
 
 def lock(
     tube: Actuator, *, x: Quantities | None = None, accuracy: float = 1e-6, derivatives: Names = None
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """The locked shape: largest volume that the fibers allow, whatever the wall (Eq. 2.12).
 
     Parameters
@@ -72,7 +74,7 @@ def inflate(
     x: Quantities | None = None,
     accuracy: float = 1e-6,
     derivatives: Names = None,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Equilibrium under pressure, axial force and torque (Eqs. 2.11, 2.15, 2.18).
 
     Parameters

@@ -1,5 +1,7 @@
 """Atlases as netCDF4 files: opened lazily, once they are known to be harmless."""
 
+from __future__ import annotations
+
 import functools
 import warnings
 from collections.abc import Sequence
@@ -34,6 +36,11 @@ UNSEALED = (
     "has no seal: it was changed after it was written, or freesweep did not write it; no bound in it is vouched for"
 )
 
+SINGLE = (
+    "is no atlas: it holds states of one actuator, as inflate, lock and block keep them; freesweep plot curve draws them,"
+    " xarray.open_dataset reads them"
+)
+
 
 class AtlasError(ValueError):
     """A file that is no atlas, or not the one asked for."""
@@ -50,7 +57,7 @@ class Atlas:
     Pickled, it is the path: it is opened anew where it arrives, once in a process.
     """
 
-    data: "xr.Dataset"
+    data: xr.Dataset
     path: Path
 
     def __post_init__(self):
@@ -105,7 +112,7 @@ class Atlas:
         refine: bool = False,
         x: Quantities | None = None,
         **axes: Quantities,
-    ) -> "xr.Dataset":
+    ) -> xr.Dataset:
         """What the atlas says of any design and load within its grid.
 
         Parameters
@@ -128,7 +135,7 @@ class Atlas:
 
         return query(self._reader, axes, variables, method, refine, x)
 
-    def curve(self, along: str, values: Quantities | None = None, **query: Any) -> "xr.Dataset":
+    def curve(self, along: str, values: Quantities | None = None, **query: Any) -> xr.Dataset:
         """Answers along one axis, such as "pressure": :meth:`query` at ``values`` or at 201 of them over its range.
 
         A force-stroke or torque-rotation family is the curve of an atlas with held lengths or rotations along that axis.
@@ -138,7 +145,7 @@ class Atlas:
 
         return curve(self._reader, along, values, query)
 
-    def interpolator(self, names: str | Sequence[str]) -> "Interpolator":
+    def interpolator(self, names: str | Sequence[str]) -> Interpolator:
         """A callable for loops and optimizers: ``f(*values, gradient=False)``, see
         :class:`freesweep.query.interpolator.Interpolator`.
 
@@ -178,7 +185,7 @@ class Atlas:
         """Let go of the file."""
         self.data.close()
 
-    def __enter__(self) -> "Atlas":
+    def __enter__(self) -> Atlas:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -202,6 +209,8 @@ def open_atlas(path: str | PathLike[str]) -> Atlas:
     data = open_results(path)
     try:
         found = data.attrs.get("freesweep_format")
+        if found is None and "status" in data and "x" in data.dims:
+            raise AtlasError(f"{path} {SINGLE}")
         if found != FORMAT or "status" not in data:
             raise AtlasError(f"{path} is no freesweep atlas of format {FORMAT} (found format {found!r:.40})")
         if wrong := [fault for fault, _ in zip(faults(data), range(MOST_FAULTS))]:

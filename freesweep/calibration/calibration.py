@@ -1,5 +1,7 @@
 """What a calibration found: parameters, how exactly they are known, and what the bench reads by them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,6 +20,7 @@ from .scatter import estimated
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +64,13 @@ class Calibration:
     quantile: float = 1.96
     parameters: object = field(default=None, repr=False)
 
-    def band(self, quantity: str, pressure: Quantities, *, actuator: int = 0, **imposed: Quantities) -> "xr.Dataset":
+    def __repr__(self):
+        """What the shell prints."""
+        from .report import table
+
+        return table(self)
+
+    def band(self, quantity: str, pressure: Quantities, *, actuator: int = 0, **imposed: Quantities) -> xr.Dataset:
         """What the bench would read in a load case, with the band in which 95 % of readings are expected, as a Dataset.
 
         ``quantity`` is deformed_length, rotation, force ... under ``pressure`` [Pa] and what is ``imposed`` (force, torque,
@@ -71,6 +80,15 @@ class Calibration:
         from .band import band_of
 
         return band_of(self, quantity, pressure, actuator, **imposed)
+
+    def picture(self) -> Figure:
+        """Each measured curve with the model's and its band, and what is left below; ``freesweep.plot.style.save`` keeps it.
+
+        Dots: what was measured (rings: slack muscles); lines: the model; bands: where 95 % of readings are expected.
+        """
+        from .picture import picture
+
+        return picture(self)
 
     @property
     def standard_errors(self) -> np.ndarray:

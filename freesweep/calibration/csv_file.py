@@ -1,5 +1,7 @@
 """CSV files of measured curves: a line names each column and its unit, such as ``pressure [psi],force [N]``."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

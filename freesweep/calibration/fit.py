@@ -6,6 +6,8 @@ about the fit, and the fit is made again with it; what that costs is in the cova
 Student's, for the degrees of freedom that are left.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

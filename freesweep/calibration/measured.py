@@ -1,5 +1,7 @@
 """What a test bench measured: states of actuators under pressure, as arrays in SI units and degrees."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,6 +13,7 @@ from ..description.faults import ActuatorError
 from ..description.given import described, read_column
 from ..description.options import read_choice
 from ..description.quantities import Quantities
+from ..report import quantity
 
 COLUMNS = {"deformed_length": "m", "rotation": "degree", "mid_radius": "m", "force": "N", "torque": "N m"}
 SHORTENINGS = {"contraction": "1", "stroke": "m"}  # in place of a deformed length: share of the length, shortening
@@ -163,6 +166,10 @@ class Measurement:
 
     def __len__(self):
         return len(self.pressure)
+
+    def __repr__(self):
+        pressure = " to ".join(dict.fromkeys(quantity(end, "Pa") for end in (self.pressure.min(), self.pressure.max())))
+        return f"<Measurement of {', '.join(self.measured)}: {len(self)} states at {pressure} of {self.tube}>"
 
     def imposed(self, name: str) -> np.ndarray:
         """An imposed column (n,); where the bench left it out, what it is then. Raises :class:`ActuatorError`."""

@@ -1,84 +1,16 @@
-"""A calibration as one page that people send around: HTML with its picture inside, or the picture."""
+"""A calibration as one page that people send around: HTML with its picture inside."""
 
 import base64
 import html
-import io
-
-import numpy as np
 
 from ..description.python_line import python_line
-from ..report import SHOWN
-from .branches import curves_of
-from .measured import COLUMNS
+from .picture import png
 from .report import USUAL, rows_of, told_rows
-
-DOTS = 100  # per inch
-
-
-def picture(found) -> bytes:
-    """PNG: measured curves with the model's and its band, and residuals below."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    pairs = [(k, name) for k, m in enumerate(found.measurements) for name in m.measured]
-    figure = Figure((4.6 * len(pairs), 5.6), dpi=DOTS, layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots(2, len(pairs), squeeze=False, sharex="col", height_ratios=(3, 1))
-    for column, (k, name) in enumerate(pairs):
-        _draw(found, k, name, *axes[:, column])
-    content = io.BytesIO()
-    figure.savefig(content, format="png", metadata={"Software": None})
-    return content.getvalue()
-
-
-def _draw(found, k, name, top, bottom):
-    """One quantity of one measurement, curve by curve."""
-    measurement = found.measurements[k]
-    curve, swept = curves_of(measurement)
-    axis, place = _axis(measurement, swept)
-    label, shown = _axis(measurement, name)
-    along = place(measurement.pressure if swept == "pressure" else measurement.imposed(swept))
-    value, predicted = getattr(measurement, name), found.predicted[k][:, measurement.measured.index(name)]
-    half = found.quantile * found.sigma[name] + found.hysteresis.get(name, 0.0)
-    for number in np.unique(curve):
-        rows = np.flatnonzero(curve == number)
-        rows = rows[np.argsort(along[rows], kind="stable")]
-        x, y, model = along[rows], shown(value[rows]), shown(predicted[rows])
-        (line,) = top.plot(x, model, "-", linewidth=1.2, label=_label(found, k, swept, rows))
-        ends = shown(predicted[rows] - half), shown(predicted[rows] + half)
-        top.fill_between(x, *ends, color=line.get_color(), alpha=0.15, linewidth=0)
-        slack = measurement.slack[rows] & (name == "force")
-        top.plot(x[~slack], y[~slack], "o", color=line.get_color(), markersize=3.5)
-        top.plot(x[slack], y[slack], "o", color=line.get_color(), markersize=3.5, fillstyle="none")
-        bottom.plot(x, np.where(slack, np.nan, y - model), "o-", color=line.get_color(), markersize=3, linewidth=0.6)
-    bottom.axhline(0.0, color="0.5", linewidth=0.8)
-    top.set_ylabel(label)
-    bottom.set_ylabel(f"measured\n- model {label[label.index('[') :]}")
-    bottom.set_xlabel(axis)
-    top.legend(fontsize="small", frameon=False)
-
-
-def _axis(measurement, name):
-    """What is written at an axis, and how numbers are shown there: lengths as they were given."""
-    length = measurement.tube.length
-    if name == "deformed_length" and measurement.length_as == "contraction":
-        return "contraction [%]", lambda array: 100.0 * (1.0 - array / length)
-    unit, scale = SHOWN["Pa" if name == "pressure" else COLUMNS[name]]
-    if name == "deformed_length" and measurement.length_as == "stroke":
-        return f"stroke [{unit}]", lambda array: (length - array) * scale
-    return f"{name.replace('_', ' ')} [{unit}]", lambda array: array * scale
-
-
-def _label(found, k, swept, rows):
-    """What a curve is told from others by: of what was found, not of the first guess."""
-    if swept == "pressure":
-        return f"alpha {found.tubes[k].design()['alpha']:.3g} deg"
-    return f"{np.mean(found.measurements[k].pressure[rows]) * 1e-3:.4g} kPa"
 
 
 def page(found, shown=USUAL) -> str:
     """The page as HTML."""
-    image = base64.b64encode(picture(found)).decode()
+    image = base64.b64encode(png(found, shown)).decode()
     verdict, *others = found.notes
     verdict = f"{verdict[0].upper()}{verdict[1:]}."
     parts = [

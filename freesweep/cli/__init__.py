@@ -47,7 +47,8 @@ def main(arguments=None) -> int:
     except OSError as error:
         from ..atlas.files import is_of_environment
 
-        _say(f"freesweep: {error}")
+        named = error.filename is not None and error.strerror  # without the number and quotes of the system
+        _say(f"freesweep: {error.filename}: {error.strerror}" if named else f"freesweep: {error}")
         return ENVIRONMENT if is_of_environment(error) else BAD_INPUT
     except RuntimeError as error:
         if not str(error).startswith("NetCDF: "):  # of a number that is read when it is used

@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 
 
 def _plain(value):
@@ -18,6 +19,11 @@ def _plain(value):
 def text(content) -> str:
     """Indented JSON."""
     return json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
+
+
+def tell_kept(path, is_json) -> None:
+    """Prints where something was kept; beside JSON, which programs read to its end, on standard error."""
+    print(path, file=sys.stderr if is_json else sys.stdout)
 
 
 def of_states(dataset) -> str:
@@ -56,7 +62,9 @@ def of_candidates(found) -> str:
         "python": found["python"].values.tolist()
     }
     rows = [dict(zip(named, values)) for values in zip(*named.values())]
-    return text({"summary": found.attrs["summary"], "candidates": rows})
+    return text(
+        {name: found.attrs[name] for name in ("summary", "prices") if found.attrs.get(name)} | {"candidates": rows}
+    )
 
 
 def of_calibration(found) -> str:
@@ -80,15 +88,19 @@ def of_calibration(found) -> str:
     return text({"parameters": parameters, "measured": measured, **about, "material": repr(found.material)})
 
 
-def of_comparisons(path, comparisons) -> str:
-    """Largest differences of an atlas from the second method, beside the stored bounds."""
-    rows = {
-        one.name: {
+def of_comparisons(path, comparisons, faults=()) -> str:
+    """What is wrong with an atlas, and its largest differences from the second method, beside the stored bounds."""
+    from ..atlas.schema import VARIABLES
+
+    rows = {}
+    for one in comparisons:
+        worst = int(one.difference.argmax()) if one.difference.size else None
+        rows[one.name] = {
             "judged": one.difference.size,
             "unjudged": one.unjudged,
-            "largest_difference": max(one.difference, default=None),
+            "largest_difference": None if worst is None else one.difference[worst],
+            "its_bound": None if worst is None else one.bound[worst],
             "broken": one.broken.sum(),
+            "units": VARIABLES[one.name].units,
         }
-        for one in comparisons
-    }
-    return text({"atlas": str(path), "whole": True, "resolved": rows})
+    return text({"atlas": str(path), "whole": not faults, "faults": list(faults), "resolved": rows})

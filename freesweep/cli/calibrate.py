@@ -1,6 +1,7 @@
 """The command `freesweep calibrate`: parses and calls."""
 
 from ..description.tube_model import FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
+from .shell import ends_in
 from .single import CONSTANTS, add_rubber, read_options, read_rubber
 
 NUMBERS = ("alpha", "beta", "length", "radius", "wall", "fiber_extension", "fiber_radius")  # of an actuator
@@ -56,8 +57,12 @@ def add_calibrate(commands):
     )
     for name, choices in (("model", MODELS), ("wall-model", WALL_MODELS), ("fibers", FIBERS)):
         command.add_argument(f"--{name}", choices=tuple(choices), help="of all actuators, as in freesweep inflate")
-    command.add_argument("-o", "--out", metavar="FILE.nc", help="keep parameters, covariance and curves as netCDF4")
-    command.add_argument("--report", metavar="FILE", help="a page to send around (.html), or its picture (.png)")
+    command.add_argument(
+        "-o", "--out", type=ends_in(".nc"), metavar="FILE.nc", help="keep parameters, covariance and curves as netCDF4"
+    )
+    command.add_argument(
+        "--report", metavar="FILE", help="a page to send around (.html), or its picture (.png, .svg, .pdf)"
+    )
     command.add_argument("--json", action="store_true", help="print what was found as JSON")
     command.set_defaults(run=_run)
 
@@ -70,13 +75,14 @@ def _run(options):
     from ..calibration.csv_file import units_of_files
     from ..calibration.fit import calibrate
     from ..calibration.report import shown_as, table, to_dataset
-    from .as_json import of_calibration
+    from ..plot.suffixes import SUFFIXES
+    from .as_json import of_calibration, tell_kept
     from .single import asked_in_units
 
     faults = []
     asked = {"fit": options.fit, "own_extension": options.own_extension}
-    if options.report and Path(options.report).suffix not in (".html", ".png"):
-        raise ValueError(f"--report: found {options.report!r}; give FILE.html or FILE.png")
+    if options.report and Path(options.report).suffix.lower() not in (".html", *SUFFIXES):
+        raise ValueError(f"--report: found {options.report!r}; give FILE.html, or FILE{', FILE'.join(SUFFIXES)}")
     if any(str(name).endswith(".toml") for name in options.files):
         if len(options.files) > 1:
             raise ValueError("a calibration as TOML names its data; give it alone")
@@ -89,13 +95,18 @@ def _run(options):
     print(of_calibration(found) if options.json else table(found, shown))
     if options.out:
         write_whole(options.out, to_dataset(found).to_netcdf(engine="netcdf4"))
-        print(options.out)
+        tell_kept(options.out, options.json)
     if options.report:
-        from ..calibration.page import page, picture
+        if options.report.lower().endswith(".html"):
+            from ..calibration.page import page
 
-        content = page(found, shown).encode() if options.report.endswith(".html") else picture(found)
-        write_whole(options.report, content)
-        print(options.report)
+            write_whole(options.report, page(found, shown).encode())
+        else:
+            from ..calibration.picture import picture
+            from ..plot.style import save
+
+            save(picture(found, shown), options.report)
+        tell_kept(options.report, options.json)
 
 
 def _measurements(options, asked, faults):

@@ -23,16 +23,18 @@ def _run(options):
     from ..inverse import wish_file
     from ..inverse.designing import find
     from ..inverse.report import csv, lines, table
+    from ..plot.suffixes import SUFFIXES
     from ..report import shown_in
+    from .as_json import of_candidates, tell_kept
 
     if options.out and Path(options.out).suffix not in (".csv", ".nc"):
         raise ValueError(f"--out: found {options.out!r}; candidates are kept as .csv or .nc")
+    if options.picture and Path(options.picture).suffix.lower() not in SUFFIXES:
+        raise ValueError(f"--picture: found {options.picture!r}; the suffix must be one of {', '.join(SUFFIXES)}")
     asked = wish_file.read(options.wishes)
     shown_as = shown_in(wish_file.units_asked(options.wishes))
     found, tubes = find(**asked, shown=shown_as)
     if options.json:
-        from .as_json import of_candidates
-
         print(of_candidates(found))
     else:
         print(table(found, shown_as))
@@ -43,11 +45,11 @@ def _run(options):
     if options.out:
         content = csv(found).encode() if options.out.endswith(".csv") else found.to_netcdf(engine="netcdf4")
         write_whole(options.out, content)
-        print(options.out)
+        tell_kept(options.out, options.json)
     if options.picture:
         from ..inverse.shown import shown
         from ..plot.candidates import draw
         from ..plot.style import save
 
         save(draw(found, *shown(found, tubes, asked["goals"], asked["limits"])), options.picture)
-        print(options.picture)
+        tell_kept(options.picture, options.json)

@@ -125,7 +125,7 @@ def _run_validity(options):
 def _curve(kinds):
     command = kinds.add_parser("curve", help="a variable along one axis, with its error bound as a band")
     command.add_argument("data", help="an atlas, or what inflate and block keep with --out")
-    command.add_argument("--variable", default="deformed_length", help="what to draw (default: deformed_length)")
+    command.add_argument("--variable", help="what to draw (default: deformed_length, or what holds it)")
     command.add_argument("--along", default="pressure", metavar="AXIS", help="the axis of the plot (default: pressure)")
     command.add_argument("--each", metavar="AXIS", help="one line for each value of this axis")
     _at(command)
@@ -137,9 +137,12 @@ def _run_curve(options):
     from ..plot.curve import curve
     from ..plot.style import save
 
-    out = _target(options, _named(options.data, options.variable))
+    _target(options, "curve.png")
     with read(options.data) as data:
-        picture = curve(data, options.variable, options.along, options.each, **selection(options.at))
+        usual = ("deformed_length", "force", "torque")  # of what is held the length is given
+        variable = options.variable or next((name for name in usual if name in data.data_vars), usual[0])
+        out = _target(options, _named(options.data, variable))
+        picture = curve(data, variable, options.along, options.each, **selection(options.at))
         save(picture, out, **fineness(options))
     print(out)
 

@@ -30,7 +30,7 @@ EXAMPLES = {
     "freesweep info": ("freesweep info quick.nc", "freesweep info quick.nc --specification > quick.toml"),
     "freesweep query": (
         f'freesweep query quick.nc {HERE} --pressure "15 psi" --refine',
-        "freesweep query quick.nc --points designs.csv --format csv -o answers.csv",
+        "freesweep query quick.nc --points designs.csv -o answers.csv",
     ),
     "freesweep export": (
         'freesweep export quick.nc -o slice.csv --variable rotation --at "length=100 mm" "radius=4.76 mm" beta=-40',

@@ -65,7 +65,7 @@ def _chosen(items):
                         raise ValueError(f"found {text!r}; give START:STOP:COUNT, from 2 to {MOST:,} values")
                     chosen[name] = np.linspace(*ends, int(rest[1]))
                 else:
-                    chosen[name] = ends[0]
+                    chosen[name] = start  # with its unit, in which faults are told
             except ValueError as error:
                 faults.append(f"{name}: {error}")
     if faults:

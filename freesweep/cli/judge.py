@@ -47,6 +47,10 @@ def _run_verify(options):
     if options.resolve is not None and options.resolve < 1:
         raise ValueError(f"--resolve: found {options.resolve}; give 1 or more")
     if found := faults(options.atlas):
+        if options.json:
+            from .as_json import of_comparisons
+
+            print(of_comparisons(options.atlas, [], found))
         raise AtlasError(f"{options.atlas} fails:\n" + "\n".join(f"  - {fault}" for fault in found))
     if options.json:
         from .as_json import of_comparisons

@@ -23,7 +23,7 @@ def add_query(commands):
     command.add_argument("--variable", nargs="+", action="extend", metavar="NAME", help="which (default: all)")
     command.add_argument("--method", default="cubic", choices=("cubic", "linear"), help="default: cubic")
     command.add_argument("--refine", action="store_true", help="solve exactly what the atlas cannot answer")
-    command.add_argument("--format", choices=FORMATS, default="table", help="default: table")
+    command.add_argument("--format", choices=FORMATS, help="default: by the suffix of FILE, else table")
     command.add_argument("--json", action="store_const", const="json", dest="format", help="the same as --format json")
     command.add_argument("-o", "--out", metavar="FILE", help="write there instead of to the screen")
     command.set_defaults(run=_run)
@@ -38,14 +38,17 @@ def _example(name):
 
 
 def _run(options):
+    from pathlib import Path
+
     from ..atlas.files import write_whole
     from ..atlas.store import open_atlas
 
+    form = options.format or {".csv": "csv", ".json": "json"}.get(Path(options.out or "").suffix.lower(), "table")
     with open_atlas(options.atlas) as atlas:
         axes, units = _axes(options)
         found = atlas.query(options.variable, options.method, options.refine, **axes)
-    found = in_units(found, units) if options.format == "table" else found
-    text = {"table": _table, "csv": _csv, "json": _json}[options.format](found)
+    found = in_units(found, units) if form == "table" else found
+    text = {"table": _table, "csv": as_csv, "json": _json}[form](found)
     if note := found.attrs.get("thin_wall_note"):
         print(f"freesweep: note: {note}", file=sys.stderr)
     if options.out:
@@ -66,7 +69,8 @@ def _axes(options):
     for name in PARAMETERS:
         if (given := getattr(options, name)) is not None:
             try:
-                axes[name] = quantity(given, PARAMETERS[name].units)
+                quantity(given, PARAMETERS[name].units)
+                axes[name] = given  # with its unit, in which faults are told
                 units[name] = unit_of(given)
             except ValueError as error:
                 faults.append(f"--{name.replace('_', '-')}: {error}")
@@ -142,7 +146,8 @@ def _records(found):
     return points
 
 
-def _csv(found):
+def as_csv(found) -> str:
+    """One line for each point, in SI units and degrees, which its header names."""
     import csv
     import io
 

@@ -6,7 +6,9 @@ import sys
 
 from .examples import EXAMPLES
 
-FILES = ("atlas", "spec", "out", "data", "files", "points", "wishes", "picture", "map")  # arguments that name files
+FILES = (  # arguments that name files
+    "atlas", "spec", "out", "data", "files", "points", "wishes", "picture", "map", "report", "html",
+)  # fmt: skip
 SHELLS = ("bash", "zsh", "tcsh")
 
 
@@ -53,6 +55,17 @@ def _meant(word, known):
     return f"did you mean {near[0]}? " if near else ""
 
 
+def ends_in(*suffixes):
+    """A type of arguments: names of files that end in one of ``suffixes``, which say what is written."""
+
+    def name(text):
+        if not text.lower().endswith(suffixes):
+            raise argparse.ArgumentTypeError(f"found {text!r:.60}; the suffix must be one of {', '.join(suffixes)}")
+        return text
+
+    return name
+
+
 class Completion(argparse.Action):
     """Prints a script that completes commands, options and files: ``--print-completion bash``."""
 
@@ -62,15 +75,29 @@ class Completion(argparse.Action):
             import shtab
         except ImportError:
             parser.error("--print-completion needs shtab: pip install 'freesweep[completion]'")
-        _mark_files(parser, shtab.FILE)
+        _mark(parser, shtab.FILE, _words())
         print(shtab.complete(parser, shell=values))
         parser.exit()
 
 
-def _mark_files(parser, kind):
+def _words():
+    """What arguments may be beside their choices: by their names."""
+    from ..atlas.schema import PARAMETERS, VARIABLES
+    from ..description.material_library import materials
+    from ..example import specifications
+    from ..thesis.figures import FIGURES
+
+    axes = {name: [*PARAMETERS, "design"] for name in ("axes", "over", "along", "each")}
+    words = {"material": materials, "variable": VARIABLES, "example": specifications()}
+    return axes | words | {"figures": [*FIGURES, "table-1", "claims"]}
+
+
+def _mark(parser, kind, words):
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for own in action.choices.values():
-                _mark_files(own, kind)
+                _mark(own, kind, words)
         elif action.dest in FILES:
             action.complete = kind
+        elif action.dest in words:
+            action.choices = list(words[action.dest])

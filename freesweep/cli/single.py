@@ -3,6 +3,7 @@
 import sys
 
 from ..description.tube_model import DEFAULT, FIBER_PLACES, FIBERS, MODELS, WALL_MODELS
+from .shell import ends_in
 
 CONSTANTS = ("c10", "c01", "c20", "c30")
 ALONG = ("alpha", "beta", "radius", "wall")  # what may vary along the tube
@@ -84,7 +85,10 @@ def add_rubber(command, remark=""):
 
 def _keep(command):
     command.add_argument("--json", action="store_true", help="print the table as JSON")
-    command.add_argument("-o", "--out", metavar="FILE.nc", help="keep everything, profiles too, as netCDF4")
+    command.add_argument(
+        "-o", "--out", type=ends_in(".nc", ".csv"), metavar="FILE",
+        help="keep everything, profiles too, as netCDF4 (.nc), or a row for each state (.csv)",
+    )  # fmt: skip
 
 
 def tube_of(options):
@@ -193,10 +197,20 @@ def quantities(faults, **texts):
             try:
                 numbers.setdefault(name, []).append(quantity(text, unit))
             except ValueError as error:
-                faults.append(f"--{name}: {error}")
+                apart = f'; as one word: "{before} {text}"' if (before := _number_before(given, text)) else ""
+                faults.append(f"--{name}: {error}{apart}")
     if faults:
         raise ValueError("\n".join(["cannot read this load:", *(f"  - {fault}" for fault in faults)]))
     return numbers
+
+
+def _number_before(given, text):
+    """The number before a unit that stands alone among texts, "" where that is not what is wrong."""
+    from ..description.units import known_units
+
+    k = given.index(text)
+    alone = k > 0 and any(text in known_units(kind) for kind in ("Pa", "N", "N m", "m", "degree"))
+    return given[k - 1] if alone else ""
 
 
 def _run_inflate(options):
@@ -263,11 +277,15 @@ def asked_in_units(options):
 def _show(dataset, options):
     from ..atlas.files import write_whole
     from ..report import shown_in, table
-    from .as_json import of_states
+    from .as_json import of_states, tell_kept
+    from .query import as_csv
 
     print(of_states(dataset) if options.json else table(dataset, shown_in(asked_in_units(options))))
     if note := dataset.attrs.get("thin_wall_note"):
         print(f"freesweep: note: {note}", file=sys.stderr)
     if options.out:
-        write_whole(options.out, dataset.to_netcdf(engine="netcdf4"))
-        print(options.out)
+        if options.out.lower().endswith(".csv"):
+            write_whole(options.out, f"{as_csv(dataset.drop_dims('x'))}\n".encode())
+        else:
+            write_whole(options.out, dataset.to_netcdf(engine="netcdf4"))
+        tell_kept(options.out, options.json)

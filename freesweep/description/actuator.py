@@ -1,5 +1,7 @@
 """What a person describes: the actuator, checked, in SI units and degrees."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -112,7 +114,7 @@ class Actuator:
         warn_of(design_doubts(own, self.is_thick, thickness), stacklevel=3)
 
     @classmethod
-    def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> "Actuator":
+    def from_cord(cls, *, cord: Quantity, turns: Quantity, length: Quantity, **others: Any) -> Actuator:
         """The muscle of a cord of length ``cord`` [m] that winds ``turns`` times around ``length`` [m].
 
         Unrolled, the cord is the hypotenuse: ``cord^2 = length^2 + (2 pi R turns)^2``, with the angle

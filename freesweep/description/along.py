@@ -1,5 +1,7 @@
 """What a person gives along a tube, beyond pairs and callables: knots that are smooth or free, and two rules by words."""
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass
 from typing import Any

@@ -5,6 +5,8 @@ Silicones differ between batches, curing and test speeds: published constants of
 :func:`freesweep.calibrate` for your own.
 """
 
+from __future__ import annotations
+
 import difflib
 from collections.abc import Mapping
 from typing import Literal, TypeAlias, overload

@@ -8,6 +8,8 @@ import warnings
 
 import numpy as np
 
+from ..atlas.schema import PARAMETERS
+
 LARGEST = {"length": 20.0, "radius": 1.0}  # [m]: beyond any tube that is wound by hand or machine
 SMALLEST = {"length": 1e-4, "radius": 1e-5}  # [m]
 SLENDER = 2e4  # length over radius
@@ -20,6 +22,7 @@ PRESSURES = {"psi": 6894.757, "kPa": 1e3, "MPa": 1e6}  # [Pa] units that constan
 USUAL = 1e-3, 1e4  # of the largest pressure over c10 wall/radius, which is a tenth to a hundred
 LOAD = 1e4  # largest force over radius^2 c10, torque over radius^3 c10
 HELD = 10.0  # times the undeformed length, or a part of it: a length that is held
+LOOSEST = {"alpha": 45.0, "beta": 45.0}  # [degree] of a tolerance; of other parameters as much as they are
 HINT = 'plain numbers are in SI units and degrees, others need theirs, as in "4.76 mm" or "0.17 MPa"'
 
 
@@ -38,6 +41,19 @@ def load_doubts(design, loads, thickness=None) -> list:
     held = loads.get("deformed_length")
     given = {name: loads.get(name, 0.0) for name in ("pressure", "force", "torque")}
     return _of_load(**_arrays(design, thickness), **given, held=held)
+
+
+def tolerance_doubts(design, tolerances) -> list:
+    """Sentences on ``tolerances`` of a design, standard deviations by name [degree, m, Pa, 1], that are as large as what
+    they are of; none for most.
+    """
+    found = []
+    for name, tolerance in tolerances.items():
+        most = LOOSEST.get(name, abs(design.get(name, 0.0)))
+        if tolerance > most > 0.0:
+            size, limit = (f"{number:g} {PARAMETERS[name].units}".removesuffix(" 1") for number in (tolerance, most))
+            found.append(f"a tolerance of {size} of {name} is more than {limit}; {HINT}")
+    return found
 
 
 def _arrays(design, thickness):

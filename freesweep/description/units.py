@@ -128,6 +128,11 @@ def unit_of(text: str) -> str:
     return match[2].strip() if match else ""
 
 
+def known_units(units: str) -> dict[str, float]:
+    """The units of the kind that is kept in ``units``: name -> what a number in it is multiplied with."""
+    return {name: float(value) for name, (kept, value) in _KNOWN.items() if kept == units}
+
+
 def factor(unit: str, units: str) -> float:
     """What a number in a ``unit`` is multiplied with, to be in ``units``; no unit at all: 1. Raises ValueError as above."""
     return float(_factor(unit, units, unit))

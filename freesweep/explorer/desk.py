@@ -109,9 +109,9 @@ class Desk:
     def curve_nodes(self, count):
         """Values along the axis of the curves, densest where it begins if that is zero."""
         low, high = self.reader.frame.ranges[self.along]
-        return (
-            np.sqrt(np.linspace(low**2, high**2, count)) if low < 0.0 else np.linspace(low**0.5, high**0.5, count) ** 2
-        )
+        if low < 0.0:
+            return np.linspace(low, high, count)
+        return np.clip(np.linspace(low**0.5, high**0.5, count) ** 2, low, high)  # squares of roots may be rounded out
 
     def cloud(self, ask):
         """Designs spread evenly over all axes of design, under the loads that are asked for, and what they do."""

@@ -1,5 +1,7 @@
 """The explorer of an atlas from Python: in a notebook, or in the browser beside a script."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
 
 def explore(
     atlas: Atlas | PathName, html: PathName | None = None, port: int = 0, progress: bool = True
-) -> "Explorer | Path":
+) -> Explorer | Path:
     """Explore an atlas in the browser; a notebook shows it below the cell.
 
     Parameters

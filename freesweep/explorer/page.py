@@ -8,7 +8,10 @@ import numpy as np
 
 from .. import __version__, closed_form
 from ..atlas.schema import LOADS, PARAMETERS
+from ..description.along import RULES
+from ..description.units import known_units
 from ..plot import regions, style
+from ..report import THREADS
 from .desk import sentences
 from .measures import FLOORS, SYSTEMS, system_units
 
@@ -70,17 +73,21 @@ def facts(desk) -> dict:
         PARAMETERS[name].units for name in PARAMETERS
     }
     alpha = np.linspace(0.0, 90.0, 181)
+    word, sentence = THREADS[frame.model.fibers]
     return {
         "title": frame.title, "file": desk.atlas.path.name, "version": __version__,
         "axes": axes, "fixed": fixed, "designs": desk.labels, "along": desk.along, "design_axes": desk.design_axes,
         "loads": [name for name in desk.axes if name in LOADS],
         "units_of": {name: parameter.units for name, parameter in PARAMETERS.items()},
-        "model": {"energy": frame.energy, **frame.model._asdict()}, "uniform": frame.uniform_along_x,
-        "fiber_share": frame.fiber_share,
+        "model": {"energy": frame.energy, **frame.model._asdict()},
+        "fiber_share": frame.fiber_share, "in_numbers": frame.in_numbers, "families": list(frame.families),
+        "rules": {name: RULES[name] for name in frame.bodies.rules} if frame.bodies else {},
+        "by_design": {name: frame.values[name].tolist() for name in frame.by_design if desk.labels},
         "measures": [one._asdict() for one in desk.measures.values()],
+        "written": {unit: known_units(unit) for unit in sorted(kinds)},
         "systems": list(SYSTEMS), "units": {unit: system_units(unit) for unit in sorted(kinds)},
         "statuses": sentences(), "hatches": {str(kind): pattern for kind, pattern in HATCHES.items()},
-        "slack": ["taut", "alpha slack", "beta slack", "both slack"],
+        "slack": ["taut", *(f"{which} {word}" for which in ("alpha", "beta", "both"))], "slack_sentence": sentence,
         "floors": FLOORS,
         "colours": {
             "diverging": _shades(style.DIVERGING), "sequential": _shades(style.SEQUENTIAL), "series": style.SERIES[:5],

@@ -7,6 +7,7 @@ import sys
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
+from ..atlas.files import EnvironmentFault
 from .compiling import Compiling
 from .desk import Desk
 from .exact import shape, solved
@@ -26,7 +27,12 @@ class Explorer(ThreadingHTTPServer):
     def __init__(self, atlas, port=0):
         self.desk, self.token = Desk(atlas), secrets.token_urlsafe(18)
         self.page = page_of(self.desk, token=self.token).encode()
-        super().__init__((HOST, port), _Handler)
+        try:
+            super().__init__((HOST, port), _Handler)
+        except OSError as error:
+            raise EnvironmentFault(
+                f"port {port} of {HOST}: {error.strerror}; give another, or none: any free one"
+            ) from error
         self._thread, self._compiling = None, Compiling()
 
     @property

@@ -22,7 +22,7 @@ def chosen(atlas: Atlas, variables, derivatives, at: dict):
     An axis that ``at`` leaves out stands with its own nodes; numbers at nodes are the stored ones, between them those of a
     query. ``derivatives``: those of each variable by each axis, too. Raises :class:`QueryError`.
     """
-    at, faults = dict(at), []
+    given, at, faults = at, dict(at), []
     atlas = _of_design(atlas, at, faults)
     names = check_names(atlas._reader, variables)
     derivatives = read_switch("derivatives", derivatives, faults)
@@ -41,7 +41,7 @@ def chosen(atlas: Atlas, variables, derivatives, at: dict):
         faults.append(f"{rows:,} rows, at most {MOST_ROWS:,} make a table; give fewer values of its axes")
     if faults:
         raise QueryError(faults)
-    found = _answers(atlas, names, values)
+    found = _answers(atlas, names, values, {name: value for name, value in given.items() if isinstance(value, str)})
     axes = [name for name, value in values.items() if np.ndim(value) and name in found.dims]
     if derivatives:
         found = found.assign(_slopes(atlas, names, values, axes))
@@ -91,12 +91,12 @@ def _numbers(name, value, faults):
     return array
 
 
-def _answers(atlas, names, values):
-    """What is stored where all coordinates are nodes, else what a query answers."""
+def _answers(atlas, names, values, texts):
+    """What is stored where all coordinates are nodes, else what a query answers; ``texts``: values with their units."""
     import xarray as xr
 
     axes = {name: xr.DataArray(value, dims=name) if np.ndim(value) else float(value) for name, value in values.items()}
-    found = atlas.query(names, **axes).load()
+    found = atlas.query(names, **axes | texts).load()
     stored = atlas.data
     places = {}
     for name, value in values.items():

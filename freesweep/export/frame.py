@@ -1,5 +1,7 @@
 """Results as a table of pandas: a row for each state, whatever the stations along the tube."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 from ..description.faults import ActuatorError
@@ -10,7 +12,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def to_dataframe(results: "xr.Dataset") -> "pd.DataFrame":
+def to_dataframe(results: xr.Dataset) -> pd.DataFrame:
     """The scalar outputs of a Dataset, or of an atlas' ``data``, as a pandas DataFrame with a row for each state.
 
     Profiles along ``x`` are left out (``results.to_dataframe()`` of xarray repeats each state for every station), a single

@@ -1,10 +1,14 @@
 """Writes a slice of an atlas in one of the formats, whole or not at all."""
 
 import re
+import warnings
 from pathlib import Path
+
+import numpy as np
 
 from ..atlas.files import write_whole
 from ..description.options import read_choice, read_path
+from ..status import NOT_INTERPOLABLE, OUTSIDE, STATUSES
 from .arrays import as_mat, as_npz
 from .c_header import as_c
 from .chosen import chosen
@@ -40,6 +44,18 @@ def export(atlas, path, to=None, variables=None, derivatives=False, at=None) -> 
         raise ExportError(faults)
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     name = name if re.match("[A-Za-z]", name) else f"table_{name}"
-    content = FORMATS[to][0](grid_of(chosen(atlas, variables, derivatives, at or {})), name)
+    grid = grid_of(chosen(atlas, variables, derivatives, at or {}))
+    content = FORMATS[to][0](grid, name)
+    _warn_of_holes(grid)
     write_whole(path, content)
     return path
+
+
+def _warn_of_holes(grid):
+    """What was asked for and is not in the table, as the atlas does not reach there, or is not exact enough."""
+    for name in grid.statuses:
+        status = grid.columns[name]
+        holes = {STATUSES[why].meaning: int(np.sum(status == why)) for why in (OUTSIDE, NOT_INTERPOLABLE)}
+        if any(holes.values()):
+            told = ", ".join(f"{count:,} {word}" for word, count in holes.items() if count)
+            warnings.warn(f"{name}: rows without a number, of {status.size:,}: {told}", stacklevel=4)

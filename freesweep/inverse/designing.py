@@ -1,5 +1,7 @@
 """Inverse design: the tubes that do what is wished for."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +13,7 @@ from ..description.faults import ActuatorError
 from ..description.given import described
 from ..description.options import read_count
 from ..description.quantities import Names
-from ..description.unit_warnings import warn_of
+from ..description.unit_warnings import tolerance_doubts, warn_of
 from ..report import SHOWN
 from . import freedom, wishes
 from .candidates import Found, gather
@@ -43,7 +45,7 @@ def design(
     atlas: Atlas | None = None,
     seed: int = 0,
     tolerances: Mapping[str, Any] | None = None,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Tubes that do what is wished for, the best ones first.
 
     Parameters
@@ -100,7 +102,8 @@ def find(
             )
     if faults:
         raise ActuatorError(faults)
-    warn_of(doubts_of(space, [*asked, *kept]), stacklevel=3)
+    doubts = [*doubts_of(space, [*asked, *kept]), *tolerance_doubts(template.design(), allowed)]
+    warn_of(doubts, stacklevel=3)
     misfit = make(space, asked, kept)._replace(shown=shown)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
     made = _searched(first, objectives, count, seed, atlas, allowed)

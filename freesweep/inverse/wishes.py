@@ -4,6 +4,8 @@ A wish names an output and the state in which it counts: pressure, force and tor
 wish leaves out is free, if ``free`` names it, else 0; a held tube is held as it is undeformed.
 """
 
+from __future__ import annotations
+
 import math
 import os
 from dataclasses import dataclass
@@ -82,7 +84,7 @@ class _Asked:
     """
 
     output: str
-    value: "Quantities | os.PathLike[str] | None" = None
+    value: Quantities | os.PathLike[str] | None = None
     at_least: Quantities | None = None
     at_most: Quantities | None = None
     between: tuple[Quantities, Quantities] | None = None
@@ -98,6 +100,11 @@ class _Asked:
         self.wishes(faults, type(self).__name__)
         if faults:
             raise ActuatorError(faults)
+
+    def __repr__(self):
+        """What was given."""
+        given = ", ".join(f"{name}={value!r}" for name, value in vars(self).items() if value is not None)
+        return f"{type(self).__name__}({given})"
 
     def wishes(self, faults, where="") -> list:
         """The single wishes; faults are noted."""
@@ -152,7 +159,8 @@ class _Asked:
                 return np.zeros(1), np.zeros(1)
             ends = pair
         elif ways == ["value"]:
-            ends = value, value
+            column = _column(f"{where}: {self.output}", value, unit, faults)
+            return (np.zeros(1),) * 2 if column is None else (column, column)
         else:
             ends = self.at_least, self.at_most
         none = (np.full(1, -np.inf), np.full(1, np.inf))

@@ -23,7 +23,7 @@ def draw(found, curves, shapes) -> Figure:
     (:mod:`freesweep.inverse.shown`).
     """
     with style.context():
-        figure = Figure(figsize=(SIZE[0] / style.INCH, SIZE[1] / style.INCH), layout="constrained")
+        figure = style.new_figure(*SIZE)
         names = [f"curve {k}" for k in range(len(curves))]
         axes = figure.subplot_mosaic([["angles", *names], ["shapes"] * (1 + len(names))], height_ratios=(3, 2))
         _draw_angles(axes["angles"], found)
@@ -52,22 +52,23 @@ def _threads(found, k):
 def _draw_angles(ax, found):
     """Both angles of each candidate as a point; over the tube, where they vary along it."""
     met = found["met"].values
+    words = {"fontsize": style.points(style.NORMAL), "loc": "left"}
     said = ["filled: meets all" if met.any() else "none meets all"]
     if (found["slack_fiber"].values > 0).any():
         said.append(f"square: threads {THREADS[found.attrs['fibers']][0]}")
-    ax.set_title("; ".join(said), fontsize=style.points(style.NORMAL))
     if "knot" in found.dims:
         for k in range(min(len(met), MOST)):
             for name, line in (("alpha", "-"), ("beta", "--")):
                 _draw_along(ax, found, name, k, linestyle=line)
-        ax.set(xlabel="place along the tube, x/l", ylabel="fiber angle [degree]")
-        ax.set_title("solid: alpha, dashed: beta", fontsize=style.points(style.NORMAL))
+        style.dress(ax, "place along the tube, x/l", "fiber angle [degree]")
+        ax.set_title("solid: alpha, dashed: beta", **words)
         return
     alpha, beta = found["alpha"].values, found["beta"].values
     for k, fine in enumerate(met):
         colour, mark = _colour(k), "s" if found["slack_fiber"].values[k] else "o"
         ax.plot(alpha[k], beta[k], mark, color=colour, markerfacecolor=colour if fine else style.PAPER, markersize=5)
-    ax.set(xlabel=axis_label("alpha"), ylabel=axis_label("beta"))
+    style.dress(ax, axis_label("alpha"), axis_label("beta"))
+    ax.set_title("; ".join(said), **words)
     for limit, angles in ((ax.set_xlim, alpha), (ax.set_ylim, beta)):
         margin = max(MARGIN, AROUND * np.ptp(angles))
         limit(angles.min() - margin, angles.max() + margin)
@@ -89,13 +90,14 @@ def _draw_curve(ax, curve):
         ax.plot(across * curve.at, up * values, color=_colour(k), linewidth=style.THICK)
     for at, low, high in curve.asked:
         ends = [end for end in (low, high) if np.isfinite(end)]  # of one alone: an arrow to where it shall be
-        mark = "D" if len(ends) == 2 else "^" if np.isfinite(low) else "v"
+        one = "^" if np.isfinite(low) else "v"
+        mark = one if len(ends) == 1 else "D" if low == high else "none"  # of a range no place is better than others
         ax.errorbar(across * at, up * np.mean(ends), yerr=0.5 * up * np.ptp(ends), fmt=mark, color=style.INK,
-                    markersize=4 if mark == "D" else 6, markerfacecolor=style.PAPER,
-                    elinewidth=style.THIN, capsize=3 if mark == "D" else 0, zorder=5)  # fmt: skip
+                    markersize=4 if mark == "D" else 6, markerfacecolor=style.PAPER, ecolor=style.INK,
+                    elinewidth=style.THIN, capsize=0 if mark == one else 3, zorder=5)  # fmt: skip
     unit = "degree" if unit == "deg" else unit  # as at the other axes
     label = f"{curve.output.replace('_', ' ')} [{unit}]".removesuffix(" [1]")
-    ax.set(xlabel=axis_label(curve.along), ylabel=label)
+    style.dress(ax, axis_label(curve.along), label)
 
 
 def _draw_shapes(ax, shapes, found):
@@ -114,7 +116,7 @@ def _draw_shapes(ax, shapes, found):
         said = f"{k}: {shape.rotation:.0f}\u00b0".replace(": -0\u00b0", ": 0\u00b0")
         rubber = str(found["material"].values[k]) if "material" in found else ""
         said = ", ".join(filter(None, (said, rubber, _threads(found, k))))
-        ax.annotate(said, (end, -step), (6, -3), textcoords="offset points", color=_colour(k))
+        ax.annotate(said, (end, -step), (6, -3), textcoords="offset points", color=style.legible(_colour(k)))
         step += half
     held = HELD[shapes[0].held] if shapes else ""
     state = f"; colour: {held} at {shapes[0].pressure / 1e3:g} kPa" if shapes else ""

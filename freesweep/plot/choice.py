@@ -84,7 +84,7 @@ def dimensions(dataset) -> list:
 def choose(dataset, select: dict, across) -> tuple[dict, dict]:
     """Parameters of the point (stored units), and the index along each dimension that is not in ``across``.
 
-    ``select`` maps a name to a number, the nearest node being taken with a warning, or ``design`` to its name. What is not
+    ``select`` maps a name to a number, the nearest node being taken (``missed``), or ``design`` to its name. What is not
     selected: the largest pressure; the force, torque and held rotation nearest zero; the first design; the middle of
     anything else.
     Raises ValueError for names that are unknown and values that are no numbers.
@@ -104,11 +104,15 @@ def choose(dataset, select: dict, across) -> tuple[dict, dict]:
             point[name] = str(coordinate.values) if name == DESIGN else float(coordinate)
             if name in select and name != DESIGN and abs(point[name] - select[name]) > SAME * abs(select[name]):
                 point.missed[name] = float(select[name])
+    return point, index
+
+
+def warn_missed(point: Point) -> None:
+    """A warning, at the call of the public function that calls this, where others than the values asked for are shown."""
     if point.missed:
         near = (f"{describe(name, point[name])} for {describe(name, asked)}" for name, asked in point.missed.items())
         text = f"drawn at the nearest values that the file holds: {', '.join(near)}"
-        warnings.warn(text.replace("\u00a0", " "), stacklevel=4)
-    return point, index
+        warnings.warn(text.replace("\u00a0", " "), stacklevel=3)
 
 
 def _node(dataset, name, select):

@@ -1,5 +1,7 @@
 """Curves: a variable of a dataset along one of its dimensions, with its error bound as a band and its flags."""
 
+from __future__ import annotations
+
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -11,10 +13,10 @@ from matplotlib.ticker import MaxNLocator
 
 from ..atlas import schema
 from ..description.quantities import Quantity
-from ..status import VALUED
+from ..status import STATUSES, VALUED
 from . import style
 from .between import between
-from .choice import DESIGN, check_name, choose, dimensions, read_selection
+from .choice import DESIGN, check_name, choose, dimensions, read_selection, warn_missed
 from .display import absolute, axis_label, shown_units
 from .plane import status_of
 
@@ -110,7 +112,7 @@ def spread(places, step):
 
 
 def curve(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "deformed_length",
     along: str = "pressure",
     each: str | None = None,
@@ -124,7 +126,7 @@ def curve(
     interpolated, of
     another dataset the nearest node is taken, and a warning says so. Not given: the largest
     pressure, force and torque nearest zero, the middle of anything else. The error bound is a band, thin lines mark states
-    that need a fiber family to push, open circles unstable ones; lines end where there is no result.
+    that need a fiber family to push, open circles unstable ones; lines end where there is no result, and it is said why.
 
     Raises ValueError for unknown names, and where ``along`` or ``each`` is no dimension of the variable.
     """
@@ -132,11 +134,16 @@ def curve(
     known = [name for name in (*schema.VARIABLES, "force", "torque") if name in dataset.data_vars]
     check_name(variable, known, "variable")
     dims = [name for name in dimensions(dataset) if name in dataset[variable].dims]
+    if not dims:
+        raise ValueError(
+            f"{variable} is of a single state here; a curve needs several, as of inflate at several pressures"
+        )
     check_name(along, [name for name in dims if name != DESIGN], f"numeric dimension of {variable}")
     if each is not None:
         check_name(each, [name for name in dims if name != along], f"further dimension of {variable}")
     dataset = between(dataset, variable, select, (along, each))
     point, index = choose(dataset, select, (along, each))
+    warn_missed(point)
     plane = dataset.isel(index)
     nodes = [None] if each is None else _nodes(dataset.sizes[each])
     shown = absolute(variable)
@@ -148,13 +155,19 @@ def curve(
             for node, colour in zip(nodes, colours)
         ]
         _name_axes(ax, along, shown)
+        if not any(
+            np.isfinite(line.get_ydata()).any() for line in drawn
+        ):  # axes without a line have no range of their own
+            ax.set(xlim=np.sort(shown_units(along)[1] * plane[along].values)[[0, -1]], yticks=[])
         if each is not None:
             label_ends(ax, drawn, _texts(plane[each].values[nodes], each))
             units = "" if each == DESIGN else f" [{shown_units(each)[0]}]".replace(" [1]", "")
             ax.annotate(each.replace("_", " ") + units, (1.0, 1.0), xycoords="axes fraction", xytext=(4.0, 9.0),
                         textcoords="offset points", color=style.QUIET, gid="each")  # fmt: skip
         relevant = point.only(lambda name: name in dataset[variable].coords)
-        _name_choice(ax, relevant, [words for gid, words in MARKS.items() if _marked(ax, gid)])
+        shown_nodes = plane if each is None else plane.isel({each: nodes})
+        marks = [words for gid, words in MARKS.items() if _marked(ax, gid)]
+        _name_choice(ax, relevant, [*marks, *_reasons(shown_nodes, variable)])
     return ax
 
 
@@ -187,6 +200,16 @@ def _draw(ax, one, variable, along, shown, colour):
         slack=None if slack is None or held else valued & (slack > 0),
         unstable=None if stable is None else valued & (stable == 0), color=colour, gid=variable,
     )  # fmt: skip
+
+
+def _reasons(drawn, variable):
+    """Why lines end, or are not there, in words."""
+    if variable == "limit_pressure":
+        return ["no line: no limit up to the largest pressure"] if np.isnan(drawn[variable]).any() else []
+    name = status_of(variable)
+    codes = np.unique(drawn[name].values) if name in drawn else []
+    why = [STATUSES[code].meaning.replace("_", " ") for code in codes if code not in VALUED]
+    return [f"no result: {', '.join(why)}"] if why else []
 
 
 def _name_axes(ax, along, shown):

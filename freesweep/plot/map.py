@@ -1,5 +1,7 @@
 """The map of the design space: one variable of an atlas over the two fiber angles, in the manner of Figure 1-2."""
 
+from __future__ import annotations
+
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -12,7 +14,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from ..description.quantities import Quantity
 from . import glyph, regions, style
-from .choice import read_selection
+from .choice import read_selection, warn_missed
 from .display import display, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, plane
@@ -28,7 +30,7 @@ COARSE = 12.0  # [degree]: wider grids are drawn node by node, without contours 
 
 
 def design_map(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "rotation",
     ax: Axes | None = None,
     paths: bool = True,
@@ -53,6 +55,7 @@ def design_map(
     dataset without alpha and beta as dimensions.
     """
     sheet = plane(dataset, variable, select)
+    warn_missed(sheet.point)
     with style.context():
         ax = style.new_axes(*SIZE) if ax is None else ax
         values = shown_values(sheet, variable)

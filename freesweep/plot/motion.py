@@ -1,7 +1,10 @@
 """An actuator in motion: its shape along pressure as an animated GIF, over the outline it had without pressure."""
 
+from __future__ import annotations
+
 import io
 import os
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from ..atlas.files import write_whole
 from ..description.actuator import Actuator
-from ..status import VALUED
+from ..status import STATUSES, VALUED
 from . import style
 from .shape import draw_outline, draw_shape, project, shape_of
 from .tubes import DASHED, MARGIN
@@ -57,20 +60,18 @@ def frames(tube: Actuator, states):
             ax.set_xlabel("axial position [mm], radii to the same scale")
             ax.yaxis.set_visible(False)
             ax.spines[["left", "top", "right"]].set_visible(False)
-            ax.set_title(
-                _words(tube, states.isel(pressure=k), shape), loc="left", fontsize=style.points(style.NORMAL + 1.0)
-            )
+            ax.set_title(_words(states.isel(pressure=k), shape), loc="left", fontsize=style.points(style.NORMAL + 1.0))
         yield ax
 
 
-def _words(tube, state, shape):
-    turned = f"{np.degrees(shape.twist[-1]):.0f}°".replace("-", "\N{MINUS SIGN}")
-    slack = f"    dashed: {DASHED[tube.is_loose]}" if np.any(shape.slack) else ""
+def _words(state, shape):
+    turned = f"{np.round(np.degrees(shape.twist[-1])) + 0.0:.0f}°".replace("-", "\N{MINUS SIGN}")  # no -0
+    slack = f"    dashed: {DASHED[state.attrs.get('fibers', 'bonded')]}" if np.any(shape.slack) else ""
     return f"{float(state['pressure']) * 1e-3:.1f} kPa    {shape.position[-1]:.1f} mm long    turned by {turned}{slack}"
 
 
 def save_motion(
-    tube: Actuator, states: "xr.Dataset", path: str | os.PathLike[str], resolution: float = RESOLUTION
+    tube: Actuator, states: xr.Dataset, path: str | os.PathLike[str], resolution: float = RESOLUTION
 ) -> Path:
     """Writes the motion as a GIF that runs forth and back, with ``resolution`` in dots per inch, and returns its path.
 
@@ -89,8 +90,8 @@ def save_motion(
             ax.figure.set_dpi(resolution)
             canvas.draw()
         pictures.append(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy()))
-    # one palette for all, of the richest frame: colours do not flicker
-    palette = pictures[-1].quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    _warn_of_gaps(states["status"].values)
+    palette = _palette([pictures[0], pictures[len(pictures) // 2], pictures[-1]])
     flat = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     there_and_back = flat + flat[-2:0:-1]
     pauses = [REST if k in (0, len(flat) - 1) else PAUSE for k in range(len(there_and_back))]
@@ -98,3 +99,22 @@ def save_motion(
     there_and_back[0].save(content, "GIF", save_all=True, append_images=there_and_back[1:], duration=pauses, loop=0)
     write_whole(path, content.getvalue())
     return path
+
+
+def _warn_of_gaps(status):
+    """What is left out, and why, in one sentence."""
+    why = sorted({STATUSES[code].meaning for code in status.tolist() if code not in VALUED})
+    if why:
+        lost = int(np.sum(~np.isin(status, VALUED)))
+        warnings.warn(f"{lost} of {status.size} pressures have no frame: {', '.join(why)}", stacklevel=3)
+
+
+def _palette(pictures):
+    """One palette for all, lest colours flicker: it covers the farthest colours, thin lines and type among them."""
+    from PIL import Image
+
+    width, height = pictures[0].size
+    below = Image.new("RGB", (width, height * len(pictures)))
+    for k, picture in enumerate(pictures):
+        below.paste(picture, (0, k * height))
+    return below.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)

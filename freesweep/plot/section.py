@@ -1,5 +1,7 @@
 """Maps of an atlas over any two of its axes, alone or as small multiples along others, in one set of colours."""
 
+from __future__ import annotations
+
 import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -12,7 +14,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from .. import closed_form
 from ..description.quantities import Quantity
 from . import style
-from .choice import check_name, dimensions, read_selection
+from .choice import check_name, dimensions, read_selection, warn_missed
 from .display import axis_label, describe, display, shown_units, title
 from .fill import draw_bar, draw_failures, draw_values, shades, shown_values
 from .plane import ALPHA, BETA, Plane, section
@@ -30,7 +32,7 @@ LEGEND_COLUMN = 43.0  # [mm]
 
 
 def section_map(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "rotation",
     x: str = "alpha",
     y: str = "beta",
@@ -44,6 +46,7 @@ def section_map(
     Raises ValueError for unknown names, and axes that the variable does not have.
     """
     sheet = section(dataset, variable, x, y, select)
+    warn_missed(sheet.point)
     with style.context():
         ax = style.new_axes(*SIZE) if ax is None else ax
         values = shown_values(sheet, variable)
@@ -57,7 +60,7 @@ def section_map(
 
 
 def multiples(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     variable: str = "rotation",
     x: str = "alpha",
     y: str = "beta",
@@ -88,6 +91,7 @@ def multiples(
         ]
         for row in rows
     ]
+    warn_missed(sheets[0][0].point)
     with style.context():
         figure = style.new_figure(style.PAGE, PANEL * len(rows) + 34.0) if figure is None else figure
         axes = figure.subplots(len(rows), len(nodes[0]), sharex=True, sharey=True, squeeze=False)

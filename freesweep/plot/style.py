@@ -23,6 +23,7 @@ from .suffixes import SUFFIXES
 
 INCH = 25.4  # [mm]
 RESOLUTION = 300.0  # of PNG files [dots per inch]
+SCREEN = 100.0  # of figures in notebooks [dots per inch]
 COLUMN, PAGE = 85.0, 170.0  # widths in print [mm]
 
 INK = "#23272e"
@@ -97,10 +98,17 @@ def new_axes(width: float, height: float) -> Axes:
         return pyplot.figure(figsize=(width / INCH, height / INCH), layout="constrained").add_subplot()
 
 
+class _Shown(Figure):
+    """A figure that a notebook shows, whether pyplot was loaded or not."""
+
+    def _repr_png_(self):
+        return drawn(self, "figure.png", SCREEN)
+
+
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of ``width`` and ``height`` [mm] that no window shows."""
+    """An empty figure of ``width`` and ``height`` [mm] that no window shows, but a notebook does at the end of a cell."""
     with context():
-        return Figure(figsize=(width / INCH, height / INCH), layout="constrained")
+        return _Shown(figsize=(width / INCH, height / INCH), layout="constrained")
 
 
 def ramp(count: int) -> list[str]:

@@ -1,5 +1,7 @@
 """Several shapes of one actuator below each other, to one scale: undeformed on top, then deformed."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
 
 WIDTH = style.PAGE  # of a figure of its own [mm]
 MARGIN = 0.02  # beside a shape, over its length
-DASHED = {True: "slack threads", False: "fibers that would push"}  # whether they are loose
+DASHED = {"loose": "slack threads", "bonded": "fibers that would push"}
 
 
 class _Layout(NamedTuple):
@@ -49,7 +51,7 @@ def size_of(tube: Actuator, *states) -> tuple[float, float]:
     return WIDTH, -layout.bottom / layout.span * (WIDTH - 4.0) + 14.0
 
 
-def shape_plot(tube: Actuator, *states: "xr.Dataset", titles: Sequence[str] = (), ax: Axes | None = None) -> Axes:
+def shape_plot(tube: Actuator, *states: xr.Dataset, titles: Sequence[str] = (), ax: Axes | None = None) -> Axes:
     """The undeformed actuator on top, in blue, and below it each of ``states`` in red; returns the Axes.
 
     A state is a Dataset of one load, from ``lock``, ``inflate``, ``blocked_force`` or the like; ``titles`` names each.
@@ -60,9 +62,10 @@ def shape_plot(tube: Actuator, *states: "xr.Dataset", titles: Sequence[str] = ()
     layout = _layout(shapes)
     with style.context():
         ax = style.new_axes(*size_of(tube, *states)) if ax is None else ax
+        fibers = ["bonded", *(state.attrs.get("fibers", "bonded") for state in states)]  # of each its own
         for k, (shape, lift, name) in enumerate(zip(shapes, layout.lifts, names)):
             draw_shape(ax, shape, style.AFTER if k else style.BEFORE, lift)
-            slack = f", dashed: {DASHED[tube.is_loose]}" if np.any(shape.slack) else ""
+            slack = f", dashed: {DASHED[fibers[k]]}" if np.any(shape.slack) else ""
             _name(ax, shape, name, layout.left, lift + shape.radius.max() + 0.25 * layout.words, k, slack)
         _name_families(ax, tube, layout.right, layout.lifts[0] + shapes[0].radius.max() + 0.25 * layout.words)
         margin = MARGIN * (layout.right - layout.left)

@@ -1,5 +1,7 @@
 """Validity of an atlas: where it has results, which fibers would have to push there, what is unstable, what fails."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -13,7 +15,7 @@ from ..description.quantities import Quantity
 from ..status import VALUED
 from . import style
 from .between import between
-from .choice import check_name, read_selection
+from .choice import check_name, read_selection, warn_missed
 from .display import axis_label
 from .fill import draw_failures, edges
 from .plane import Plane, section
@@ -45,7 +47,7 @@ PANEL = 75.0  # height of a map [mm]
 
 
 def validity_map(
-    dataset: "xr.Dataset",
+    dataset: xr.Dataset,
     of: str = "equilibrium",
     x: str = "alpha",
     y: str = "beta",
@@ -62,6 +64,7 @@ def validity_map(
     select = read_selection(select)
     dataset = between(dataset, host, select, (x, y))  # its flags with it
     sheet = scaled(section(dataset, host, x, y, select))
+    warn_missed(sheet.point)
     kind = np.zeros(sheet.reason.shape) if slack is None else _slack(dataset, host, slack, x, y, select)
     solved = np.isin(sheet.reason, VALUED)
     with style.context():
@@ -87,7 +90,7 @@ def validity_map(
 
 
 def validity_maps(
-    datasets: "Sequence[xr.Dataset]",
+    datasets: Sequence[xr.Dataset],
     of: str = "equilibrium",
     x: str = "alpha",
     y: str = "beta",

@@ -176,7 +176,7 @@ class Inquiry:
         error = errors.stated(factors, estimate, bound, self.natural_size(name, value), beside, self.of(name).cell)
         if self.exact.any():
             at = self.node[self.exact]
-            value[self.exact], error[self.exact] = self.table.stored(name)[at], self.table.errors(name)[at]
+            value[self.exact], error[self.exact] = self.table.part.stored(name)[at], self.table.part.errors(name)[at]
         if name in MIRRORED:
             value = np.where(self.marks[:, 6] == 1, -value, value) + 0.0
         return value, error
@@ -228,7 +228,7 @@ class Inquiry:
             slack, exchanged = self.marks[:, 2], self.marks[:, 5] == 1
             look = (slack == MIXED) & self.valued
             slack = np.where(slack == MIXED, 0, slack >> 4)
-            slack[self.exact] = table.stored("slack_fiber")[self.node[self.exact]]
+            slack[self.exact] = table.part.stored("slack_fiber")[self.node[self.exact]]
             if look.any():
                 places = np.flatnonzero(look)
                 effects, nothing = self.effects("mid_radius", self.orders(), places)[places], np.zeros(len(places))

@@ -7,7 +7,7 @@ import numpy as np
 from .axis import LABEL
 from .ideal import IMAGES
 from .locate import NEAR
-from .table import TURNED
+from .placing import TURNED
 
 MARGIN = 8  # nodes around a piece: its window, the pieces beside it, and what fills their holes
 SMALL = 1 << 19  # nodes of a grid that is always read whole

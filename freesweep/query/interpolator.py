@@ -53,6 +53,9 @@ class Interpolator:
             name: array for name, array in reader.frame.values.items() if name not in self.axes and len(array) == 1
         }
 
+    def __repr__(self):
+        return f"<Interpolator of {', '.join(self.names)} over {', '.join(self.axes)}>"
+
     def __reduce__(self):
         return operator.methodcaller("interpolator", self.names[0] if self.single else self.names), (self.atlas,)
 

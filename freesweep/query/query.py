@@ -12,6 +12,7 @@ from ..atlas.schema import PARAMETERS, attributes
 from ..description.given import described
 from ..description.options import read_choice, read_switch
 from ..description.tube_model import fiber_surface
+from ..report import quantity
 from ..status import NOT_INTERPOLABLE, OUTSIDE, status_attributes
 from ..thick_wall import DESIGN, NOTES, attributes_of
 from . import calibration
@@ -229,7 +230,8 @@ def curve(reader, along, values, rest):
     if values is None:
         low, high = reader.frame.ranges[along]
         if not low < high:
-            raise QueryError([f"{along}: the atlas holds only {low:g}; a curve needs an axis of several values"])
+            only = quantity(low, PARAMETERS[along].units)
+            raise QueryError([f"{along}: the atlas holds only {only}; a curve needs an axis of several values"])
         root = along == "pressure" and low >= 0.0
         values = np.linspace(np.sqrt(low), np.sqrt(high), CURVE) ** 2 if root else np.linspace(low, high, CURVE)
         values[-1] = high
@@ -258,25 +260,26 @@ def _coordinates(reader, question, axes):
 
 def _refuse_single(reader, question, found):
     """A single number beyond the grid is an error that names the nearest bound: the whole answer would be empty."""
-    faults, angles = [], {"alpha", "beta"}
-    for name in sorted(question.single - {"design"}):
-        value, unit = question.coordinates[name][1].item(), PARAMETERS[name].units
-        low, high = reader.frame.ranges[name]
+    faults, angles, ranges = [], ("alpha", "beta"), reader.frame.ranges
+    given = {name: question.coordinates[name][1].item() for name in sorted(question.single - {"design"})}
+    for name, value in given.items():
+        low, high = ranges[name]
         slack = NEAR * max(abs(low), abs(high))
         if not np.isfinite(value):
-            faults.append(f"{name}: found {value}; give a finite number in [{unit}]")
+            faults.append(f"{name}: found {value}; give a finite number in [{PARAMETERS[name].units}]")
         elif name not in angles and not low - slack <= value <= high + slack:
-            span = f"only {low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
-            nearest = low if value < low else high
-            faults.append(f"{name}: found {value:.6g}; the atlas holds {span} [{unit}], the nearest is {nearest:.6g}")
+            asked, first, last = (question.shown(name, one) for one in (value, low, high))
+            nearest = first if value < low else last
+            span = f"only {first}" if low == high else f"{first} to {last}, the nearest is {nearest}"
+            faults.append(f"{name}: found {asked}; the atlas holds {span}")
     statuses = [array for name, array in found.items() if name.endswith("status")]
-    alone = question.single == set(question.values) and angles <= question.single
+    alone = question.single == set(question.values) and {*angles} <= given.keys()
     if alone and not faults and any(array[0] == OUTSIDE for array in statuses):
-        held = "; ".join("{} {:g} to {:g}".format(name, *reader.frame.ranges[name]) for name in sorted(angles))
-        at = ", ".join(f"{question.coordinates[name][1].item():g}" for name in sorted(angles))
+        at = ", ".join(question.shown(name, given[name]) for name in angles)
+        held = "; ".join(f"{name} {' to '.join(question.shown(name, end) for end in ranges[name])}" for name in angles)
         faults.append(
-            f"alpha, beta: found {at}; the atlas holds {held} [degree], and neither the exchange of the fiber families nor"
-            " the mirror brings the point there"
+            f"alpha, beta: found {at}; the atlas holds {held}, and neither the exchange of the fiber families nor the"
+            " mirror brings the point there"
         )
     if faults:
         raise QueryError(faults)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..atlas.schema import PARAMETERS
 from ..description.given import numbers
-from ..report import quantity
+from ..report import quantity, shown_in
 from .faults import QueryError, unknown
 
 MAX_POINTS = 100_000_000  # of one question: 16 GB of answers for ten variables
@@ -16,7 +16,7 @@ MAX_POINTS = 100_000_000  # of one question: 16 GB of answers for ten variables
 @dataclass(frozen=True)
 class Question:
     """``values``: axis -> (n,) numbers; ``single``: the axes given as one number; ``dims``, ``shape`` and ``coordinates``
-    (name -> (dims, array)) are those of the answer.
+    (name -> (dims, array)) are those of the answer; ``texts``: what was given as text, with its unit.
     """
 
     values: dict
@@ -24,11 +24,17 @@ class Question:
     dims: tuple
     shape: tuple
     coordinates: dict
+    texts: dict
 
     @property
     def size(self) -> int:
         """Number of points."""
         return math.prod(self.shape)
+
+    def shown(self, name, value) -> str:
+        """A number of an axis in the unit in which it was asked, or in an everyday one."""
+        units = PARAMETERS[name].units
+        return quantity(value, units, shown_in([(self.texts.get(name, ""), units)]))
 
 
 def read_question(given: dict, frame, needed) -> Question:
@@ -59,7 +65,8 @@ def read_question(given: dict, frame, needed) -> Question:
             arrays[name] = array
     if faults:
         raise QueryError(faults)
-    return _broadcast(arrays, {*frame.values, *frame.dims, "x"})
+    texts = {name: value for name, value in given.items() if isinstance(value, str) and name != "design"}
+    return _broadcast(arrays, {*frame.values, *frame.dims, "x"}, texts)
 
 
 def _span(frame, name):
@@ -103,7 +110,7 @@ def _designs(faults, dims, value, frame):
     return dims, index
 
 
-def _broadcast(arrays, taken):
+def _broadcast(arrays, taken, texts):
     """NumPy's rules among plain arrays, xarray's (by name) among DataArrays, plain arrays with a dimension of their own."""
     plain = {name: array for name, (dims, array) in arrays.items() if dims is None and array.ndim > 0}
     try:
@@ -143,4 +150,4 @@ def _broadcast(arrays, taken):
         side = [sizes[dim] if dim in mine else 1 for dim in order]
         values[name] = np.ascontiguousarray(np.broadcast_to(turned.reshape(side), tuple(sizes.values()))).ravel()
     single = frozenset(name for name, (_, array) in arrays.items() if array.ndim == 0)
-    return Question(values, single, order, tuple(sizes.values()), coordinates)
+    return Question(values, single, order, tuple(sizes.values()), coordinates, texts)

@@ -7,30 +7,25 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..atlas.schema import VARIABLES
 from ..description.families import A_POINT
 from ..status import INACCURATE, OK
 from . import reference
-from .axis import LABEL, WINDOW, bent, make_axis, part_of
+from .axis import LABEL, make_axis, part_of
 from .calibration import ranks
 from .cells import Cells
 from .family import SLACK_FLAGS, TOLD_FROM, family_of
-from .fixed import Fixed
 from .grid import GridPoints, GridStates, Stored
-from .grid_axes import DEFAULTS
-from .locate import CLOSEST, Columns, Nodes
+from .locate import Nodes
 from .missing_nodes import cell_codes, fill, weights_beyond
+from .part import Part
+from .placing import HELD_NAMES, packed, placing, whole_axes
 from .predictor import Predictor
 from .reference import COLUMNS
 from .similar import similar_names
 from .slopes import tabulate
-from .spline import FIRST, KNOT, LEFT, NODE, PLACE, RANK, RIGHT, WIDTH
+from .spline import NODE, PLACE
 
-HELD_NAMES = {"held_length": reference.LENGTH_HELD, "held_length_ratio": reference.LENGTH_HELD}
-HELD_NAMES |= {"held_rotation": reference.ROTATION_HELD}
 TOGETHER, MUCH = 2, 5_000_000  # variables at a time, in atlases of up to so many nodes: their tables need memory
-STRAIGHT = ("alpha", "beta")  # axes that have a family of straight fibers where they are 0
-TURNED = ("torque", "held_rotation")  # turn round with both angles
 
 
 class Interpolant(NamedTuple):
@@ -49,13 +44,13 @@ class Table:
     """
 
     def __init__(self, data, frame, key, box=None):
-        self.data, self.frame = data, frame
+        self.frame = frame
         self.family = family_of(key, frame.bodies is not None)
         self.predictor = Predictor(frame.model, frame.energy, frame.bodies, frame.families)
         self.names = frame.axes_of(self.family.variables)
         self.similar = similar_names(frame, self.family)
         self.box = {name: (box or {}).get(name, (0, len(frame.values[name]))) for name in self.names}
-        whole = self._whole_axes()
+        whole = whole_axes(frame, self.names, self.family.kind)
         self.ranks = [ranks(len(axis.nodes))[slice(*self.box[axis.name])] for axis in whole]
         self.axes = [part_of(axis, *self.box[axis.name]) for axis in whole]
         self.padding = max(0, 2 - sum(axis.kind != LABEL for axis in self.axes))
@@ -64,64 +59,22 @@ class Table:
         self.shape = np.array([len(axis.nodes) for axis in self.axes], np.int64)
         self.strides = np.array([int(np.prod(self.shape[k + 1 :])) for k in range(len(self.shape))], np.int64)
         self.size = int(np.prod(self.shape))
+        self.part = Part(data, self.names, self.box, self.shape)
         self.labels = np.array([axis.kind == LABEL for axis in self.axes])
-        self.knots, self.windows, self.coordinates = self._packed()
-        self._place()
-        self._variables, self._spare, self._stored, self._errors, self._states, self._taut = {}, [], {}, {}, None, None
+        self.knots, self.windows, self.coordinates = packed(self.axes, self.ranks)
+        self.known, self.columns, self.fixed, self.nearest = placing(frame, self.family, self.names)
+        self._variables, self._spare, self._states, self._taut = {}, [], None, None
         self._making = {}  # locks of what one thread makes and others may ask for meanwhile
         self.has_flag = self.family.flag in frame.dims
         self.has_slack = key == "state" and "slack_fiber" in frame.dims
         self.tells_slack = reference.SLACK_ALPHA in self.family.variables.values()
-        slack = self._grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
+        slack = self.part.grid("slack_fiber").astype(np.uint8) << 4 if self.has_slack else np.zeros(self.size, np.uint8)
         self.is_kinked = self.has_slack and self.predictor.is_physical  # numbers have kinks where slack begins or ends
         # of held loose tubes there is no closed form, nor of where held ones are slack
         held = self.family.kind in HELD_NAMES.values()
         self.is_untold = held and (frame.model.is_loose or self.tells_slack)
         self.codes = np.stack([self._codes(), self._beyond_rest(slack) if self.is_kinked else slack])
         self.cells = np.stack([cell_codes(codes, self.shape, self.labels) for codes in self.codes])
-
-    def _whole_axes(self):
-        """The axes of the family. Of loose fibers a kink lies where one family is straight: on one side of it clamped ends
-        leave some slack. The two inner axes have one slope at each node, and are taken as they are.
-        """
-        whole = [self.frame.axis(name) for name in self.names]
-        outer = len(whole) - (2 if sum(axis.kind != LABEL for axis in whole) > 1 else 1)
-        if not self.frame.model.is_loose or self.family.kind not in (reference.LOADED, reference.LOCKED):
-            return whole
-        return [bent(axis, 0.0) if k < outer and axis.name in STRAIGHT else axis for k, axis in enumerate(whole)]
-
-    def _place(self):
-        """What :func:`.locate.place` has to know of the columns of a question."""
-        frame, kind = self.frame, self.family.kind
-        without = VARIABLES[next(iter(self.family.variables))].without
-        self.known = [
-            name for name in frame.asked
-            if name in self.names or (name not in without and name != "design" and HELD_NAMES.get(name, kind) == kind)
-        ]  # fmt: skip
-        kinds, bounds = np.empty((len(self.known), 3), np.int64), np.empty((len(self.known), 2))
-        for j, name in enumerate(self.known):
-            column = -1 if name == "design" else COLUMNS.index("held" if name in HELD_NAMES else name)
-            axis = self.names.index(name) if name in self.names else -1
-            kinds[j] = column, axis, name in TURNED
-            bounds[j] = frame.ranges.get(name, (0.0, 0.0))
-        designs = len(frame.values["design"]) if "design" in frame.values else 1
-        fixed = np.full((designs, len(COLUMNS)), np.nan)
-        for column, name in enumerate(COLUMNS):
-            if name in frame.values:
-                array = frame.values[name]
-                fixed[:, column] = array if name in frame.by_design else array[0]
-            elif name in DEFAULTS:
-                fixed[:, column] = DEFAULTS[name]
-        fixed[:, reference.HELD] = 1.0 if kind == reference.LENGTH_HELD else 0.0
-        by_length = kind == reference.LENGTH_HELD and "held_length" in frame.values
-        self.fixed = Fixed(fixed, float(frame.fiber_share), bool(by_length))
-        columns = kinds[:, 0].tolist()
-        angles = [
-            columns.index(column) if column in columns else -1 for column in (reference.ALPHA, reference.BETA, -1)
-        ]
-        self.columns = Columns(kinds, bounds, *angles)
-        # of loose fibers one family holds the wall on either side of where both have one angle
-        self.nearest = 0.0 if frame.model.is_loose and kind == reference.LOADED else CLOSEST
 
     @property
     def nodes(self) -> Nodes:
@@ -138,44 +91,18 @@ class Table:
         """What numbers are put in with beyond the last of those that there are."""
         return weights_beyond(self._nodes, self.shape)
 
-    def _packed(self):
-        """Knots (d, n, KNOT), sizes of the windows and kinds (d,): what :mod:`.spline` knows of the axes."""
-        knots = np.zeros((len(self.axes), max(len(axis.nodes) for axis in self.axes), KNOT))
-        for own, axis, rank in zip(knots, self.axes, self.ranks):
-            count = len(axis.nodes)
-            own[:count, RANK] = rank
-            own[:count, PLACE], own[: count - 1, WIDTH], own[:count, FIRST] = (
-                axis.nodes,
-                np.diff(axis.nodes),
-                axis.first,
-            )
-            own[:count, LEFT : LEFT + WINDOW], own[:count, RIGHT : RIGHT + WINDOW] = axis.left, axis.right
-        windows = np.array([axis.window for axis in self.axes], np.int64)
-        return knots, windows, np.array([axis.kind for axis in self.axes], np.int64)
-
-    def _grid(self, name):
-        """A stored variable over the axes of the table (nodes,), the kernels' own axes among them."""
-        variable = self.data[name]
-        part = {name: slice(*self.box[name]) if name in self.names else 0 for name in variable.dims}
-        array = np.asarray(variable.isel(part).values)
-        array = array[tuple(slice(None) if name in variable.dims else None for name in self.names)]
-        array = array.reshape(array.shape + (1,) * self.padding)
-        if array.size < self.size:
-            array = np.broadcast_to(array, self.shape)
-        return np.ascontiguousarray(array).ravel()
-
     def _codes(self):
         """Status of each node in the low half of a byte, above it the flag that nodes must share to be mixed."""
         status, flag = self.family.status, self.family.flag
         codes = np.zeros(self.size, np.uint8)
         if status:
-            codes |= self._grid(status).astype(np.uint8)
+            codes |= self.part.grid(status).astype(np.uint8)
         if self.has_flag:
-            codes |= self._grid(flag).astype(np.uint8) << 4
+            codes |= self.part.grid(flag).astype(np.uint8) << 4
         if self.tells_slack:  # a share is never interpolated from where something is slack to where nothing is
             flags = self._taut_nodes()
             for name, variable in self.family.variables.items():
-                flags = flags | (self._grid(name) > A_POINT) * np.uint8(SLACK_FLAGS[variable])
+                flags = flags | (self.part.grid(name) > A_POINT) * np.uint8(SLACK_FLAGS[variable])
             codes |= self._beyond_rest(flags) << 4
         return codes
 
@@ -198,34 +125,18 @@ class Table:
             return codes >> 4 == 1
         return (codes & 15 == OK) | (codes & 15 == INACCURATE)
 
-    def stored(self, name):
-        """The numbers of the atlas, bit for bit (nodes,)."""
-        if name not in self._stored:
-            self._stored[name] = self._grid(name)
-        return self._stored[name]
-
-    def errors(self, name):
-        """The bounds of the atlas (nodes,); zero where it holds none."""
-        if name not in self._errors:
-            self._errors[name] = self._bounds(name)
-        return self._errors[name]
-
-    def _bounds(self, name):
-        bound = f"{name}_error"
-        return self._grid(bound) if bound in self.frame.dims else np.zeros(self.size, np.float32)
-
     def forget(self, name):
         """Let go of the arrays of one variable, of which the largest are used again."""
         for side in self.sides:
             if gone := self._variables.pop((name, side), None):
                 self._spare.append(gone.values)
-        for kept in (self._stored, self._errors):
-            kept.pop(name, None)
+        self.part.forget(name)
 
     def release(self):
         """Let go of the arrays of all variables."""
-        for kept in (self._variables, self._spare, self._stored, self._errors):
-            kept.clear()
+        self._variables.clear()
+        self._spare.clear()
+        self.part.forget()
 
     def variable(self, name, side) -> Interpolant:
         """One variable, or the one that it is told from, on one of the ``sides`` of where loose fibers go slack."""
@@ -298,7 +209,7 @@ class Table:
 
     def _end_effects(self, name):
         """End effects of the stored numbers and their bounds, (nodes,)."""
-        stored, errors = self._grid(name), self._bounds(name)
+        stored, errors = self.part.grid(name), self.part.bounds(name)
         if self.family.kind == reference.NONE:
             return np.where(self.is_number(self.codes[0]), stored, np.nan), errors.astype(np.float32)
         effects, noise = np.empty(len(stored)), np.empty(len(stored), np.float32)

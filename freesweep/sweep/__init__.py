@@ -1,5 +1,6 @@
 """Grids of designs, solved into atlases; called, it is :func:`freesweep.sweep.from_python.sweep`."""
 
+import inspect
 import sys
 from types import ModuleType
 
@@ -12,5 +13,6 @@ class _Called(ModuleType):
     __call__ = staticmethod(sweep)
 
 
+__doc__ = f"{__doc__}\n\n{inspect.getdoc(sweep)}"  # what help(fs.sweep) shows
 __wrapped__ = sweep  # for what asks for its signature
 sys.modules[__name__].__class__ = _Called

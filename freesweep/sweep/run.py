@@ -1,5 +1,7 @@
 """Run a sweep: shards of distinct problems on threads, resumed after any interruption, collected into an atlas."""
 
+from __future__ import annotations
+
 import contextlib
 import os
 import time

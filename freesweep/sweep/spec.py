@@ -31,25 +31,22 @@ A design takes what it leaves out from [actuator] and [load]. A held length (abs
 asks for the blocked force, a held rotation for the blocked torque; ``blocked = true`` for both, at rest where not given.
 """
 
-import hashlib
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
-from ..atlas.schema import HELD, PARAMETERS, SHAPE, YEOH
+from ..atlas.schema import PARAMETERS, SHAPE, YEOH
 from ..description.families import FAMILIES, is_none
 from ..description.fields import ENERGIES
-from ..description.impossible import APART, SMALLEST_DIFFERENCE
-from ..description.profiles import as_profile, together
-from ..description.tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, TubeModel, word_faults
+from ..description.tube_model import DEFAULT, FEW_PRINCIPAL, FIBER_PLACES, MODELS, word_faults
 from ..description.units import shown
 from . import along, axis, toml_guard
+from .asked import Sweep, shape_of
+from .contradictions import check_fibers, check_profiles
 from .designs import AT_REST, DEFAULTS, HOME, OWN, read_designs
 from .faults import Faults, SpecificationError
 from .rubber import SYNONYMS, check_rubber, read_material
-from .solver_table import BUDGET, MAX_POINTS, read_accuracy, read_blocked, read_tolerance
+from .solver_table import MAX_POINTS, read_accuracy, read_blocked, read_tolerance
 
 __all__ = ["MAX_POINTS", "SpecificationError", "Sweep", "parse", "read_file"]
 
@@ -60,74 +57,6 @@ NONE_FOR_ALL = (
     " such a family a sweep of their own"
 )
 REQUIRED = ("alpha", "beta", "length", "radius", "wall", "c10", "pressure")
-
-
-@dataclass(frozen=True, eq=False)
-class Sweep:
-    """A checked sweep. Values are in the units of schema.PARAMETERS, arrays are read-only.
-
-    ``fixed`` holds single values; ``axes`` strictly increasing arrays, shape (n,), in the order of schema.PARAMETERS.
-    ``designs`` is None, or {"names": tuple of texts, "columns": {parameter: array, shape (designs,)}}. Every parameter
-    stands in one of the three, or in ``profiles``: name -> pairs (x/l, value), or a smooth profile of them. Only
-    ``fiber_radius`` may be in none, then the fibers lie where the ``model`` says; ``c20`` and ``c30``: then the rubber is no
-    Yeoh rubber; ``taper`` and ``bulge``. ``rules`` are words that numbers follow along a body: they are those at x = 0.
-    """
-
-    title: str
-    energy: str
-    fixed: dict[str, float]
-    axes: dict[str, np.ndarray]
-    designs: dict | None
-    accuracy: float
-    text: str = field(repr=False)
-    blocked: tuple[str, ...] = ()  # which of blocked_force, blocked_torque are solved
-    profiles: dict[str, tuple] = field(default_factory=dict)
-    interpolation_tolerance: float | None = None
-    budget: int = BUDGET  # points to which axes may grow for the tolerance
-    material: str = ""  # name of its rubber, if it came from the library
-    model: TubeModel = MODELS["source"]
-    rules: dict[str, str] = field(default_factory=dict)
-    families: tuple[str, ...] = FAMILIES  # of fibers that its tubes have
-
-    @property
-    def sha256(self) -> str:
-        """Hash of the text, hexadecimal."""
-        return hashlib.sha256(self.text.encode("utf-8")).hexdigest()
-
-    @property
-    def dims(self) -> tuple[str, ...]:
-        """Names of the dimensions: ``design`` first if there are designs, then the axes."""
-        return (("design",) if self.designs else ()) + tuple(self.axes)
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Sizes of the dimensions."""
-        return _shape(self.axes, self.designs)
-
-    @property
-    def places(self) -> tuple[str, ...]:
-        """Names of the parameters that have numbers."""
-        return (*self.fixed, *self.axes, *(self.designs or {}).get("columns", ()))
-
-    @property
-    def is_of_bodies(self) -> bool:
-        """Whether its radius varies along the tubes: a profile, or what has a taper or a bulge, if of 0."""
-        return "radius" in self.profiles or bool(set(SHAPE) & set(self.places))
-
-    @property
-    def varies(self) -> bool:
-        """Whether something varies along its tubes."""
-        return bool(self.profiles) or self.is_of_bodies
-
-    @property
-    def is_physical(self) -> bool:
-        """Whether its tubes are more than the source's, or less: thick, loose, or without a family."""
-        return self.model.is_physical or len(self.families) < 2
-
-    @property
-    def points(self) -> int:
-        """Number of equilibria asked for, those of held states apart."""
-        return math.prod(size for name, size in zip(self.dims, self.shape) if name not in HELD)
 
 
 def read_file(path: str | Path) -> Sweep:
@@ -157,7 +86,7 @@ def parse(text: str, name: str = "specification") -> Sweep:
     fixed = {name: number for name, number in fixed.items() if number != NONE}
     axes = _axes(faults, tables["axes"], given, rules)
     designs = read_designs(faults, document["designs"], given, fixed) if "designs" in document else None
-    _check_profiles(faults, profiles, fixed, given, families)
+    check_profiles(faults, profiles, fixed, given, families)
     for parameter in REQUIRED:
         if parameter not in given:
             others = ", or in every design" if designs and parameter in OWN else ""
@@ -168,9 +97,9 @@ def parse(text: str, name: str = "specification") -> Sweep:
     fixed = {key: defaults.get(key) if key not in given else fixed.get(key) for key in PARAMETERS}
     fixed = {key: number for key, number in fixed.items() if number is not None}
     values = fixed | axes | (designs or {}).get("columns", {})
-    _check_fibers(faults, values)
+    check_fibers(faults, values)
     check_rubber(faults, values, axes, given)
-    points = math.prod(_shape(axes, designs))
+    points = math.prod(shape_of(axes, designs))
     if points > MAX_POINTS:
         faults.add(
             "axes",
@@ -186,10 +115,6 @@ def parse(text: str, name: str = "specification") -> Sweep:
         families,
     )  # fmt: skip
     return found if found.is_of_bodies else replace(found, rules={})  # of a tube a rule is the number it gives
-
-
-def _shape(axes, designs):
-    return ((len(designs["names"]),) if designs else ()) + tuple(len(array) for array in axes.values())
 
 
 def _table(faults, document, key):
@@ -274,40 +199,3 @@ def _axes(faults, table, given, rules):
             if array is not None:
                 axes[name] = array
     return axes
-
-
-def _check_profiles(faults, profiles, fixed, given, families):
-    """Refuses profiles, and families that are none, which some designs would not use, and families that meet somewhere along
-    every tube.
-    """
-    for name in (*profiles, *(name for name in FAMILIES if name not in families)):
-        if given[name] != f"actuator.{name}":
-            what = "a profile" if name in profiles else "none"
-            faults.add(given[name], f"actuator.{name} is {what} already; give one of the two")
-    if "radius" in profiles or set(SHAPE) & set(given):
-        if "fiber_radius" in given:
-            faults.add(given["fiber_radius"], f"the radius varies; choose one of {', '.join(FIBER_PLACES)}")
-    if "radius" in profiles:
-        x, values = np.array(along.pairs_of(profiles["radius"])).T
-        if np.any((np.diff(x) == 0.0) & (np.diff(values) != 0.0)):
-            faults.add("actuator.radius", "it jumps; a body's radius may bend at a place, but not jump")
-    angles = [profiles.get(name, fixed.get(name)) for name in ("alpha", "beta")]
-    if None in angles or not any(name in profiles for name in ("alpha", "beta")):
-        return
-    alpha, beta = together(*map(as_profile, angles))
-    if np.min(np.abs(alpha - beta)) < APART or len(set(np.sign(alpha - beta))) > 1:
-        faults.add(
-            "actuator.alpha, actuator.beta",
-            f"the fiber families cross, or are less than {SMALLEST_DIFFERENCE:g} degree apart, somewhere along the tube: no"
-            " finite locked shape there; keep alpha above beta all along, or below",
-        )
-
-
-def _check_fibers(faults, values):
-    """Refuses a sweep in which the fibers lie in the wall of no design at all."""
-    if not all(name in values for name in ("fiber_radius", "radius", "wall")):
-        return
-    fibers, radius, wall = (np.asarray(values[name]) for name in ("fiber_radius", "radius", "wall"))
-    if fibers.max() < radius.min() or fibers.min() > radius.max() + wall.max():
-        found = f"{fibers.min():g} to {fibers.max():g} m"
-        faults.add("fiber_radius", f"found {found}; must lie within the wall, from radius to radius + wall")

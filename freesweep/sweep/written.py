@@ -31,10 +31,17 @@ def sweep_of(given: dict) -> Sweep:
     try:
         sweep = parse(text, HERE)
     except SpecificationError as error:  # what could not be read is not missing
-        rest = [fault for fault in error.faults if fault.split(": is missing")[0] not in unread]
+        rest = [_in_python(fault) for fault in error.faults if fault.split(": is missing")[0] not in unread]
         raise SpecificationError(faults.found + rest, HERE) from None
     faults.check()
     return sweep
+
+
+def _in_python(fault):
+    """A fault of the text as one of its arguments: there are no tables."""
+    name = fault.partition(":")[0]
+    how = f"give {name}=" + (" or material=" if name == "c10" else "")
+    return re.sub(r"give it in \[\w+\] or \[axes\]", how, fault)
 
 
 def specification(given: dict, faults: Faults) -> str:

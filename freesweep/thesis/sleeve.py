@@ -103,7 +103,7 @@ def figure_3_9() -> Drawing:
     figure, numbers = _along_pressure(
         lambda tube: inflate(tube, MEASURED, x=0.0), "deformed_length", "length [mm]", "Muscle of the sleeve, 640 mm"
     )
-    note = "5 to 30 psi. Rubber, not printed, is that of the 30 degree muscle in Table 1."
+    note = "Rubber, not printed, is that of the 30 degree muscle in Table 1."
     return Drawing(figure, numbers, note)
 
 

@@ -57,7 +57,8 @@ def figure_2_12() -> Drawing:
         ("corrected, Eqs. 2.21 and 2.22", {"linestyle": (0, (5, 1.2, 1, 1.2)), "linewidth": 1.2}),
         ("exact stable state, principal", {"linestyle": style.ENERGY["principal"], "linewidth": 2.2}),
         ("exact stable state, full", {"linestyle": style.ENERGY["full"], "linewidth": 2.2}),
-    ], 2)  # fmt: skip
+        ("critical pressure", {"marker": "|", "linestyle": "none", "markersize": 9.0, "markeredgewidth": 0.5}),
+    ], 3)  # fmt: skip
     note = (
         "The held cylinder follows Eq. 2.20 exactly up to the critical pressure (vertical lines); beyond it "
         "the stable tube is shorter and turns stronger."

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from commands import refused, run
 from grids import SMALL, make, only, spec
 
 from freesweep import open_atlas
@@ -17,6 +18,8 @@ from freesweep.atlas.write import packed
 from freesweep.sweep.shards import SweepError
 from freesweep.sweep.spec import parse
 
+TUBE = ("--alpha", "30", "--beta", "-30", "--length", "192 mm", "--radius", "4.76 mm", "--wall", "1.59 mm")
+
 
 def test_a_file_that_is_no_atlas_is_not_replaced(tmp_path):
     out = tmp_path / "notes.nc"
@@ -24,6 +27,15 @@ def test_a_file_that_is_no_atlas_is_not_replaced(tmp_path):
     with pytest.raises(SweepError, match="is no readable netCDF4 file"):
         make(out, parse(spec(SMALL)))
     assert out.read_text() == "precious"
+
+
+def test_states_of_one_actuator_are_called_what_they_are(tmp_path, capsys):
+    path = tmp_path / "kept.nc"
+    assert run("lock", *TUBE, "-o", str(path)) == 0
+    capsys.readouterr()
+    assert "holds states of one actuator" in refused(capsys, "info", str(path))
+    with pytest.raises(AtlasError, match="freesweep plot curve draws them"):
+        open_atlas(path)
 
 
 def test_a_failed_write_leaves_the_old_file_and_says_what_is_needed(tmp_path, monkeypatch):

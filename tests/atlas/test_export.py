@@ -99,7 +99,8 @@ def test_a_weight_on_the_muscle_of_mujoco_rests_where_inflate_says(page):
 
 def test_between_nodes_the_table_is_what_a_query_says(page):
     at = {"held_length_ratio": [0.9, 0.95], "pressure": [1.0e5, 1.1e5]}
-    page["atlas"].export(page["folder"] / "between.npz", variables=FORCE, derivatives=True, **at)
+    with pytest.warns(UserWarning, match="blocked_force_status: rows without a number, of 4: 1 not_interpolable"):
+        page["atlas"].export(page["folder"] / "between.npz", variables=FORCE, derivatives=True, **at)
     table = np.load(page["folder"] / "between.npz")
     asked = page["atlas"].query(FORCE, **{name: xr.DataArray(values, dims=name) for name, values in at.items()})
     assert np.array_equal(table[FORCE][:, 1], asked[FORCE].values[:, 1], equal_nan=True)

@@ -1,6 +1,7 @@
 """Any scalar is fitted: angles, sizes, dead length, threshold; with priors, bounds, ties; from the shell and from TOML."""
 
 import html
+import json
 import re
 from dataclasses import replace
 
@@ -11,11 +12,12 @@ from commands import refused, run
 
 import freesweep
 from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, calibrate, inflate
-from freesweep.calibration.page import _axis, _label
 from freesweep.calibration.parameters import Setup
+from freesweep.calibration.picture import axis, between, picture, words_of
 from freesweep.calibration.predicted import Asked, Predictor, scalar
-from freesweep.calibration.report import table
+from freesweep.calibration.report import shown_as, table
 from freesweep.cli import DONE
+from freesweep.plot import style
 
 TRUTH = Actuator(
     alpha=25, beta=-25, length=0.3, radius=8e-3, wall=1.5e-3, material=MooneyRivlin(0.2e6, 0.1e6), fiber_extension=1.004
@@ -162,18 +164,53 @@ def test_three_forces_that_are_met_exactly_do_not_count_as_exact():
 def test_pictures_show_lengths_as_they_were_given_and_what_was_found():
     found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
     free, pulled = found.measurements
-    title, shown = _axis(pulled, "deformed_length")
+    title, shown = axis(pulled, "deformed_length")
     assert title == "contraction [%]"
     assert shown(pulled.deformed_length) == pytest.approx(np.tile(np.linspace(0.0, 25.0, 6), 2), abs=1e-12)
-    title, shown = _axis(replace(free, deformed_length=None, stroke=0.3 - free.deformed_length), "deformed_length")
+    title, shown = axis(replace(free, deformed_length=None, stroke=0.3 - free.deformed_length), "deformed_length")
     assert title == "stroke [mm]"
     assert shown(np.array([0.3, 0.29])) == pytest.approx([0.0, 10.0])
-    assert _axis(free, "deformed_length")[0] == "deformed length [mm]"
-    assert _label(found, 0, "pressure", [0]) == "alpha 25 deg"  # 26 was the guess
+    assert axis(free, "deformed_length")[0] == "deformed length [mm]"
+    assert words_of(found, 0) == []  # one actuator only
+    thicker = replace(found, tubes=(found.tubes[0], replace(found.tubes[1], wall=2.54e-3, alpha=30.0)))
+    assert words_of(thicker, 0, shown_as([("1 in", "m")])) == ["alpha 25 deg", "wall 0.05906 in"]  # 26 was the guess
+
+
+def test_the_picture_is_drawn_in_the_style_of_the_house():
+    """Its type and colours, axes open at the top, units of the data, a key that tells marks, curves told at their ends."""
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    figure = picture(found, shown_as([("1 psi", "Pa"), ("1 lbf", "N")]))
+    top, other, bottom, _ = figure.axes
+    assert top.xaxis.label.get_fontfamily() == style.SETTINGS["font.family"]
+    assert [line.get_color() for line in top.lines[:1]] == style.ramp(1)
+    assert not any(ax.spines[side].get_visible() for ax in figure.axes for side in ("top", "right"))
+    assert (bottom.get_xlabel(), other.get_ylabel()) == ("pressure [psi]", "force [lbf]")
+    assert [text.get_text() for text in other.texts if text.get_gid() == "end"] == ["14.5 psi", "43.51 psi"]
+    assert [len(ax.lines) for ax in found.picture().axes] == [len(ax.lines) for ax in figure.axes]
+    (key,) = figure.legends
+    assert [text.get_text() for text in key.get_texts()][-1] == "slack muscle"
+
+
+def test_a_model_is_drawn_between_what_was_measured_and_goes_through_what_it_says_there():
+    """Chords between few states had corners that no muscle has."""
+    found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    for k, measurement in enumerate(found.measurements):
+        joined = [(states, predicted[:, 0]) for states, predicted in between(found, k)]
+        assert sum(len(states) for states, _ in joined) > 2 * len(measurement)
+        said = {}
+        for states, model in joined:
+            said |= dict(zip(zip(states.pressure, states.imposed("deformed_length")), model))
+        for row, value in enumerate(found.predicted[k][:, 0]):
+            drawn = said[measurement.pressure[row], measurement.imposed("deformed_length")[row]]
+            if value >= 0.0:
+                assert drawn == pytest.approx(value, rel=1e-6)
+            else:
+                assert np.isnan(drawn)  # a push that was not measured
 
 
 def test_intervals_that_only_rounding_parts_are_called_the_same():
     found = calibrate([lengths(TRUTH, GUESS), forces(TRUTH, GUESS)], FIT, ties=TIES)
+    assert repr(found) == table(found)  # as the shell prints it
     rounded = replace(found, profile_intervals=found.intervals * (1.0 + 1e-12))
     assert "by profile likelihood" not in table(rounded)
     farther = replace(found, profile_intervals=np.add(found.intervals, [[1e4, 0.0], [0.0, 0.0], [0.0, 0.0]]))
@@ -306,6 +343,11 @@ def test_the_shell_and_toml_say_the_same(tmp_path, monkeypatch, capsys):
     (line,) = re.findall(r"<pre>(fs.Actuator.*?)</pre>", html.unescape(page))
     assert "None" not in line  # nor what is as usual
     assert eval(line, {"fs": freesweep}).alpha == pytest.approx(25.0, abs=0.1)
-    assert "--report: found" in refused(capsys, "calibrate", "case.toml", "--report", "page.pdf")
+    assert run("calibrate", "case.toml", "--json", "--report", "page.PDF", "--out", "kept.nc") == DONE
+    told = capsys.readouterr()
+    assert json.loads(told.out)["fits"]  # and nothing behind it
+    assert told.err == "kept.nc\npage.PDF\n"
+    assert (tmp_path / "page.PDF").read_bytes().startswith(b"%PDF")
+    assert "--report: found" in refused(capsys, "calibrate", "case.toml", "--report", "page.docx")
     (tmp_path / "case.toml").write_text("[data]\nfile = 1\n")
     assert "data.file: unknown; it has files, measured" in refused(capsys, "calibrate", "case.toml")

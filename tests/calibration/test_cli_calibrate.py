@@ -139,7 +139,8 @@ def test_what_the_command_refuses(capsys):
         capsys, "calibrate", lengths(), *MUSCLE, "--measured", "torque"
     )
     assert "fit: found 'c1'; choose among c10" in refused(capsys, "calibrate", lengths(), *MUSCLE, "--fit", "c1")
-    assert "No such file" in refused(capsys, "calibrate", "nothing.csv", *MUSCLE)
+    assert refused(capsys, "calibrate", "nothing.csv", *MUSCLE) == "freesweep: nothing.csv: No such file or directory\n"
+    assert "the suffix must be one of .nc" in refused(capsys, "calibrate", lengths(), *MUSCLE, "-o", "fit.csv")
     written("latin.csv", "pressure [kPa],force [N]")
     with open("latin.csv", "ab") as file:
         file.write(b"\n1,\xb5")

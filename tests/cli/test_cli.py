@@ -1,5 +1,6 @@
 """The command line: what it prints, which files it makes, which exit code it gives; never a traceback."""
 
+import csv
 import subprocess
 import sys
 
@@ -88,6 +89,23 @@ def test_inflate_prints_a_line_for_each_pressure(capsys):
     assert [float(row.split()[1]) for row in rows] == pytest.approx(lengths * 1e3, rel=1e-6)
     with xr.open_dataset(name) as kept:
         assert kept["pressure"].values.tolist() == [0.0, 5e4, 1e5]
+
+
+def test_states_are_kept_as_a_table_too(capsys):
+    """A row for each pressure in SI units; any other suffix is refused before anything is solved."""
+    assert run("inflate", *TUBE, *RUBBER, "--pressure", "0", "1 bar", "--steps", "3", "-o", "kept.csv") == DONE
+    with open("kept.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    lengths = inflate(SAME, [0.0, 5e4, 1e5])["deformed_length"].values
+    assert [float(row["deformed_length [m]"]) for row in rows] == pytest.approx(lengths, rel=1e-6)
+    assert [row["status"] for row in rows] == ["ok"] * 3
+    capsys.readouterr()
+    assert "the suffix must be one of .nc, .csv" in refused(capsys, "lock", *TUBE, "-o", "kept.xlsx")
+
+
+def test_a_unit_that_stands_alone_is_put_to_its_number(capsys):
+    err = refused(capsys, "inflate", *TUBE, *RUBBER, "--pressure", "0", "2", "bar")
+    assert 'as one word: "2 bar"' in err
 
 
 def test_inflate_explains_a_status(capsys):

@@ -6,12 +6,13 @@ import re
 import shlex
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 from commands import refused, run
 
 import freesweep as fs
-from freesweep.cli import DONE, _joined, parser
+from freesweep.cli import BAD_INPUT, DONE, _joined, parser
 from freesweep.cli.examples import EXAMPLES
 
 TUBE = ("--alpha", "30", "--beta", "-30", "--length", "192 mm", "--radius", "4.76 mm", "--wall", "1.59 mm")
@@ -62,7 +63,19 @@ def test_a_shell_completes_commands_options_and_choices(capsys, tmp_path):
     if bash is None:
         pytest.skip("there is no bash here")
     ask = "source ./script; COMP_WORDS=(freesweep {}); COMP_CWORD={}; _shtab_freesweep; echo ${{COMPREPLY[@]}}"
-    for typed, expected in (("qu", {"query"}), ("inflate --press", {"--pressure"}), ("block --hold l", {"length"})):
+    (tmp_path / "here.html").write_text("")
+    for typed, expected in (
+        ("qu", {"query"}),
+        ("inflate --press", {"--pressure"}),
+        ("block --hold l", {"length"}),
+        ("lock --material dr", {"dragon-skin-30"}),
+        ("query a.nc --variable rot", {"rotation"}),
+        ("plot curve a.nc --each rad", {"radius"}),
+        ("thesis 3-1", {"3-11", "3-13"}),
+        ("sweep --example qu", {"quick"}),
+        ("calibrate --report her", {"here.html"}),
+        ("explore a.nc --html her", {"here.html"}),
+    ):
         line = ask.format(typed, len(typed.split()))
         told = subprocess.run([bash, "-c", line], cwd=tmp_path, capture_output=True, text=True, check=True)
         assert set(told.stdout.split()) == expected, told
@@ -73,18 +86,28 @@ def printed(capsys, *words):
     return json.loads(capsys.readouterr().out)
 
 
-def test_tables_are_printed_as_json_too(capsys):
+def test_tables_are_printed_as_json_too(capsys, tmp_path):
     (state,) = printed(capsys, "lock", *TUBE, "--json")["points"]
     assert state["deformed_length"] == fs.lock(fs.Actuator(
         alpha=30, beta=-30, length=0.192, radius=4.76e-3, wall=1.59e-3, material=fs.NeoHookean(1e5)
     )).deformed_length.item()  # fmt: skip
     assert state["status"] == "ok"
+    (kept,) = printed(capsys, "lock", *TUBE, "--json", "-o", str(tmp_path / "kept.nc"))["points"]  # nothing behind it
+    assert kept["deformed_length"] == pytest.approx(state["deformed_length"], abs=state["deformed_length_error"])
     held = printed(capsys, "info", ATLAS, "--json")
     assert held["axes"]["pressure"]["units"] == "Pa"
     assert held["statuses"]["status"] == {"ok": 23616, "degenerate": 1476}
     assert held["attributes"]["energy"] == "full"
     checked = printed(capsys, "verify", ATLAS, "--resolve", "3", "--json")
-    assert checked["resolved"]["rotation"]["broken"] == 0
+    rotation = checked["resolved"]["rotation"]
+    assert (checked["whole"], rotation["broken"], rotation["units"]) == (True, 0, "degree")
+    assert rotation["largest_difference"] < rotation["its_bound"]
+    damaged = tmp_path / "damaged.nc"
+    content = bytearray(Path(ATLAS).read_bytes())
+    content[len(content) // 2] ^= 1
+    damaged.write_bytes(content)
+    assert run("verify", str(damaged), "--json") == BAD_INPUT
+    assert json.loads(capsys.readouterr().out)["whole"] is False
     asked = ("--alpha", "20", "--beta", "-50", "--length", "100 mm", "--radius", "4.76 mm", "--pressure", "75 kPa")
     (point,) = printed(capsys, "query", ATLAS, *asked, "--variable", "rotation", "--json")["points"]
     assert point["pressure"] == 75e3

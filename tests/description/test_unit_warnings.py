@@ -8,7 +8,7 @@ import xarray as xr
 from commands import run
 from grids import swept
 
-from freesweep import Actuator, MooneyRivlin, inflate, lock
+from freesweep import Actuator, Goal, MooneyRivlin, design, inflate, lock, tolerance
 from freesweep.closed_form import region
 from freesweep.description.unit_warnings import design_doubts, load_doubts
 from freesweep.statics import thin_wall_attributes
@@ -83,6 +83,16 @@ def test_single_tubes_and_their_loads_are_doubted_in_python():
     with pytest.warns(UserWarning, match=r"no pressure exceeds 0\.1 Pa") as caught:
         inflate(tube, 0.1, x=0.0)
     assert caught[0].filename == __file__
+
+
+def test_a_tolerance_that_is_larger_than_what_it_is_of_is_doubted():
+    """Half a millimetre that was meant for a hundredth."""
+    tube = Actuator(**{name: USUAL[name] for name in USUAL if name != "c10"}, material=MooneyRivlin(0.11e6))
+    with pytest.warns(UserWarning, match="a tolerance of 0.05 m of wall is more than 0.00159 m"):
+        tolerance(tube, 1e5, wall=0.05, alpha=1.0, pressure_tolerance=1e3)
+    goal = Goal("stroke", 0.1, pressure=1e5)
+    with pytest.warns(UserWarning, match="a tolerance of 0.5 m of length is more than 0.192 m"):
+        design(tube, {"alpha": (20, 40), "beta": "-alpha"}, goal, count=1, tolerances={"length": 0.5, "alpha": 2.0})
 
 
 def test_the_shell_tells_slips_and_what_the_thin_wall_leaves_out(capsys):

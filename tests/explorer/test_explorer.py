@@ -3,6 +3,7 @@
 import json
 import re
 import signal
+import socket
 import subprocess
 import sys
 import urllib.error
@@ -15,6 +16,7 @@ from explored import AT, small_atlas
 from grids import CHILD_ENVIRONMENT, SMALL, swept
 
 import freesweep as fs
+from freesweep.cli import ENVIRONMENT
 from freesweep.explorer import table
 from freesweep.explorer.desk import AskError, Desk, even
 from freesweep.explorer.exact import shape, solved, tube_of
@@ -312,6 +314,12 @@ def test_the_command_serves_until_it_is_interrupted(atlas):
 
 def test_faults_of_the_command_are_told(atlas, tmp_path, capsys):
     assert "the suffix must be .html" in refused(capsys, "explore", str(atlas.path), "--html", "page.txt")
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        assert run("explore", str(atlas.path), "--no-browser", "--port", str(port)) == ENVIRONMENT
+        assert f"port {port} of 127.0.0.1: Address already in use; give another" in capsys.readouterr().err
     assert "give 0 to 65535" in refused(capsys, "explore", str(atlas.path), "--port", "70000")
     assert "no atlas at" in refused(capsys, "explore", str(tmp_path / "none.nc"))
     with pytest.raises(fs.ActuatorError, match=r"give what freesweep\.open_atlas opens"):

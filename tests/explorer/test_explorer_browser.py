@@ -7,7 +7,7 @@ import shlex
 import numpy as np
 import pytest
 from commands import run
-from explored import at_rest, browser, missing_browser, small_atlas, until
+from explored import AXES, at_rest, browser, missing_browser, small_atlas, until
 
 import freesweep as fs
 from freesweep.explorer import table
@@ -105,6 +105,23 @@ def test_hovering_and_clicking_tell_what_a_query_answers(page, atlas):
     line = atlas.query(["rotation"], **pin, pressure=curve[0])["rotation"].values
     both = np.isfinite(line)
     np.testing.assert_allclose(np.array(curve[1], float)[both], line[both], rtol=1e-9, atol=1e-9)
+
+
+def test_a_map_without_any_value_says_so(page):
+    """Of tubes that have no limit pressure; without a bar of colours that stand for nothing."""
+    title = page.find_element(By.ID, "map_title")
+    change(page, "{m: 'limit_pressure'}")
+    assert title.text == "Limit pressure [kPa] no value on this map"
+    assert page.execute_script("return freesweep.models.map_bar.major_label_text_alpha") == 0
+    change(page, "{m: 'rotation'}")
+    assert title.text == "Rotation [°]"
+    assert page.execute_script("return freesweep.models.map_bar.major_label_text_alpha") == 1
+
+
+def test_names_of_regions_stay_on_the_map(page):
+    places = page.execute_script("const { x, y } = freesweep.models.map_labels.data; return [[...x], [...y]]")
+    for name, found in zip(("alpha", "beta"), places):
+        assert AXES[name][0] < min(found) < max(found) < AXES[name][-1]
 
 
 def test_maps_follow_a_dragged_slider_between_the_nodes(page, atlas):

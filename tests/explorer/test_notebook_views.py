@@ -60,6 +60,13 @@ def test_the_library_is_a_table_with_source_and_range(capsys):
         assert rubber.source in Balanced(rubber._repr_html_()).texts
 
 
+def test_a_figure_is_seen_without_pyplot():
+    """What small multiples are: a figure that no window knows, of which a notebook showed its size."""
+    with fs.example_atlas() as atlas:
+        figure = fs.plot.section.multiples(atlas.data, over="length")
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
 def test_an_atlas_of_a_stranger_shows_no_markup_of_its_own():
     with fs.example_atlas() as atlas:
         texts = Balanced(atlas._repr_html_()).texts

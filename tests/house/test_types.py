@@ -4,6 +4,7 @@ import ast
 import importlib.util
 import inspect
 import json
+import pydoc
 import subprocess
 import sys
 from pathlib import Path
@@ -153,6 +154,38 @@ def test_the_stub_names_what_the_package_hands_out():
     homes = {name: module for name, module in told.items() if module is not None}
     assert homes == fs._HOMES | {"sweep": "sweep.from_python"}
     assert (PACKAGE / "py.typed").exists()
+
+
+def test_help_is_short_enough_to_be_read():
+    """Types are named, not spelled out; what is called and a room at once explains how it is called."""
+    for name, function in public():
+        told = str(inspect.signature(function))
+        assert not [word for word in ("Union[", "ForwardRef") if word in told], name
+    for one in (fs.Goal, fs.Limit, fs.Actuator, fs.Measurement, fs.Calibration):
+        assert "freesweep." not in str(inspect.signature(one))
+    assert "out : path of the atlas to make" in pydoc.plain(pydoc.render_doc(fs.sweep))
+
+
+def test_objects_say_what_they_are_in_a_line():
+    tube = fs.Actuator(alpha=30, beta=-30, length=0.2, radius=5e-3, wall=1e-3, material=fs.NeoHookean(1e5))
+    assert (
+        repr(fs.Goal("rotation", "90 deg", pressure="1 bar"))
+        == "Goal(output='rotation', value='90 deg', pressure='1 bar')"
+    )
+    assert repr(fs.Limit("stroke", at_most=0.1)) == "Limit(output='stroke', at_most=0.1)"
+    curve = fs.Measurement(tube, [1e4, 2e4], deformed_length=[0.19, 0.18])
+    assert repr(curve) == f"<Measurement of deformed_length: 2 states at 10 kPa to 20 kPa of {tube}>"
+    with fs.example_atlas() as atlas:
+        asked = atlas.interpolator(["rotation", "volume"])
+        assert repr(asked) == "<Interpolator of rotation, volume over alpha, beta, length, radius, pressure>"
+
+
+def test_kinds_of_pictures_are_there_without_an_import():
+    code = "import freesweep as fs; assert fs.plot.map.design_map and fs.plot.style.save; print(*dir(fs.plot))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=CHILD_ENVIRONMENT)
+    assert done.stdout == "curve map motion section style tubes validity\n", done.stderr
+    with pytest.raises(AttributeError, match="it has curve, map"):
+        fs.plot.maps  # noqa: B018
 
 
 def test_dir_shows_what_is_public():

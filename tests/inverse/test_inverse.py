@@ -249,6 +249,9 @@ def test_a_profile_along_the_tube_is_free():
     (made,) = made_by(found)
     assert fs.inflate(made, 1e5, x=0.0)["rotation"].item() == pytest.approx(found["goal_value"].values[0, 0], abs=1e-3)
     assert found["misfit"].item() < 0.5 * _missed(start, wish)
+    _, heading, row = table(found).splitlines()[:3]
+    assert re.split("  +", heading.strip())[:2] == ["at x/l 0", "at x/l 1"]
+    assert [float(cell) for cell in row.split()[1:3]] == pytest.approx(found["alpha"].values[0], rel=1e-5)
 
 
 def _missed(made, wish):
@@ -453,6 +456,12 @@ def test_what_a_bound_or_a_limit_costs_is_said():
     assert "0.1 mm more of radius would buy" in short.attrs["summary"]
 
 
+def test_a_fault_of_a_goal_is_told_once():
+    with pytest.raises(fs.ActuatorError) as fault:
+        fs.Goal("rotation", "90 mm", pressure=1e5)
+    assert len(fault.value.faults) == 1
+
+
 def test_a_limit_is_a_range():
     with pytest.raises(fs.ActuatorError, match="at_least, at_most or between"):
         fs.Limit("rotation", 3, pressure=1e5)
@@ -487,21 +496,42 @@ def test_wishes_from_the_shell_become_a_table_a_file_and_a_picture(tmp_path, cap
     assert "meet every goal and keep every limit" in said
     assert "fs.Actuator(" in said
     rows = list(csv.reader(out.read_text(encoding="utf-8").splitlines()))
-    assert {"alpha [degree]", "radius [m]", "rotation at pressure 100000 Pa", "python"} <= set(rows[0])
+    assert {"alpha [degree]", "radius [m]", "rotation [degree] at pressure 100000 Pa", "python"} <= set(rows[0])
+    assert {row[rows[0].index("status")] for row in rows[1:]} == {"ok"}
     assert len({len(row) for row in rows}) == 1
     # those that do it first, of these those in which no thread would push, which the table marks; in units of the wish
     found = [dict(zip(rows[0], row)) for row in rows[1:]]
     order = [(one["met"] != "True", one["met"] == "True" and one["slack_fiber"] != "0") for one in found]
     assert order == sorted(order)
     assert (False, True) in order
-    heading, *table = said.splitlines()
-    assert re.split("  +", heading.strip())[2:] == [
-        "radius [mm]", "rotation [deg] at pressure 100 kPa", "length_change [mm] at pressure 100 kPa", "would push"
-    ]  # fmt: skip
+    above, heading, *table = said.splitlines()
+    assert re.split("  +", above.strip()) == ["rotation [deg]", "length_change [mm]"]
+    assert re.split("  +", heading.strip())[2:] == ["radius [mm]", *["at pressure 100 kPa"] * 2, "would push"]
     for line, one in zip(table, found):
         assert float(line.split()[3]) == pytest.approx(1e3 * float(one["radius [m]"]), rel=1e-5)
         assert line.split()[-1] == ("-", "alpha", "beta")[int(one["slack_fiber"])]
     assert picture.stat().st_size > 20_000
+
+
+def test_what_is_wider_than_a_screen_stands_below_each_other():
+    """Fifteen limits of nine candidates: rows and columns are exchanged, as many side by side as a screen holds."""
+    limits = [fs.Limit("stroke", at_most=0.01, pressure=p) for p in np.linspace(1e4, 1e5, 15)]
+    found = fs.design(tube(), bounds("alpha", "radius"), fs.Goal("rotation", 60, pressure=1e5), limits, count=9)
+    lines = table(found).splitlines()
+    assert max(map(len, lines)) <= 120
+    numbers = [line.split() for line in lines if line and line.lstrip()[0].isdigit()]
+    assert len(numbers) > 1
+    assert [one for own in numbers for one in own] == [str(k) for k in range(found.sizes["candidate"])]
+    count, row = len(numbers[0]), next(line for line in lines if line.startswith("rotation [deg] at pressure 100 kPa"))
+    told = [float(cell) for cell in row.replace(" !", "").split()[-count:]]
+    assert told == pytest.approx(found["goal_value"].values[:count, 0], rel=1e-5)
+
+
+def test_a_name_that_no_picture_can_have_is_refused_before_the_search(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("freesweep.inverse.designing.find", lambda **_: pytest.fail("searched"))
+    wish = str(ROOT / "sweeps" / "wishes" / "rotator.toml")
+    assert main(["design", wish, "--picture", str(tmp_path / "candidates.jpg")]) == 2
+    assert "--picture: found" in capsys.readouterr().err
 
 
 def test_a_rubber_that_was_chosen_has_its_name_in_table_file_and_picture():
@@ -513,12 +543,13 @@ def test_a_rubber_that_was_chosen_has_its_name_in_table_file_and_picture():
     chosen = result["material"].values.tolist()
     assert set(chosen) == {*names}
     assert [fs.materials.get(name, own) for name in chosen] == [one.material for one in tubes]
-    heading, *rows = table(result).splitlines()
+    _, heading, *rows = table(result).splitlines()
     assert "  material  " in heading
     assert all(name in row for name, row in zip(chosen, rows))
     header, *rows = csv.reader(candidates_csv(result).splitlines())
     assert [row[header.index("material")] for row in rows] == chosen
     figure = draw(result, *shown(result, tubes, goals))
+    assert not any(ax.spines[side].get_visible() for ax in figure.axes for side in ("top", "right"))
     said = [text.get_text() for text in figure.axes[-1].texts]
     assert [text.split(", ", 1)[1] for text in said] == chosen[:5]
 

@@ -12,7 +12,7 @@ from grids import completed, store
 from matplotlib import pyplot
 from matplotlib.colors import to_rgb
 
-from freesweep import status
+from freesweep import example_atlas, status
 from freesweep.atlas import schema
 from freesweep.plot import style
 from freesweep.plot.curve import MOST, curve, spread
@@ -84,6 +84,7 @@ def test_chosen_nodes_are_named_and_lines_end_where_there_is_no_result(data):
         "alpha 80 degree (nearest to 77 degree), beta -30 degree, length 100 mm"
     )
     assert ax.get_ylabel() == "rotation of the free end [degree]"
+    assert words.replace("\n", " ").replace("\u00a0", " ").endswith("no result: beyond limit pressure")
 
 
 def test_slack_parts_are_thin_and_unstable_nodes_are_circles(data):
@@ -168,6 +169,40 @@ def test_command(data, tmp_path, capsys):
     assert "an angle" in refused(capsys, "plot", "curve", str(atlas), "--at", "alpha=3 mm", "--at", "alpha=20")
     assert "must be one of .png" in refused(capsys, "plot", "curve", str(atlas), "-o", "curve.bmp")
     assert "no freesweep atlas" in refused(capsys, "plot", "curve", _foreign(tmp_path))
+
+
+def test_what_the_shell_keeps_of_one_actuator_becomes_a_curve(tmp_path, capsys, monkeypatch):
+    """The force that holds a length, unless another variable is named; one state alone is none."""
+    monkeypatch.chdir(tmp_path)
+    tube = (
+        "--alpha",
+        "30",
+        "--beta",
+        "-30",
+        "--length",
+        "192 mm",
+        "--radius",
+        "4.76 mm",
+        "--wall",
+        "1 mm",
+        "--c10",
+        "0.1 MPa",
+    )
+    pressures = ("--pressure", "50 kPa", "100 kPa")
+    assert run("block", "--hold", "length", *tube, *pressures, "-o", "kept.nc") == 0
+    assert run("plot", "curve", "kept.nc") == 0
+    assert capsys.readouterr().out.endswith("kept-force.png\n")
+    assert run("inflate", *tube, *pressures[:2], "-o", "one.nc") == 0
+    capsys.readouterr()
+    assert "a single state here; a curve needs several" in refused(capsys, "plot", "curve", "one.nc")
+
+
+def test_a_variable_without_any_value_says_so_on_axes_of_its_range():
+    with example_atlas() as atlas:
+        ax = curve(atlas.data, "limit_pressure", along="alpha", beta=-40.0)
+    assert ax.get_xlim() == (0.0, 80.0)
+    (words,) = [text.get_text() for text in ax.texts if text.get_gid() == "chosen"]
+    assert words.replace("\n", " ").endswith("no line: no limit up to the largest pressure")
 
 
 def _foreign(tmp_path):

@@ -17,11 +17,13 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from freesweep import closed_form, status
+from freesweep import closed_form, example_atlas, status
 from freesweep.atlas import schema
 from freesweep.plot import display, plane, regions, style
 from freesweep.plot.map import design_map
+from freesweep.plot.section import section_map
 from freesweep.plot.slack import flag
+from freesweep.plot.validity import validity_map
 
 LENGTHS, RADII, PRESSURES = [0.1, 0.15, 0.2], [4e-3, 5e-3], [2e4, 1e5]
 BEYOND = (slice(10, 13), slice(22, 26))  # of alpha, beta
@@ -111,6 +113,17 @@ def test_nearest_grid_values_are_taken_and_named(whole):
     words = "length 200 mm (nearest to 190 mm), radius 5 mm (nearest to 1000 mm), pressure 20 kPa (nearest to 30 kPa)"
     assert drawn(ax, "chosen")[0].get_text().replace("\u00a0", " ").replace("\n", " ") == words
     assert ax.get_title(loc="left") == "Rotation of the free end under pressure"
+
+
+@pytest.mark.parametrize("draw", [design_map, section_map, validity_map])
+def test_what_was_missed_is_said_once(draw):
+    """Of values, of hatches and of flags at once."""
+    with (
+        example_atlas() as atlas,
+        pytest.warns(UserWarning, match="nearest values .* length 200 mm for length 1000") as told,
+    ):
+        draw(atlas.data, length="1 m")
+    assert len(told) == 1
 
 
 def test_locked_manifold_and_lines(whole):

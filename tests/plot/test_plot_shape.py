@@ -1,5 +1,7 @@
 """Shapes draw the solution: meridians, fibers that keep their length and angle, the rotation of the end."""
 
+from dataclasses import replace
+
 import matplotlib
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ matplotlib.use("Agg")
 from commands import refused, run
 from matplotlib import pyplot
 from matplotlib.collections import LineCollection
-from matplotlib.colors import to_rgba
+from matplotlib.colors import to_rgb, to_rgba
 from PIL import Image
 
 import freesweep as fs
@@ -137,6 +139,11 @@ def test_what_does_not_pull_is_dashed(fibers, words):
     assert [words in text.get_text() for text in ax.texts if text.get_gid() == "size"] == [False, True]
     (frame,) = frames(b, fs.inflate(b, [30e3]))
     assert frame.get_title("left").endswith(f"dashed: {words}")
+    other = replace(b, fibers="loose" if fibers == "bonded" else "bonded")  # whose state this is not
+    assert [words in text.get_text() for text in shape_plot(other, state).texts if text.get_gid() == "size"] == [
+        False,
+        True,
+    ]
     taut = shape_plot(b, fs.inflate(b, 4e5 if fibers == "bonded" else 1e6))
     assert lengths_of(taut, "slack", straight) == 0.0
 
@@ -178,6 +185,19 @@ def test_motion_has_a_frame_for_each_pressure_there_and_back(tube, states, tmp_p
         save_motion(tube, states, tmp_path / "tube.png")
     with pytest.raises(ValueError, match="only dimension"):
         save_motion(tube, states.isel(pressure=1), path)
+
+
+def test_motion_keeps_its_ink_and_says_what_it_leaves_out(tmp_path):
+    """A balloon is all one colour but for the words above it; one that bursts has no frames beyond its limit pressure."""
+    balloon = fs.Actuator(alpha=None, beta=None, length=0.05, radius=5e-3, wall=1e-3, material=fs.NeoHookean(1e5))
+    states = fs.inflate(balloon, np.linspace(0.0, 6e4, 3))
+    assert states.status.values.tolist() == [0, 0, 2]
+    with pytest.warns(UserWarning, match="1 of 3 pressures have no frame: beyond_limit_pressure"):
+        path = save_motion(balloon, states, tmp_path / "balloon.gif")
+    with Image.open(path) as picture:
+        colours = np.asarray(picture.convert("RGB")).reshape(-1, 3).astype(int)
+    for colour in (style.INK, style.PAPER):
+        assert np.abs(colours - np.round(255 * np.array(to_rgb(colour)))).max(axis=1).min() < 8
 
 
 def test_commands(tmp_path, capsys):

@@ -197,9 +197,15 @@ def test_nothing_is_extrapolated(atlas):
     outside, nan = status.OUTSIDE, status.INVALID
     assert found["status"].values[[0, 3, 4, 5]].tolist() == [outside, outside, outside, nan]
     assert found["deformed_length"].values[1] == pytest.approx(POINT["length"], rel=1e-14)
-    with pytest.raises(QueryError, match=r"pressure: found 61000; the atlas holds 0 to 60000.*nearest is 60000"):
+    with pytest.raises(
+        QueryError, match="pressure: found 61 kPa; the atlas holds 0 kPa to 60 kPa, the nearest is 60 kPa"
+    ):
         atlas.query(**(POINT | {"pressure": 6.1e4}))
-    with pytest.raises(QueryError, match="alpha, beta: found 80, -80"):
+    with pytest.raises(
+        QueryError, match=r"found 1 bar; the atlas holds 0 bar to 0.6 bar"
+    ):  # in the unit of the question
+        atlas.query(**(POINT | {"pressure": "1 bar"}))
+    with pytest.raises(QueryError, match="alpha, beta: found 80 deg, -80 deg"):
         atlas.query(**(POINT | {"alpha": 80.0, "beta": -80.0}))
 
 
@@ -368,7 +374,7 @@ def test_junk_is_refused_or_answered_by_a_status(atlas):
         ({"presure": 1.0}, "axis 'presure' is unknown here; did you mean 'pressure'"),
         ({"rotation": 90}, "rotation: it is what a design does.*freesweep.design finds those that do it"),
         ({"alpha": "25 mm"}, "alpha: expects an angle such as '30 deg', got '25 mm', a length"),
-        ({"wall": 1e-3}, "wall: found 0.001; the atlas holds only 0.00159"),
+        ({"wall": 1e-3}, "wall: found 1 mm; the atlas holds only 1.59 mm"),
         ({"alpha": [1.0, 2.0], "beta": [1.0, 2.0, 3.0]}, "do not broadcast"),
         ({"variables": "rotatoin"}, "did you mean 'rotation'"),
         ({"method": "quintic"}, "method: found str 'quintic'; choose one of 'cubic', 'linear'"),

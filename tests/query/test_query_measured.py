@@ -342,7 +342,7 @@ def test_a_csv_of_points_in_their_own_units(made, tmp_path, capsys):
     assert found["points"][0]["rotation"] == pytest.approx(answer["rotation"].item(), rel=1e-12)
     assert found["points"][1]["status"] == "outside_atlas"
     assert found["points"][1]["rotation"] is None
-    assert run(*words, "--format", "csv", "-o", str(tmp_path / "answers.csv")) == DONE
+    assert run(*words, "-o", str(tmp_path / "answers.csv")) == DONE  # the suffix says how
     head, first, second = (tmp_path / "answers.csv").read_text().splitlines()
     assert head.startswith(
         "alpha [degree],beta [degree],length [m],pressure [Pa],rotation [degree],rotation_error [degree]"

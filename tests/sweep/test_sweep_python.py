@@ -137,6 +137,7 @@ def test_every_fault_of_the_arguments_is_told_at_once():
         assert part in told, part
     assert "alpha: is missing" not in told
     assert "c10: is missing" not in told
+    assert "wall: is missing; give wall=" in told  # no tables of TOML
 
 
 def test_odd_arguments_give_faults_and_nothing_else():

@@ -24,10 +24,13 @@ async function savePanel(panel, kind) {
 }
 
 // All parameters of a pinned design, kept units.
-const whole = (design) => ({ fiber_extension: 1, c01: 0, c20: 0, c30: 0, ...facts.fixed, ...at(design) });
+function whole(design) {
+  const own = Object.fromEntries(Object.entries(facts.by_design).map(([name, list]) => [name, list[design.design ?? state.at.design]]));
+  return { fiber_extension: 1, c01: 0, c20: 0, c30: 0, ...facts.fixed, ...own, ...at(design) };
+}
 const plainNumber = (value) => String(Number(Number(value).toPrecision(DIGITS)));
 const LOADS = ["pressure", "force", "torque"];
-const SIZES = ["alpha", "beta", "length", "radius", "wall"];
+const SIZES = ["alpha", "beta", "length", "radius", "wall"], SHAPE = ["taper", "bulge"]; // of tubes, and of bodies besides
 const SOURCE = { energy: "full", wall_model: "membrane", fibers: "bonded", fiber_radius: "inner" };
 
 function parts(values) {
@@ -35,6 +38,14 @@ function parts(values) {
   if ("fiber_radius" in values) own.fiber_radius = values.fiber_radius;
   return Object.entries(SOURCE).filter(([name, usual]) => own[name] !== usual).map(([name]) => [name, own[name]]);
 }
+
+// A size as an actuator takes it: a number, a rule with its number, or null of a family of fibers that there is not.
+function given(values, name) {
+  if (["alpha", "beta"].includes(name) && !facts.families.includes(name)) return null;
+  return facts.rules[name] ? `${facts.rules[name]} ${plainNumber(values[name])} ${name === "wall" ? "m" : "deg"}` : values[name];
+}
+
+const sizesOf = (values) => [...SIZES, ...SHAPE.filter((name) => values[name])].map((name) => [name, given(values, name)]);
 
 function rubberOf({ c10, c01, c20, c30 }) {
   return c20 || c30 ? ["Yeoh", { c1: c10, c2: c20, c3: c30 }] : ["MooneyRivlin", { c10, c01 }];
@@ -44,9 +55,10 @@ function asPython() {
   const lines = ["import freesweep as fs", "", "tubes = ["];
   for (const design of state.pins) {
     const values = whole(design), [rubber, constants] = rubberOf(values);
-    const list = (pairs) => pairs.map(([name, value]) => `${name}=${typeof value === "string" ? `"${value}"` : plainNumber(value)}`).join(", ");
+    const word = (value) => (value === null ? "None" : typeof value === "string" ? `"${value}"` : plainNumber(value));
+    const list = (pairs) => pairs.map(([name, value]) => `${name}=${word(value)}`).join(", ");
     const extension = values.fiber_extension !== 1 ? [["fiber_extension", values.fiber_extension]] : [];
-    lines.push(`    fs.Actuator(${list(SIZES.map((name) => [name, values[name]]))}, material=fs.${rubber}(${list(Object.entries(constants))})${[...extension, ...parts(values)].map((pair) => `, ${list([pair])}`).join("")}),`);
+    lines.push(`    fs.Actuator(${list(sizesOf(values))}, material=fs.${rubber}(${list(Object.entries(constants))})${[...extension, ...parts(values)].map((pair) => `, ${list([pair])}`).join("")}),`);
   }
   const values = whole(state.pins[0]), loads = LOADS.map((name) => plainNumber(values[name] ?? 0)).join(", ");
   return [...lines, "]", `states = [fs.inflate(tube, ${loads}) for tube in tubes]  # pressure [Pa], force [N], torque [N m]`, ""].join("\n");
@@ -55,8 +67,9 @@ function asPython() {
 function asShell() {
   const units = { alpha: "deg", beta: "deg", length: "m", radius: "m", wall: "m", c10: "Pa", c01: "Pa", c20: "Pa", c30: "Pa", pressure: "Pa", force: "N", torque: "N m" };
   return state.pins.map((design) => {
-    const values = whole(design), names = [...SIZES, "c10", ...["c01", "c20", "c30", "force", "torque"].filter((name) => values[name]), "pressure"];
-    const words = names.map((name) => `--${name} "${plainNumber(values[name] ?? 0)} ${units[name]}"`);
+    const values = whole(design), names = ["c10", ...["c01", "c20", "c30", "force", "torque"].filter((name) => values[name]), "pressure"];
+    const word = (name, value) => (value === null ? "none" : typeof value === "string" ? value : `${plainNumber(value)} ${units[name] ?? ""}`.trim());
+    const words = [...sizesOf(values), ...names.map((name) => [name, values[name] ?? 0])].map(([name, value]) => `--${name} "${word(name, value)}"`);
     if (values.fiber_extension !== 1) words.push(`--fiber-extension ${plainNumber(values.fiber_extension)}`);
     for (const [name, value] of parts(values)) words.push(`--${name.replaceAll("_", "-")} ${typeof value === "string" ? value : `"${plainNumber(value)} m"`}`);
     return `freesweep inflate ${words.join(" ")}`;
@@ -64,15 +77,18 @@ function asShell() {
 }
 
 function asToml() {
-  const first = whole(state.pins[0]), own = facts.design_axes.filter((name) => name !== "fiber_radius" || "fiber_radius" in first);
-  const shared = ["alpha", "beta", "length", "radius", "wall", "fiber_radius", "fiber_extension", "c10", "c01", "c20", "c30"].filter((name) => !own.includes(name) && name in facts.fixed);
+  const first = whole(state.pins[0]), own = [...facts.design_axes.filter((name) => name !== "fiber_radius" || "fiber_radius" in first), ...Object.keys(facts.by_design)];
+  const word = (value) => (typeof value === "string" ? `"${value}"` : plainNumber(value));
+  for (const name of own) if (facts.rules[name]) throw new Error(`a list of designs is of numbers, and ${name} is ${facts.rules[name]}: take Python or shell`);
+  const every = [...SIZES, ...SHAPE, "fiber_radius", "fiber_extension", "c10", "c01", "c20", "c30"];
+  const shared = every.filter((name) => !own.includes(name) && (name in facts.fixed || given(first, name) === null));
   const words = parts({}).map(([name, value]) => `${name} = "${value}"`);
   const { high } = facts.axes.pressure || { high: first.pressure };
   return [
-    'title = "Designs pinned in the explorer"', "", "[actuator]", ...shared.map((name) => `${name} = ${plainNumber(first[name])}`), ...words, "",
+    'title = "Designs pinned in the explorer"', "", "[actuator]", ...shared.map((name) => `${name} = ${word(given(first, name) ?? "none")}`), ...words, "",
     "[load]", ...["force", "torque"].map((name) => `${name} = ${plainNumber(first[name] ?? 0)}`), "",
     "[axes]", `pressure = { start = 0.0, stop = ${plainNumber(high)}, num = 41 }`, "",
-    ...state.pins.flatMap((design, k) => ["[[designs]]", `name = "pin ${k + 1}"`, ...own.map((name) => `${name} = ${plainNumber(design[name])}`), ""]),
+    ...state.pins.flatMap((design, k) => ["[[designs]]", `name = "pin ${k + 1}"`, ...own.map((name) => `${name} = ${plainNumber(whole(design)[name])}`), ""]),
   ].join("\n");
 }
 
@@ -95,7 +111,10 @@ const EXPORTS = {
 
 function saveText(kind) {
   const [make, suffix, type] = EXPORTS[kind];
-  download(`freesweep-pins.${suffix}`, make(), type);
+  try {
+    if (kind !== "csv" && !facts.in_numbers) throw new Error("the tubes of this atlas have profiles; only CSV holds what numbers tell of them");
+    download(`freesweep-pins.${suffix}`, make(), type);
+  } catch (error) { say(error.message); }
 }
 
 async function copyLink() {

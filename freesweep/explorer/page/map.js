@@ -1,5 +1,5 @@
 // The map: asked for coarsely while something is dragged, finely when it rests.
-const FINE = 4, DRAFT = 3;
+const FINE = 4, DRAFT = 3, ROOM = 0.04; // ROOM: of a name from the edge, of the axis
 const PAUSE = 500; // [ms] without a frame: something else is moved
 let grid = null, bands = null, draftScale = 0.5, cross = null;
 
@@ -55,13 +55,15 @@ const models = {};
 const put = (name, data) => { models[name].data = data; };
 
 function drawBar() {
-  const palette = bands.colours.map((one) => "#" + one.map((part) => part.toString(16).padStart(2, "0")).join(""));
+  const palette = bands.colours.map((one) => (bands.isEmpty ? "#00000000" : "#" + one.map((part) => part.toString(16).padStart(2, "0")).join("")));
   const { map_colours: mapper, map_bar: bar } = models;
   mapper.setv({ palette, low: bands.low, high: bands.low + bands.step * palette.length });
   const ticks = Array.from({ length: palette.length + 1 }, (_, k) => bands.low + k * bands.step);
   const stride = Math.ceil(ticks.length / 9), first = Math.max(ticks.findIndex((one) => Math.abs(one) < 1e-9 * bands.step * 100), 0) % stride;
   const { FixedTicker } = Bokeh.Models.get ? { FixedTicker: Bokeh.Models.get("FixedTicker") } : Bokeh.Models;
   bar.ticker = new FixedTicker({ ticks: ticks.filter((_, k) => k % stride === first) });
+  bar.major_label_text_alpha = bands.isEmpty ? 0 : 1;
+  byId("map_title").innerHTML = withUnit(state.m) + (bands.isEmpty ? '<span class="note"> no value on this map</span>' : "");
 }
 
 // How far inside all wishes the places of a grid are, in spans of a wish; below zero outside.
@@ -120,17 +122,21 @@ const LINES = {
   diagonal_cross: "M0 11L8 0M6 11L14 0M12 11L20 0M0 0L8 11M6 0L14 11M12 0L20 11", horizontal_line: "M0 3H18M0 8H18",
   cross: "M0 3H18M0 8H18M4 0V11M9 0V11M14 0V11", dot: "M3 3h1M9 3h1M15 3h1M6 8h1M12 8h1", ring: "M3 5h2M8 5h2M13 5h2", blank: "",
 };
-const PUSH = "a family of threads that would have to push, which it cannot";
-
 function drawLegend(kinds) {
   const box = byId("legend"), of = kinds.join() + state.dark;
   if (box.dataset.of === of) return;
   box.dataset.of = of;
   box.innerHTML = kinds.map((kind) => {
-    const words = kind < 100 ? facts.statuses[kind].meaning : facts.slack[kind - 100], title = kind < 100 ? facts.statuses[kind].sentence : PUSH;
+    const words = kind < 100 ? facts.statuses[kind].meaning : facts.slack[kind - 100], title = kind < 100 ? facts.statuses[kind].sentence : facts.slack_sentence;
     return `<span title="${title.replaceAll('"', "'")}"><svg><rect width="18" height="11" fill="${isFailed(kind) && kind < 100 ? "var(--blank)" : "none"}"/>` +
       `<path d="${LINES[facts.hatches[kind]]}" stroke="var(--quiet)" fill="none"/></svg>${words}</span>`;
   }).join("");
+}
+
+// A place of a name, drawn in from the edge of the map.
+function inside(name, value) {
+  const { low, high } = facts.axes[name], room = ROOM * (high - low);
+  return Math.min(Math.max(value, low + room), high - room);
 }
 
 // What lies over the map: the lines and regions of both fiber angles, pins, the cross.
@@ -145,7 +151,7 @@ function drawMarks() {
   // over the colours of the map, which are those of light paper until they are turned down
   const isDim = state.dark && (state.wishes.length > 0 || state.taut), on = isDim ? "#dfe3e8" : facts.colours.ink;
   put("map_lines", { xs: lines.map((one) => one[0]), ys: lines.map((one) => one[1]), ink: lines.map(() => on), dash: [[6, 3], [6, 3, 1, 3]].slice(0, lines.length) });
-  const texts = plane ? facts.regions.map(([text, a, b]) => [text, ...both(a, b)]) : [];
+  const texts = plane ? facts.regions.map(([text, a, b]) => [text, ...both(a, b)]).map(([text, x, y]) => [text, inside(state.x, x), inside(state.y, y)]) : [];
   put("map_labels", { text: texts.map((one) => one[0]), x: texts.map((one) => one[1]), y: texts.map((one) => one[2]), ink: texts.map(() => on) });
   const pins = state.pins.map((pin, k) => ({ k, x: shown(state.x, at(pin)[state.x]), y: shown(state.y, at(pin)[state.y]) }));
   put("map_pins", {

@@ -26,7 +26,7 @@ function bandsOf(values, centre) {
     const all = centre === null ? facts.colours.sequential : facts.colours.diverging;
     colours.push(all[Math.round(Math.min(Math.max(share, 0), 1) * (all.length - 1))]);
   }
-  return { low: from * step, step, colours };
+  return { low: from * step, step, colours, isEmpty: !finite.length };
 }
 
 // Values between the places of a grid (nx, ny), f pixels for each; NaN next to NaN.

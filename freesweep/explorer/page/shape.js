@@ -4,34 +4,35 @@ const STATIONS = 121, ENDS = 0.8; // of a radius: how far the drawn ends of a sk
 const shapes = new Map();
 const needsShape = () => ["deformed_length", "mid_radius", "rotation"].filter((name) => measures.has(name));
 
-function fiberRadius(values) {
-  const all = { ...facts.fixed, ...values };
-  return all.fiber_radius ?? all.radius + Math.max(facts.fiber_share, 0) * all.wall;
+// Where the fibers of a design (all its numbers) lie at rest, at a share of the length: a body has a taper and a bulge.
+function fiberRadius(all, share = 0.5) {
+  const body = (1 - (all.taper ?? 0) * share) * (1 + (all.bulge ?? 0) * Math.sin(Math.PI * share) ** 2);
+  return all.fiber_radius ?? all.radius * body + Math.max(facts.fiber_share, 0) * all.wall;
 }
 
-function sketch(values, length, middle, rotation) {
-  const all = { ...facts.fixed, ...values }, r0 = fiberRadius(values), reach = ENDS * Math.max(middle, r0);
+function sketch(all, length, middle, rotation) {
+  const r0 = fiberRadius(all), reach = ENDS * Math.max(middle, r0);
   const share = Array.from({ length: STATIONS }, (_, k) => k / (STATIONS - 1));
   const rise = (z) => (middle - r0) * (1 - Math.exp(-z / reach)) * (1 - Math.exp(-(length - z) / reach)) / (1 - Math.exp(-length / 2 / reach)) ** 2;
-  const twist = share.map((s) => (s * rotation * Math.PI) / 180);
-  const fibers = ["alpha", "beta"].map((name) => share.map((s, k) => (Math.tan((all[name] * Math.PI) / 180) * all.length * s) / r0 + twist[k]));
-  const counts = ["alpha", "beta"].map((name) => Math.max(2, Math.round(14 * Math.cos((all[name] * Math.PI) / 180))));
-  return { radius: share.map((s) => 1e3 * (r0 + rise(s * length))), position: share.map((s) => 1e3 * s * length), twist, fibers, counts };
+  const twist = share.map((s) => (s * rotation * Math.PI) / 180), angle = (name) => ((all[name] ?? 0) * Math.PI) / 180;
+  const fibers = ["alpha", "beta"].map((name) => share.map((s, k) => (Math.tan(angle(name)) * all.length * s) / r0 + twist[k]));
+  const counts = ["alpha", "beta"].map((name) => (facts.families.includes(name) ? Math.max(2, Math.round(14 * Math.cos(angle(name)))) : 0));
+  return { radius: share.map((s) => 1e3 * (fiberRadius(all, s) + rise(s * length))), position: share.map((s) => 1e3 * s * length), twist, fibers, counts };
 }
 
 // { rest, state, isSolved } of a pin, null while nothing is known of it.
 function shapeOf(k) {
-  const design = state.pins[k], values = at(design), all = { ...facts.fixed, ...values };
+  const design = state.pins[k], all = whole(design);
   if (all.length === undefined || all.radius === undefined) return null;
   const solved = shapes.get(keyOf(design));
   if (solved && solved.state) return { rest: solved.rest, state: solved.state, isSolved: true };
   const [length, middle, rotation] = ["deformed_length", "mid_radius", "rotation"].map((name) => pinned.pins[k]?.measures[name]?.value ?? null);
-  const rest = sketch(values, all.length, fiberRadius(values), 0);
-  return { rest, state: length === null || middle === null ? null : sketch(values, length, middle, rotation ?? 0), isSolved: false };
+  const rest = sketch(all, all.length, fiberRadius(all), 0);
+  return { rest, state: length === null || middle === null ? null : sketch(all, length, middle, rotation ?? 0), isSolved: false };
 }
 
 function askShapes() {
-  if (isLocal || !facts.uniform) return;
+  if (isLocal || !facts.in_numbers) return;
   const open = state.pins.filter((design) => !shapes.has(keyOf(design)));
   const order = [state.pins[state.active], ...open].filter((design) => design && open.includes(design));
   if (!order.length) return;

@@ -40,12 +40,13 @@ function honest(value, error) {
 
 const oneDigit = (error) => (error > 0 ? digits(error, 1) : "0");
 
-// "12 mm", "15 psi", or a plain number in the unit that is shown; NaN if it is none.
+// "12 mm", "15 psi", "1 bar", or a plain number in the unit that is shown; NaN if it is none.
 function readShown(name, text) {
   const match = /^\s*([+\-−]?[0-9.]+(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*$/.exec(text);
   if (!match) return NaN;
   const number = Number(match[1].replace("−", "-"));
   const unit = measures.has(name) ? measures.get(name).unit : facts.units_of[name];
-  const own = match[2] && [...facts.units[unit]].find(([word]) => word === match[2] || (word === "degree" && /^(deg|°)$/.test(match[2])));
-  return match[2] ? (own ? number / own[1] : NaN) : kept(name, number);
+  const own = match[2] && facts.units[unit].find(([word]) => word === match[2]); // also of what no text of Python has: mL, %
+  const factor = own ? 1 / own[1] : facts.written[unit][match[2].replace("µ", "u").replace("²", "2")];
+  return match[2] ? number * (factor ?? NaN) : kept(name, number);
 }

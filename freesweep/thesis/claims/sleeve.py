@@ -37,7 +37,7 @@ def length(energy):
     gaps = [
         100.0 * (_force(energy, e, length=0.1) / _force(energy, e, length=SLEEVE_LENGTH) - 1.0) for e in (False, True)
     ]
-    words = f"100 mm against 640 mm: {abs(gaps[0]):.0e} % different, with fiber extension {abs(gaps[1]):.1f} %"
+    words = f"100 mm against 640 mm: {abs(gaps[0]):.1g} % different, with fiber extension {abs(gaps[1]):.1f} %"
     return Found(words, holds(abs(gaps[0]) < 1e-3 and abs(gaps[1]) < 3.0))
 
 
