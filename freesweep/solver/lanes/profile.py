@@ -23,7 +23,7 @@ from .pack import COLUMNS, Asked, Kind, aligned, loads
 from .pack import LENGTH as HALF
 from .quadrature import along, find_ends, graded, make_room, scan
 from .rule import LAST, PLACES, UP_TO, missed_within, summed
-from .vector import WIDTH, bits, get, mask_of, put, select, spread
+from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
 # what is kept of each place of the way; axial position and twist as what they differ by from those of a tube like its middle
 SHARE, X, GROWTH, Z, TURN, DOUBT_X, DOUBT_Z, DOUBT_TURN = range(8)
@@ -233,11 +233,13 @@ def seat(group, count, asked, depths, rows, columns, start, beside):
 
 @kernel
 def seated(start, cell, load, half, scratch):
-    """The :class:`.meridian.Middle` of the uniform stretch and the depth, or, where that is NaN, of its stretch."""
+    """The :class:`.meridian.Middle` of the uniform stretch and the depth, or, where that is NaN, of its stretch: the
+    uniform one where rounding alone drives it.
+    """
     u, depth = get(start, 0), get(start, 1)
     known = depth == depth
-    found, _, _ = middle_at(u, cell, load, half, scratch)
-    return chosen(known, middle(u, select(known, depth, DEEPEST), cell, load, scratch), found)
+    found, driven, _ = middle_at(u, cell, load, half, scratch)
+    return chosen(known | isnt(driven), middle(u, select(known, depth, DEEPEST), cell, load, scratch), found)
 
 
 @kernel
