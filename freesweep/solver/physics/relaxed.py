@@ -22,11 +22,10 @@ Along a tube neighbours are alike: what is known of one point is the first guess
 one maximum, a place where no taut family is pushed and no slack one overreached is the one, however it was come to.
 """
 
-import functools
 from math import sqrt
 from typing import NamedTuple
 
-from ...jit import kernel
+from ...jit import in_place, kernel
 from ..either import isnt, select, some
 from .fibers import (
     ALPHA_TAUT,
@@ -102,7 +101,7 @@ def bracket(given, t, side, low, psi):
     return select((edge - psi) * side > 0.0, edge, psi), -t + side * width
 
 
-@functools.partial(kernel, forceinline=True)  # what is fused, and so rounded, depends on what stands in one place
+@in_place
 def search(given, T, sides, side, t, ends, at, low, limp, going):
     """``(psi, what nothing holds)`` on the ``side`` of the family t, from a first guess between the ``ends``: F has the sign
     of the side at the near one, the other at the far one.
