@@ -10,7 +10,7 @@ import freesweep
 from freesweep import jit
 
 PACKAGE = Path(freesweep.__file__).parent
-POLICIES = {"kernel", "entry_point"}
+POLICIES = {"kernel", "in_place", "entry_point"}
 FIRST = 1
 
 

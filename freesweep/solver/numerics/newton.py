@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...jit import kernel
+from ...jit import in_place, kernel
 from ..cells import behind, cell_at, nothing_yet, of_length
 
 MAX_ITERATIONS = 60  # a warm start takes 1 to 3, a bad first guess at a small angle 25
@@ -56,7 +56,7 @@ def system_in(work):
     return System(work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7])
 
 
-@kernel
+@in_place
 def assemble(density, x, y, n, cells, load, convex, system):
     """Gradient and Hessian of -J on n cells, into the :class:`System`; False if not admissible.
 

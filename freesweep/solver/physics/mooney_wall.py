@@ -15,8 +15,8 @@ from .membrane import excess
 
 
 class Layers(NamedTuple):
-    """A wall as layers: its area, k, and rho_i^2; how many there are, where their rule begins among the ``places`` and
-    ``weights`` of all; and the mean of 1/rho^2 over them.
+    """A wall as layers: its area, k, and rho_i^2; how many there are, and where their rule begins among the ``places`` and
+    ``weights`` of all.
     """
 
     area: float
@@ -26,7 +26,6 @@ class Layers(NamedTuple):
     at: int
     places: np.ndarray
     weights: np.ndarray
-    reciprocal: float
 
 
 @kernel
@@ -40,7 +39,7 @@ def weigh(area, inner, count, reciprocal):
 @kernel
 def stored(y, G_1, psi, c, layers):
     """W alone."""
-    area, k, inner, count, at, places, weights, _ = layers
+    area, k, inner, count, at, places, weights = layers
     G = 1.0 + G_1
     e = 1.0 / G
     root = sqrt(e)
@@ -61,9 +60,9 @@ def stored(y, G_1, psi, c, layers):
 
 
 @kernel
-def slopes(y, G_1, psi, c, layers):
-    """``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
-    area, k, inner, count, at, places, weights, reciprocal = layers
+def slopes(y, G_1, psi, c, layers, reciprocal):
+    """With the mean of 1/rho^2 over the layers: ``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
+    area, k, inner, count, at, places, weights = layers
     G = 1.0 + G_1
     e = 1.0 / G
     root = sqrt(e)
@@ -102,9 +101,9 @@ def slopes(y, G_1, psi, c, layers):
 
 
 @kernel
-def rises(y, G_1, psi, c, layers):
+def rises(y, G_1, psi, c, layers, reciprocal):
     """``(W, W_y, W_G, W_psi)``, in one go along the layers."""
-    area, k, inner, count, at, places, weights, reciprocal = layers
+    area, k, inner, count, at, places, weights = layers
     G = 1.0 + G_1
     e = 1.0 / G
     root = sqrt(e)

@@ -25,7 +25,7 @@ one maximum, a place where no taut family is pushed and no slack one overreached
 from math import sqrt
 from typing import NamedTuple
 
-from ...jit import kernel
+from ...jit import in_place, kernel
 from ..either import isnt, select, some
 from .fibers import (
     ALPHA_TAUT,
@@ -101,7 +101,7 @@ def bracket(given, t, side, low, psi):
     return select((edge - psi) * side > 0.0, edge, psi), -t + side * width
 
 
-@kernel
+@in_place
 def search(given, T, sides, side, t, ends, at, low, limp, going):
     """``(psi, what nothing holds)`` on the ``side`` of the family t, from a first guess between the ``ends``: F has the sign
     of the side at the near one, the other at the far one.

@@ -26,6 +26,7 @@ from ..either import select, some
 from ..load import Load
 from . import mooney_wall
 from .membrane import excess, yeoh_slope
+from .mooney_wall import Layers
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
@@ -200,20 +201,13 @@ def energy(y, G_1, psi, area, rubber, wall):
 
 
 @kernel
-def layered(area, wall):
-    """The wall as layers."""
-    count = layers(area, wall)
-    return mooney_wall.Layers(
-        area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS, reciprocal_of(area, wall, count)
-    )
-
-
-@kernel
 def stored(y, G_1, psi, area, rubber, wall):
     """W alone."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[0]
-    return mooney_wall.stored(y, G_1, psi, rubber[0], layered(area, wall))
+    count = layers(area, wall)
+    own = Layers(area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS)
+    return mooney_wall.stored(y, G_1, psi, rubber[0], own)
 
 
 @kernel
@@ -221,7 +215,9 @@ def slopes(y, G_1, psi, area, rubber, wall):
     """The derivatives of :func:`energy`, without W."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[1:]
-    return mooney_wall.slopes(y, G_1, psi, rubber[0], layered(area, wall))
+    count = layers(area, wall)
+    own = Layers(area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS)
+    return mooney_wall.slopes(y, G_1, psi, rubber[0], own, reciprocal_of(area, wall, count))
 
 
 @kernel
@@ -229,7 +225,9 @@ def rises(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi)``."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[:4]
-    return mooney_wall.rises(y, G_1, psi, rubber[0], layered(area, wall))
+    count = layers(area, wall)
+    own = Layers(area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS)
+    return mooney_wall.rises(y, G_1, psi, rubber[0], own, reciprocal_of(area, wall, count))
 
 
 @kernel
