@@ -177,7 +177,12 @@ def told_apart(seed, numbers):
     both = (plain[0] == OK) & (plain[1] == OK)
     off = np.abs(exact.values[both, :5] - meshes.values[both, :5]) - exact.bounds[both, :5] - meshes.bounds[both, :5]
     size = 1.0 + np.abs(exact.values[both, :5])
-    return [(row // 4, row % 4) for row in apart.tolist()], np.count_nonzero(~decided), len(pressures), np.max(off / size)
+    return (
+        [(row // 4, row % 4) for row in apart.tolist()],
+        np.count_nonzero(~decided),
+        len(pressures),
+        np.max(off / size),
+    )
 
 
 def test_meshes_end_at_no_fold_that_is_none():
