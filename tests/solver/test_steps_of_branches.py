@@ -167,16 +167,3 @@ def test_a_way_that_begins_with_a_push_refuses_nothing():
     _, _, found = held_at_its_length(4468)
     assert found.status.tolist() == [OK]
     assert found.loads[0] == pytest.approx(-1.46060373772, abs=1e-6)
-
-
-def test_branch_goes_on_where_a_rule_is_surer_than_its_steps_are_long():
-    """One of a million: points known to a hundredth of the drive, on steps of a hundred thousandth: none was met."""
-    design = -76.39231925006843, -75.88244634934263, 18.56664160407154, 0.044008892311151473, 1.0, 0.33991845825412237
-    drawn = Drawn(
-        np.array([[*design, 1.981744521247447, 0.9022899886784295, 0.0]]),
-        np.array([[0.007022651837959807, 0.018390858118868383, 0.16805276822842322, 0.18387380955035593]]),
-    )
-    asked = drawn.problems(), np.array([0, 4]), drawn.pressures.ravel(), batch.uniform(24), ACCURACY
-    walks, meshes = batch.walk_all(*asked), batch.walk_all(*asked, lanes=False)
-    assert walks.status.tolist() == [OK] * 4
-    assert np.all(np.abs(walks.values - meshes.values) <= walks.bounds + meshes.bounds)

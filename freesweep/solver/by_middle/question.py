@@ -20,7 +20,7 @@ MOST_HALVINGS, ROUNDING = 180, 4e-16  # of a bracket, and its width where it end
 TRIES, MOST_TRIES = 4, 6  # along a branch, and for a state
 ROUGH = 1e-2  # what is not known to this share of itself is not known
 # tries, and a doubt of the miss that needs no more of them: along a branch, where a point counts, and where it turns
-ALONG, SHARPLY, FINEST = (range(TRIES), ROUGH), (range(TRIES), 1e-7), (range(TRIES - 1, MOST_TRIES - 1), 1e-7)
+ALONG, SHARPLY, FINEST = (range(TRIES), ROUGH), (range(TRIES), 1e-7), (range(TRIES - 1, TRIES), 0.0)
 WIDER = 3.0  # times as far away is looked next for a change of sign
 
 

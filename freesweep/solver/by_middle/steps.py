@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import atan2, cos, exp, hypot, log, pi, sin
 from typing import NamedTuple
 
-from .question import ALONG, SHARPLY, WIDER, ask, beside, crossing, sign_of, widening
+from .question import SHARPLY, WIDER, ask, beside, crossing, sign_of, widening
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.01, 0.05, 1e-5  # radius of the circle
 SHORT_STEP = 1e-3  # up to which a branch may turn by any angle: round a corner
@@ -126,7 +126,7 @@ def advance(here, step):
             return here.middle * exp(step * cos(toward + angle)), here.share + step * sin(toward + angle)
 
         widest = pi if step <= SHORT_STEP else 0.5 * pi if fresh else STRAY
-        met = yield from beside(place, here.left, widening(SPREAD, widest), SHARP, as_fine_as(step))
+        met = yield from beside(place, here.left, widening(SPREAD, widest), SHARP)
         if met is not None:
             angle = met[0]
             smooth = abs(angle) < STRAY and not fresh
@@ -138,13 +138,6 @@ def advance(here, step):
         step *= SHORTER if step > SHORT_STEP / SHORTER or step <= SHORT_STEP else SHORT_STEP / step
         if not sharp and not fresh and step < SMALL * here.step:
             here, sharp = (yield from sharpened(here)), True
-
-
-def as_fine_as(step):
-    """Tries, and the doubt that a point at the end of a step may leave: beside one that is off by more than the step is long
-    a finer answer would meet none.
-    """
-    return ALONG[0], ALONG[1] * min(step / LARGEST_STEP, 1.0)
 
 
 def around_top(points, sense):
@@ -249,7 +242,7 @@ def sharpened(here):
     def place(t):
         return here.middle * exp(-t * sin(here.chord)), here.share + t * cos(here.chord)
 
-    distances = widening(2.0 * SHARP * here.step, STRAY * here.step)
-    met = yield from beside(place, here.left, distances, EXACT * here.step, SHARPLY)
+    far = 2.0 * SHARP * here.step
+    met = yield from beside(place, here.left, (far, 2.0 * far), EXACT * here.step, SHARPLY)
     middle, share = place(0.0 if met is None else met[0])
     return here._replace(middle=middle, share=share, exact=True)
