@@ -20,7 +20,7 @@ from .stiff import stiffness
 from .wishes import HELD, STIFF
 
 KINDS = {"free": LOADED, "locked": LOCKED, "force": LENGTH_HELD, "torque": ROTATION_HELD, "limit": LOADED}
-ALONG = (*SLACK, *PULLS)  # what only sums along the depth tell (:mod:`freesweep.solver.lanes.quadrature`)
+ALONG = (*SLACK, *PULLS)  # what only sums along the depth tell (:mod:`freesweep.solver.lanes.sums`)
 WORST = ("outer_radius", "largest_stretch")
 TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tubes
 OF_SOURCE = (*WORST, "limit_pressure", *STIFF)

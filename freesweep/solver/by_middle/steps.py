@@ -23,10 +23,7 @@ FLAT = 4.0  # times what a point may be off: a change of the share that says not
 MOST_STEPS = 2000
 BENT = 0.2  # from one step to the next [radian], from which on a snap may hide in it
 LEVEL, LOOKS = 0.3, 4  # change of the share by the step, below which a snap may hide in one; parts that are looked at
-ASIDE, BARELY = (
-    0.1,
-    1 / 16,
-)  # how far beside a step it has the branch between: of the step, and of what the share changes
+ASIDE, BARELY = 0.1, 1 / 16  # how far beside it the branch has to be: of the step, and of what the share changes on it
 UNEVEN = 4.0  # times what the share changes on another part
 NOTHING_LESS = 1e-8  # of a step: by how much a branch need fall back to turn
 BEGINNINGS = 1e-3, 1e-5, 1e-7  # strains from which on a branch is followed

@@ -12,8 +12,8 @@ from . import slack_ends
 from .meridian import ALMOST, DEEPEST, fallen, middle_at
 from .outputs import DX, FLOOR, WITHIN, finish, unmet
 from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
-from .quadrature import between_ends, find_ends, scan
 from .rule import LAST
+from .sums import between_ends, find_ends, scan
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load

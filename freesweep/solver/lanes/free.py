@@ -11,7 +11,7 @@ from ...jit import entry_point, kernel
 from ..load import Load
 from ..physics import lagrangian
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H
-from . import first_guess, meridian, quadrature
+from . import first_guess, meridian, quadrature, sums
 from .pack import BEFORE, COLUMNS, PRESSURE, Asked, Kind, Told, aligned, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
 from .vector import WIDTH, bits, get, mask_of, put, select, spread
@@ -104,7 +104,7 @@ def solve(asked, kind, pieces, accuracy, told, middles):
     begin at uniform stretches. Rows that a lane could not do keep the status that they have. Of the others ``middles``
     (n, 2) take the uniform stretch and the depth of the middle, from which profiles are drawn.
     """
-    room, out, small = quadrature.make_room(), aligned(2, 16), aligned(2, COLUMNS)
+    room, out, small = sums.make_room(), aligned(2, 16), aligned(2, COLUMNS)
     columns, start, rows = small[0], small[1], np.zeros(WIDTH, np.int64)
     for group in range(0, len(asked.order), WIDTH):
         count = min(WIDTH, len(asked.order) - group)

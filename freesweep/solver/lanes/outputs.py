@@ -1,5 +1,5 @@
 """What is told of a state, for a vector of designs: outputs, of a physical tube the numbers of :mod:`..along.places`,
-and their bounds, from the sums along half of it (:mod:`quadrature`).
+and their bounds, from the :mod:`sums` along half of it.
 """
 
 from math import sqrt

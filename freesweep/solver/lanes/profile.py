@@ -21,8 +21,8 @@ from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at
 from .outputs import DX, LENGTH, TWIST
 from .pack import COLUMNS, Asked, Kind, aligned, loads
 from .pack import LENGTH as HALF
-from .quadrature import along, find_ends, graded, make_room, scan
 from .rule import LAST, PLACES, UP_TO, missed_within, summed
+from .sums import along, find_ends, graded, make_room, scan
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
 # what is kept of each place of the way; axial position and twist as what they differ by from those of a tube like its middle

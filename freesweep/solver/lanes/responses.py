@@ -35,8 +35,9 @@ from .element import (
 )
 from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
-from .quadrature import NARROW, find_ends, look_along, make_room
+from .quadrature import look_along
 from .second import LOADS, bends
+from .sums import NARROW, find_ends, make_room
 from .told import CLOSE, OUTPUTS, TOLD, finish
 from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
 

@@ -18,7 +18,8 @@ from .meridian import DEEPEST, fallen, logarithm, middle, middle_at
 from .outputs import DX, FLOOR, WITHIN, finish
 from .pack import COLUMNS, LENGTH, OUTPUTS, PRESSURE, aligned, enter, loads
 from .profile import chosen
-from .quadrature import between_ends, make_room, scan, stationary
+from .quadrature import stationary
+from .sums import between_ends, make_room, scan
 from .vector import WIDTH, bits, get, isnt, put, select, spread
 
 # what is told of half a wave: outputs, their bounds, and how much of these is rounding; its length, and what may be missing

@@ -185,8 +185,6 @@ def correct(functional, track, y, mu, n, cells, path, normal_mu, tangent, work):
         now, held_row = load_at(path, y, n, mu), (0.0, 0.0, 0.0)
         if not assemble(functional.density, track.x, y, n, cells, now, False, system):
             return LOST, 0, mu, 0.0
-        for i in range(n):  # what a step leaves of it: a cell of next to none is so stiff that all seem to have come
-            least[i] = system.room[i]
         by_mu = load_slope(functional, track.x, y, n, cells, path, mu, b, of_k)
         if held.any:
             total, by_held = hold(functional.conjugate, track.x, y, n, cells, now, held.unit, c)
