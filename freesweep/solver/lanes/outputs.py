@@ -38,8 +38,16 @@ def unmet(mid, miss, missed):
 
 
 @kernel
+def by_depth(mid):
+    """By what share of themselves the strain of the middle, and what is summed beside it, change with the depth: at the end
+    of a layer they fall as it does, and in a short tube the strain is as the square of its length.
+    """
+    return 3.0 * mid.q * (1.0 + mid.q) * mid.whole / (1.0 - mid.q)
+
+
+@kernel
 def finish(mid, miss, moved, placed, behind, cell, load, half, middle_limp, doubts, unsure, numbers, scratch, out):
-    """Write outputs, numbers and bounds, where the middle may have ``moved`` by that share of the layer, and any place,
+    """Write outputs, numbers and bounds, where the strain may have ``moved`` by that share of itself, and that of any place,
     the middle itself, too, by the share ``placed``; what lies ``behind`` the deepest layer is uniform. Returns the largest
     scaled bound of the outputs, rounding left out.
     """
@@ -52,13 +60,12 @@ def finish(mid, miss, moved, placed, behind, cell, load, half, middle_limp, doub
         half * mid.energy + get(sums, ENERGY) + behind * mid.uniform[3],
         mid.u + (mid.y - mid.u) * rest,
     )  # fmt: skip
-    _, middle_moved = middle_off(mid, placed)
     errors = (
         get(missed, LENGTH) + moved * abs(get(sums, LENGTH)),
         get(missed, VOLUME) + moved * abs(get(sums, VOLUME)),
         get(missed, TWIST) + moved * abs(get(sums, TWIST)),
         get(missed, ENERGY) + moved * abs(get(sums, ENERGY)),
-        middle_moved * rest,
+        abs(1.0 - mid.y) * placed * rest,
     )  # fmt: skip
     scale, floors = lagrangian.scales(outputs, cell, load, half, SMALLEST_TOLERANCE)
     floor = FLOOR * floors[0], FLOOR * floors[1], FLOOR * floors[2], FLOOR * floors[3], FLOOR * floors[4]
@@ -71,13 +78,6 @@ def finish(mid, miss, moved, placed, behind, cell, load, half, middle_limp, doub
 
 
 @kernel
-def middle_off(mid, placed):
-    """``(share of the layer, stretch)`` by which the middle may be off."""
-    by = min(placed, 2.0 * mid.q)
-    return by, abs(1.0 - mid.u) * by
-
-
-@kernel
 def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
     """Write the numbers of a physical tube's places; of what is ``seen`` of slack families: (limp in the middle, lengths in
     doubt, by how much an end may be off).
@@ -85,7 +85,6 @@ def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
     if len(wall) == 1:
         return
     (middle_limp, doubts, unsure), sums, missed = seen, numbers[0], numbers[1]
-    by, middle_moved = middle_off(mid, moved)
     size = load.p + abs(load.f)
     share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
     share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half
@@ -100,8 +99,8 @@ def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
         (
             doubt + doubts[0] / half, doubt + doubts[1] / half,
             off_a + faint + moved * abs(least_a), off_b + faint + moved * abs(least_b),
-            0.5 * get(missed, WORST + 2) / outer + 3.0 * middle_moved,
-            0.5 * get(missed, WORST + 3) / strain + 3.0 * by * (strain - 1.0),
+            0.5 * get(missed, WORST + 2) / outer + 3.0 * abs(1.0 - mid.y) * moved,
+            0.5 * get(missed, WORST + 3) / strain + 3.0 * moved * (strain - 1.0),
         ),
         (least, least, none, none, places.ROUNDING * outer, places.ROUNDING * strain),
     )  # fmt: skip

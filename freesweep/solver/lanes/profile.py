@@ -18,6 +18,7 @@ from ..problem import PHYSICAL, SOURCE
 from . import slack_ends
 from .free import seat_states
 from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at
+from .outputs import by_depth
 from .outputs import DX, LENGTH, TWIST
 from .pack import COLUMNS, Asked, Kind, aligned, loads
 from .pack import LENGTH as HALF
@@ -165,7 +166,7 @@ def pull(multiplier, load):
 @kernel
 def tell(x, mid, cell, load, half, placed, stood, near, scratch, out):
     """Write the FIELDS of a station that :func:`stand` found to ``out`` (FIELDS, WIDTH), where the middle may have moved by
-    the share ``placed`` of the layer; what is left of a long tube has the middle's, or that of the uniform tube.
+    the share ``placed`` of its strain; what is left of a long tube has the middle's, or that of the uniform tube.
     Returns what is handed on.
     """
     at, moved = stood[0], stood[1]
@@ -177,7 +178,7 @@ def tell(x, mid, cell, load, half, placed, stood, near, scratch, out):
     sine = sqrt(max(1.0 - here.cosine * here.cosine, 0.0))
     off = get(moved, 0)
     z, turn = mid.s * x + longer, mid.psi * x + turned
-    middle_off = abs(1.0 - mid.u) * placed
+    middle_off = abs(1.0 - mid.y) * placed
     wrong = s * sine * off + middle_off
     _, G_1, psi, _ = lagrangian.level_of(mid.u, cell, load, near)
     own = local(y, level, cell, load, scratch)
@@ -264,7 +265,7 @@ def draw(asked, depths, stations, kind, pieces, accuracy, profiles, drawn):
         last, fine = go(parts, pieces, edges, mid, cell, load, room.rows, way, scratch)
         miss = half - get(way[X], last - 1)
         moved = min(mid.rate * (abs(miss) + get(way[DOUBT_X], last - 1)), 1.0)  # deep in a tube little depends on it
-        placed = 2.0 * mid.q * moved
+        placed = by_depth(mid) * moved
         turned = max(1.0, abs(half * mid.psi + get(way[TURN], last - 1)))
         worst, loose, tension, near = spread(0.0), spread(0.0), spread(0.0), nothing_yet(spread(0.0))
         for j in range(len(stations)):

@@ -16,12 +16,12 @@ from ..physics.uniform_tube import FAR
 from ..physics.wall import has_any_family, has_two_families
 from . import slack_ends
 from .meridian import DEEPEST, middle
-from .outputs import DX, WITHIN, finish, unmet
+from .outputs import DX, WITHIN, by_depth, finish, unmet
 from .sums import between_ends, find_ends, scan
 from .vector import WIDTH, bits, get, isnt, mask_of, select, some, spread
 
 FITS = 16  # trials for the depth of the middle
-ROUGH, CLOSE = 1e-3, 1e-10  # shares of the layer that may be wrong there
+ROUGH, CLOSE = 3e-3, 3e-10  # shares of the strain that may be wrong there
 MUCH = 1e-2  # of the accuracy asked for
 STEPS, MET = 8, 1e-12  # to the uniform stretch, relative
 SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
@@ -87,11 +87,11 @@ def stationary(u, cell, load, active):
 
 @kernel
 def is_off(mid, miss, straight, share):
-    """Where half a tube is not as long as it is, by more than a ``share`` of the layer. What is left behind the deepest
-    middle, or that of a ``straight`` tube, is uniform.
+    """Where half a tube is not as long as it is, by what more than a ``share`` of the strain hangs on. What is left behind
+    the deepest middle, or that of a ``straight`` tube, is uniform.
     """
     long = (straight | (mid.depth >= DEEPEST)) & (miss >= 0.0)
-    return isnt(long) & (abs(miss) * mid.rate * mid.q > share)
+    return isnt(long) & (abs(miss) * mid.rate * by_depth(mid) > share)
 
 
 @kernel
@@ -126,9 +126,9 @@ def sum_parts(pieces, mid, cell, load, active, room):
 @kernel
 def tell(mid, miss, seen, unsure, cell, load, half, room, out):
     """Write what is told of a state (:mod:`outputs`) whose half is missed by so much; returns the largest scaled bound."""
-    nearest = 2.0 * mid.q  # at most that far is a long tube's from the end
-    moved = nearest * min(mid.rate * unmet(mid, miss, get(room.numbers[1], DX)), 1.0)
-    placed = nearest * min(mid.rate * unmet(mid, miss, get(room.numbers[1], WITHIN)), 1.0)
+    share = by_depth(mid)
+    moved = share * min(mid.rate * unmet(mid, miss, get(room.numbers[1], DX)), 1.0)
+    placed = share * min(mid.rate * unmet(mid, miss, get(room.numbers[1], WITHIN)), 1.0)
     behind = select(mid.depth >= DEEPEST, max(miss, 0.0), 0.0)
     return finish(
         mid,
