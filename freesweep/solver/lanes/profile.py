@@ -18,8 +18,7 @@ from ..problem import PHYSICAL, SOURCE
 from . import slack_ends
 from .free import seat_states
 from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at
-from .outputs import by_depth
-from .outputs import DX, LENGTH, TWIST
+from .outputs import DX, LENGTH, TWIST, by_depth
 from .pack import COLUMNS, Asked, Kind, aligned, loads
 from .pack import LENGTH as HALF
 from .rule import LAST, PLACES, UP_TO, missed_within, summed
