@@ -83,6 +83,12 @@ def scan(u, change, samples, cell, start, end, low, high, half, asked):
             else:
                 share = min(i / samples, 1.0)
                 ahead = 2.0 * t - t_before if i > 1 else low + share * (high - low)
+                last = own & (share >= 1.0)
+                if some(last):  # met before, it would be so again on another branch
+                    (_, L_y, _, _, _, _), _ = lagrangian.density_beside(
+                        here, zero, cell, between(start, end, 0.5 * (t + high)), near
+                    )
+                    risen = risen & (isnt(last) | (L_y * steep < 0.0))
                 guess = select(share >= 1.0, high, ahead)
                 t_before = select(own, t, t_before)
                 bent_yy, bent_vv, found, rise, near = seek(here, cell, start, end, low, high, guess, steep, near, own)
