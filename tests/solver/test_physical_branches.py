@@ -162,6 +162,34 @@ def test_states_with_profiles_are_those_without(number, many):
     assert not np.any(told[~valued])
 
 
+@pytest.mark.parametrize(
+    ("seed", "number", "row", "found"),
+    [
+        (
+            31,
+            1292,
+            3,
+            0.30515360241483686,
+        ),  # the stretch in the middle, as meshes have it; .8622 lies on another branch
+        (31, 488, 0, BEYOND_LIMIT),  # met again later on the way of the loads
+        (31, 7512, 2, BEYOND_LIMIT),
+        (77, 1979, 1, BEYOND_LIMIT),  # no meridian leads from the middle to the clamped end
+        (77, 2824, 0, BEYOND_LIMIT),
+    ],
+)
+def test_no_state_of_another_branch_is_taken_for_the_tubes_own(seed, number, row, found):
+    model = MODELS["physical"]
+    drawn, own = draw(BLOCK, seed, number // BLOCK, model), slice(number % BLOCK, number % BLOCK + 1)
+    walks = batch.walk_all(
+        drawn.problems(model)[own], np.array([0, 4]), drawn.pressures[own].ravel(), batch.uniform(24), ACCURACY
+    )
+    if found == BEYOND_LIMIT:
+        assert walks.status[row] == found
+    else:
+        assert walks.status[row] == OK
+        assert walks.values[row, 4] == pytest.approx(found, rel=1e-9)
+
+
 def told_apart(seed, numbers):
     """Designs and pressures of which the first integral and meshes both decide, and decide otherwise; how many meshes leave
     open, and of how many.

@@ -9,11 +9,13 @@ from ..cells import nothing_yet
 from ..physics import lagrangian
 from ..physics.uniform_tube import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
 from ..physics.wall import leaves_choice, may_go_slack
+from .meridian import CERTAIN
 from .vector import HUGE, isnt, mask_of, select, some, spread
 
 FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
 GLANCE = 0.06  # relative change of the stretch between two looks at the slope, where that is even:
 EVEN = 0.5  # its smallest value is more than this share of the largest
+ON_THE_WAY = 8  # places between a stretch and the end
 SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernels
 
 
@@ -53,6 +55,20 @@ def seek(here, cell, start, end, low, high, t, steep, near, todo):
         ahead = t - L_y / steep
         t = select(todo, select((ahead > low) & (ahead < high), ahead, 0.5 * (low + high)), t)
     return L_yy, L_vv, t, steep, near
+
+
+@kernel
+def reaches(u, cell, load):
+    """Where a tube whose middle has the stretch ``u`` has a meridian from there to its clamped end: on the way no stretch
+    may have a higher level, as one has where loose fibers leave another equilibrium.
+    """
+    level, _, _, _ = lagrangian.level_of(u, cell, load, nothing_yet(u))
+    reached = mask_of(-1)
+    for k in range(1, ON_THE_WAY + 1):
+        y = u + (1.0 - u) * (k / ON_THE_WAY)
+        higher, _, _, _ = lagrangian.level_of(y, cell, load, nothing_yet(u))
+        reached = reached & isnt(higher - level > CERTAIN * (abs(level) + abs(higher)))
+    return reached
 
 
 @kernel
@@ -152,6 +168,9 @@ def follow(u, cell, start, end, half, asked):
             if not some(going):
                 break
         arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived
+        loaded = arrived & (abs(end.f) + abs(end.m) + abs(end.gamma - 1.0) > 0.0)
+        if leaves_choice(end.wall) and some(loaded):
+            arrived = arrived & (isnt(loaded) | reaches(trial, cell, between(start, end, ahead)))
         t, u = select(arrived, ahead, t), select(arrived, trial, u)
         step = select(arrived, 2.0 * step, 0.5 * step)
         done = done | (todo & (t >= 1.0))
