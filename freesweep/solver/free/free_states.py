@@ -158,8 +158,7 @@ def walk(problem, walls, settled, tube, room, rows, limit, accuracy):
 
 @entry_point
 def follow_many(
-    problems, walls, settled, first, pressures, course, edges, places, accuracy, values, bounds, status, slack, limits,
-    stations, profiles,
+    problems, walls, settled, first, pressures, tube, accuracy, values, bounds, status, slack, limits, stations, profiles
 ):  # fmt: skip
     """Equilibria of many designs, each on its own branch: see :func:`walk`.
 
@@ -169,7 +168,7 @@ def follow_many(
     walls : the columns of a wall, SOURCE or PHYSICAL of :mod:`problem`
     settled : (k,) pressure at which the loads of each are full
     pressures : (n,) p = P/C10; infinity is the locked shape, where the wall no longer counts
-    course, edges, places : what varies along the tubes, and where segments begin and end on the base mesh and along x
+    tube : (course, edges, places), what varies along them, where segments begin and end on the base mesh, and along x
     accuracy : bound to reach, scaled
     values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds; of
         physical tubes (n, 11), with the numbers of :mod:`..along.places`
@@ -178,6 +177,7 @@ def follow_many(
     limits : (k, 2) limit pressure and its bound; what is there stays if none is met
     stations, profiles : (m,), (n, FIELDS, m): see :func:`..along.profile.at_stations`; m = 0 for none
     """
+    course, edges, places = tube
     middle, half = edges[len(edges) - 1], 0.5 * places[len(places) - 1]
     for k in range(len(places)):
         if abs(places[k] - half) < 1e-9 * half:
@@ -190,9 +190,9 @@ def follow_many(
             base = factor * edges[len(edges) - 1]
             room = make_room(base, False, False, guide.PLACES)
             cells = make_cells(course, len(room.space.fine[0]))
-            tube = Tube(course, factor * edges, cells, False, factor * middle, places)
+            whole = Tube(course, factor * edges, cells, False, factor * middle, places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
-            walk(problems[k], walls, settled[k], tube, room, rows, limits[k], accuracy)
+            walk(problems[k], walls, settled[k], whole, room, rows, limits[k], accuracy)
             again = False
             for i in range(first[k], first[k + 1]):
                 if status[i] == NOT_CONVERGED or status[i] == INACCURATE:
