@@ -14,9 +14,9 @@ import numpy as np
 import freesweep as fs
 from freesweep.plot import style
 from freesweep.scaling import problem_rows
-from freesweep.solver.free.branch import begin
 from freesweep.solver.free.meshes import take
 from freesweep.solver.free.space import make_room
+from freesweep.solver.free.way import begin
 from freesweep.solver.load import Load, by
 from freesweep.solver.numerics.bordered import FOLLOWED
 from freesweep.solver.numerics.continuation import CHANGE, FIRST_STEP, advance, is_stable, last_alike

@@ -84,7 +84,7 @@ def _scalar_calls(problems, first, pressures, tube, accuracy, stations, found):
     walls, settled = wall_columns(problems), settling_pressure(problems)
     for own, rows, starts, whole in one_by_one(problems, first, tube):
         yield (
-            problems[own], walls, settled[own], starts, pressures[rows], *whole, accuracy,
+            problems[own], walls, settled[own], starts, pressures[rows], whole, accuracy,
             *(array[rows] for array in found[:4]), found.limits[own], stations, found.profiles[rows],
         )  # fmt: skip
 

@@ -11,7 +11,6 @@ from .numerics.properties_along import at_point
 from .physics import lagrangian, uniform_tube
 
 PLACES = 33  # along a tube that varies
-STRAY = 0.02  # share of |u - 1| by which a shape may leave the interval from 1 to the uniform stretch u
 FAR_FROM = 0.25  # share of 1 - u by which the middle of a tube drawn in may miss u, whose end is far
 
 
@@ -35,29 +34,20 @@ def upright(cell):
 
 
 @kernel
-def follow(tube, u, before, load, ahead):
-    """Carry the uniform stretches ``u`` from one load to another, into ``ahead``; the smallest fraction reached. A place
-    like the one before it does as that did: of a tube that is the same all along one is followed.
-    """
-    places, last = tube.places, cell_along(tube, 0.0)
-    reached, half = 1.0, (1.0 if tube.half else 0.5) * places[len(places) - 1]
+def near_rest(tube, load, u):
+    """The uniform stretches ``u`` under a load; whether it is so small that they are all next to 1."""
     for k in range(len(u)):
-        cell = cell_along(tube, k / max(len(u) - 1, 1))
-        if k > 0 and cell == last and u[k] == u[k - 1]:
-            ahead[k] = ahead[k - 1]
-            continue
-        last = cell
-        drawn = lagrangian.drawn_in(cell, load)
-        ahead[k], part = uniform_tube.follow(lagrangian.density, u[k], cell, before, load, half, drawn)
-        reached = min(reached, part)
-    return reached
+        u[k], met = uniform_tube.near_rest(lagrangian.density, cell_along(tube, k / max(len(u) - 1, 1)), load)
+        if not met:
+            return False
+    return True
 
 
 @kernel
-def locked(tube, gamma, ahead):
+def locked(tube, gamma, u):
     """The uniform locked stretches."""
-    for k in range(len(ahead)):
-        ahead[k] = lagrangian.locked_stretch(cell_along(tube, k / max(len(ahead) - 1, 1)), gamma)
+    for k in range(len(u)):
+        u[k] = lagrangian.locked_stretch(cell_along(tube, k / max(len(u) - 1, 1)), gamma)
 
 
 @kernel

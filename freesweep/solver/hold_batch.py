@@ -20,7 +20,7 @@ from .problem import FORCE, PHYSICAL, TORQUE, wall_columns
 from .status import INACCURATE, OK, PENDING
 
 HOLDER = OUTPUTS  # column of the force or torque among a held state's numbers; behind it those of :mod:`.along.places`
-STATUS = 13  # place among the arguments of hold_many
+STATUS = 11  # place among the arguments of hold_many
 
 
 class Beside(NamedTuple):
@@ -105,7 +105,7 @@ def _calls(problems, targets, kind, first, pressures, tube, accuracy, stations, 
         count = len(left)
         values, bounds = np.full((2, count, states.values.shape[1] + 1), np.nan)
         yield (
-            problems[own], walls, starts, pressures[rows], others[rows], targets[rows], kind, *whole, accuracy,
+            problems[own], walls, starts, pressures[rows], others[rows], targets[rows], kind, whole, accuracy,
             values, bounds, found.status[rows], found.stable[rows], states.slack[rows], found.paths[rows],
             stations, found.profiles[rows],
         )  # fmt: skip

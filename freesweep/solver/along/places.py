@@ -10,6 +10,7 @@ from math import sqrt
 
 from ...jit import kernel
 from ..either import isnt, select
+from ..numerics.nested import TINY
 from ..numerics.properties_along import at_point
 from ..physics import body, lagrangian, over_cell
 
@@ -23,7 +24,6 @@ CURVED = 0.125  # of a second difference: by how much a curve passes the largest
 FALLEN = 1.5  # times what two meshes differ by: what the finer one may be off, if errors fall by less than half
 ROUNDING = 1e-12
 SAMPLES = 32  # of a wall, along each of its segments
-SMALLEST = 1e-30
 
 
 @kernel
@@ -92,10 +92,10 @@ def without_pull(before, here, there, beyond, h_before, h, h_beyond, faint, loos
     pull, push = select(ends, here, there), -select(ends, there, here)
     if loose:
         rise = select(ends, (before - here) / h_before, (beyond - there) / h_beyond)
-        left = select(rise > 0.0, pull / max(rise, SMALLEST), h)
+        left = select(rise > 0.0, pull / max(rise, TINY), h)
     else:
         rise = 1.0 + zero
-        left = h * pull / max(pull + push, SMALLEST)
+        left = h * pull / max(pull + push, TINY)
     part = select(none_here & none_there, h + zero, select(ends | begins, h - min(left, h), zero))
     doubt = select(rise > 0.0, DOUBT * h, h + zero)
     unsure = isnt(none_here | none_there) & (max(here, there) < faint)

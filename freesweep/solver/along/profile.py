@@ -13,6 +13,7 @@ from ...jit import kernel
 from ..cells import cell_at, of_length
 from ..load import Load, under
 from ..numerics.finest import LEFT, MESHES, load_of, mesh_of
+from ..numerics.nested import SAFETY, TINY
 from ..numerics.properties_along import at_point, fill
 from ..physics import lagrangian
 from ..physics.lagrangian import LAST_STEP, ROUNDING
@@ -21,8 +22,6 @@ from .axial import axial_stretch, flux_at, is_alike
 VALUES = 7  # stretch, axial position, twist, angles after deformation, fiber multipliers
 FIELDS = 2 * VALUES  # and a bound for each
 STENCIL = 6  # nodes of the interpolating polynomial: its error is of sixth order, the node values' of fourth
-SAFETY = 3.3  # times the difference of two extrapolations, over the 15 that their order allows
-SMALLEST = 1e-300
 SPREAD = 0.5  # of a node's difference that its neighbours have at least: differences pass through zero
 UNEVEN = 30.0  # times the cell beside: what is that long, of a tube that is uniform there, is interpolated linearly
 
@@ -201,7 +200,7 @@ def interpolate(at, j, low, high, known, told):
         worst = max(worst, bound[r] / known.unit[r] if r < 4 else 0.0)
         share[r] = bound[r]
         bound[r] += known.rounding * (number[1] if r == 1 else known.unit[r])
-        share[r] /= max(bound[r], SMALLEST)
+        share[r] /= max(bound[r], TINY)
     return worst
 
 

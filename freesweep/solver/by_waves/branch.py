@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..by_middle.many import PIECES
 from ..lanes import waves
 from ..problem import GAMMA, LENGTH, H
 from .waves import PRESSURE, Look, Pair
@@ -17,7 +18,7 @@ APART = 1.2  # times as far from 1 are middles from which it is tried again
 ASIDE = 0.3  # of a step: how far from its tangent it may end
 # a wave that is none: here the branch comes back to the straight tube; one that is next to none
 FAINTEST, FAINT = 1e-6, 1e-3
-ALONG, FINEST = 4, 256  # pieces in which a wave is summed along the branch, at first and at most
+ALONG, FINEST = PIECES[2], PIECES[-1]  # in which a wave is summed along the branch, at first and at most
 ROUGH = 1e-4  # of the length: sums that are known no better need more pieces
 
 

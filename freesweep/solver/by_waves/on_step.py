@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from ..by_middle.states import GOLDEN
 from .branch import step
 from .waves import PRESSURE
 
 HALVINGS, MET = 60, 1e-9  # to a pressure; the share of a step that is none
-GOLDEN, LOOKS, FLAT, THIN = 0.381966, 30, 1e-10, 1e-4  # to a turn: how exactly its pressure, and its place, are met
+LOOKS, FLAT, THIN = 30, 1e-10, 1e-4  # to a turn: how exactly its pressure, and its place, are met
 
 
 def at_pressure(asked, here, length, pieces, pressure):

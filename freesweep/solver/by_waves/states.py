@@ -4,22 +4,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..along.profile import FIELDS, SMALLEST, VALUES
+from ..along.profile import FIELDS, VALUES
 from ..batch import draw
+from ..by_middle.many import PIECES
 from ..lanes import waves
 from ..lanes.meridian import DEEPEST
 from ..lanes.outputs import FLOOR
+from ..numerics.nested import TINY
 from ..physics.membrane import ROUNDING
 from ..problem import FORCE, LENGTH
 from ..problem import TORQUE as OWN_TORQUE
 from ..stability import PUSHED
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, INVALID, NOT_CONVERGED, OK
-from .branch import begin, critical, follow
+from .branch import ALONG, begin, critical, follow
 from .on_step import at_pressure, parts
 from .waves import HALF, LEVEL, PRESSURE, TORQUE, TURN, Waves
 
 FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
-FINENESS = 4, 16, 64, 256  # pieces, one try after the other
 NUMBERS = 6  # length, volume, twist, energy of half the tube, stretch in the middle, torque
 NOISE, SURE = 1e-14, 1e-9  # of a level, its rounding; how well a pressure is known, whatever the waves
 OWN_SHARE = 0.3  # of the accuracy: what profiles of known waves may miss
@@ -143,7 +144,7 @@ def state_at(asked, here, length, pieces, pressure):
     if point is None:
         return
     pair = point.look.pair
-    for fine in FINENESS:
+    for fine in PIECES[PIECES.index(ALONG) :]:
         solved = asked.solve(pair, along, number, fine)
         if solved is None:
             continue
@@ -197,7 +198,7 @@ def worst_of(fields, half):
         return 0.0
     scales = np.ones((VALUES, 1))
     scales[1], scales[2] = half, max(1.0, np.abs(fields[2]).max())
-    scales[5:] = max(np.abs(fields[5:VALUES]).max(), SMALLEST)
+    scales[5:] = max(np.abs(fields[5:VALUES]).max(), TINY)
     return np.max(fields[VALUES:] / scales)
 
 

@@ -130,12 +130,7 @@ def solve(room, tube, cell, path, t, scale, accuracy):
         if k >= quadrature.ROWS - finest.MESHES:
             lay(space.curve, count, half, *finest.mesh_of(quadrature.ROWS - 1 - k, nodes // 2, space.fine))
     there, last = loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
-    units, floors = lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE)
-    for k in range(nested.OUTPUTS):
-        out[2, k], out[3, k] = units[k], floors[k]
-    unit = max(abs(direction.f), abs(direction.m))
-    out[2, nested.MULTIPLIER] /= max(unit, 1.0)
-    out[3, nested.MULTIPLIER] /= unit
+    nested.measure(lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE), direction, True, out)
     largest = quadrature.finish(table, out)
     finest.leave_loads(
         table[:, nested.MULTIPLIER],

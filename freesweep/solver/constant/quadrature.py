@@ -35,7 +35,7 @@ def integrate(cell, load, u, rate, half, total, nodes, curve, row):
 @kernel
 def finish(table, out):
     """Values and bounds from the quadratures; the largest scaled bound."""
-    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], 0.0, False, out[0], out[1])
+    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], False, out[0], out[1])
     for k in range(nested.OUTPUTS):
         out[1, k] = CAUTION * out[1, k] + ROUNDING * out[2, k]
     return largest

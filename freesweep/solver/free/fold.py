@@ -15,7 +15,8 @@ from ..numerics.properties_along import fill
 from ..of_tube import of_tube
 from ..physics.wall import may_go_slack
 
-COUNTS, FINEST = (1, 2, 4, 8), 4  # halves of the base mesh's cells; times them on the finest
+COUNTS = 1, 2, 4, 8  # halves of the base mesh's cells
+FINEST = COUNTS[-1] // 2  # times them on the finest
 FALLING, SMALL = 0.5, 1e-7  # of the change from mesh to mesh, and of the load: else no order is seen
 AGREED = 1e-4  # of the load: by more the meshes do not agree
 STEPS = 40  # along the branch, to the edge
@@ -108,16 +109,11 @@ def locate(room, tube, path, here, ahead, sense):
         filled = fill(course, edges, own.x, count, n, cells)
         loads[k], missed = edge(own, count, filled, path, here[0], here[1], sense, space.work)
         doubt = max(doubt, missed)
-    first, second, third = (
-        (4.0 * loads[1] - loads[0]) / 3.0, (4.0 * loads[2] - loads[1]) / 3.0, (4.0 * loads[3] - loads[2]) / 3.0
-    )  # fmt: skip
     changes = abs(loads[1] - loads[0]), abs(loads[2] - loads[1]), abs(loads[3] - loads[2])
-    least = SMALL * abs(third)  # where rounding counts, nothing need fall
-    estimate = max(abs(third - second), abs(second - first))
-    if changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least:
-        smooth = not may_go_slack(path.origin.wall)
-        order, before = (15.0, 225.0) if smooth else (1.0, 4.0)  # as in nested.extrapolate
-        estimate = max(abs(third - second) / order, abs(second - first) / before)
-    if not estimate < AGREED * abs(third):
+    least = SMALL * abs(loads[3])  # where rounding counts, nothing need fall
+    falls = changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least
+    broken = may_go_slack(path.origin.wall) or not falls
+    found, estimate = nested.fourth_order(loads[0], loads[1], loads[2], loads[3], broken)
+    if not estimate < AGREED * abs(found):
         return np.nan, 0.0
-    return third, nested.SAFETY * estimate + ROUNDING * abs(third) + doubt
+    return found, nested.SAFETY * estimate + ROUNDING * abs(found) + doubt

@@ -14,15 +14,15 @@ from ..load import Load, by, under
 from ..numerics.bordered import FOLLOWED
 from ..numerics.path import NOTHING, Path
 from ..numerics.properties_along import Tube, make_cells, volume
-from ..numerics.shapes import differ, extremes
 from ..physics import lagrangian
 from ..physics.wall import has_two_families, may_go_slack
 from ..problem import FORCE, GAMMA, TORQUE, rubber_of, wall_of
 from ..status import COMPRESSED, DEGENERATE, INACCURATE, INVALID, NOT_CONVERGED, OK, PENDING
-from .branch import begin, follow, guess
+from .branch import follow
 from .meshes import stand
 from .one_state import blank, cold, plain, record
 from .space import Rows, make_room
+from .way import begin, rise
 
 FINER = (1, 4, 16)  # times the cells of the base mesh, one after another for what did not converge
 
@@ -62,10 +62,8 @@ def first_states(path, first, tube, space, rows, accuracy):
         p = rows.pressures[i]
         if rows.status[i] == PENDING and p < first:
             load = under(path.origin, p, 0.0, 0.0)
-            for k in range(len(space.u)):
-                space.u[k] = 1.0
-            if guide.follow(tube, space.u, path.origin, load, space.ahead) == 1.0:
-                guide.start(tube, space.ahead, load, space.x, space.y)
+            if guide.near_rest(tube, load, space.u):
+                guide.start(tube, space.u, load, space.x, space.y)
                 status, doublings = cold(space, tube, load, accuracy)
                 record(space, tube, load, status, doublings, accuracy, rows, i)
 
@@ -79,31 +77,7 @@ def leave(rows, status, low, high):
 
 
 @kernel
-def settle_loads(path, room, tube, rows, limit, accuracy):
-    """Stand on the state at which all loads are at their full size, if the status is OK."""
-    track, space = room.track, room.space
-    status, mu, tangent_mu = begin(room, tube, path)
-    if status != FOLLOWED:
-        return NOT_CONVERGED
-    if mu < 1.0:
-        none = Rows(
-            rows.pressures[:0], rows.values[:0], rows.bounds[:0], rows.status[:0], rows.slack[:0], rows.stations,
-            rows.profiles[:0],
-        )  # fmt: skip
-        status, here, ahead = follow(room, tube, path, (mu, tangent_mu), 1.0, none, limit, accuracy)
-        if status != OK:
-            return status
-        guess(room, here, ahead, 1.0)
-        for i in range(len(space.y)):
-            track.y[i] = space.y[i]
-        status, negative, _ = stand(track, tube, path, 1.0, 1.0, 0, space.work)
-        if status != FOLLOWED or negative > 0 or differ(extremes(space.y, tube.middle), extremes(track.y, tube.middle)):
-            return NOT_CONVERGED
-    return OK
-
-
-@kernel
-def lock(problem, walls, tube, room, rows, limit, accuracy):
+def lock(problem, walls, tube, room, rows, accuracy):
     """Locked shapes, where the wall no longer counts: from a rough guess or, where that is too rough, on a straight way
     from rest along which the wall fades.
     """
@@ -111,14 +85,14 @@ def lock(problem, walls, tube, room, rows, limit, accuracy):
     load = Load(problem[GAMMA], rubber_of(problem), wall_of(problem, walls), 1.0, 0.0, 0.0, 0.0)
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING and rows.pressures[i] == np.inf:
-            guide.locked(tube, problem[GAMMA], space.ahead)
-            guide.start(tube, space.ahead, load, space.x, space.y)
+            guide.locked(tube, problem[GAMMA], space.u)
+            guide.start(tube, space.u, load, space.x, space.y)
             status, doublings = cold(space, tube, load, accuracy)
             if status == NOT_CONVERGED:
                 rest = Load(1.0, load.rubber, load.wall, 0.0, 0.0, 0.0, 1.0)
                 fading = Load(load.gamma - 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0)
                 way = Path(rest, fading, 0.0, may_go_slack(load.wall), NOTHING)
-                if settle_loads(way, room, tube, rows, limit, accuracy) == OK:
+                if rise(room, tube, way).status == OK:
                     for k in range(len(space.x)):
                         space.x[k], space.y[k] = track.x[k], track.y[k]
                     status, doublings = plain(space, tube, load, accuracy)
@@ -131,7 +105,7 @@ def along_pressure(room, tube, path, status, here, sense, far, rows, limit, accu
     pressure ``far``; rows on that side that no state belongs to get a status.
     """
     if status == FOLLOWED:
-        status, _, _ = follow(room, tube, path, here, far, rows, limit, accuracy)
+        status = follow(room, tube, path, here, far, rows, limit, accuracy)
     else:
         status = NOT_CONVERGED
     low, high = (here[0], np.inf) if sense > 0.0 else (0.0, here[0])
@@ -144,7 +118,7 @@ def walk(problem, walls, settled, tube, room, rows, limit, accuracy):
     ``limit`` (2,) takes the limit pressure and its bound, if one is met. Rows: see :func:`follow_many`.
     """
     settle(problem, wall_of(problem, walls), tube, rows)
-    lock(problem, walls, tube, room, rows, limit, accuracy)
+    lock(problem, walls, tube, room, rows, accuracy)
     least, most = np.inf, -1.0
     for i in range(len(rows.pressures)):
         if rows.status[i] == PENDING:
@@ -165,11 +139,10 @@ def walk(problem, walls, settled, tube, room, rows, limit, accuracy):
             along_pressure(room, tube, path, status, (mu, tangent_mu), 1.0, most, rows, limit, accuracy)
         leave(rows, NOT_CONVERGED, 0.0, np.inf)
         return
-    rise = Load(gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0)
-    first, track = Path(rest, rise, 0.0, may_go_slack(wall), NOTHING), room.track
+    loads, track = Load(gamma - 1.0, 0.0, 0.0, settled, f, m, 0.0), room.track
     origin = Load(gamma, rubber, wall, 0.0, f, m, 1.0)
     path = Path(origin, pressure, max(f, 0.0), may_go_slack(wall), NOTHING)
-    status = settle_loads(first, room, tube, rows, limit, accuracy)
+    status = rise(room, tube, Path(rest, loads, 0.0, may_go_slack(wall), NOTHING)).status
     if status != OK:
         leave(rows, status, 0.0, np.inf)
         return
@@ -185,8 +158,7 @@ def walk(problem, walls, settled, tube, room, rows, limit, accuracy):
 
 @entry_point
 def follow_many(
-    problems, walls, settled, first, pressures, course, edges, places, accuracy, values, bounds, status, slack, limits,
-    stations, profiles,
+    problems, walls, settled, first, pressures, tube, accuracy, values, bounds, status, slack, limits, stations, profiles
 ):  # fmt: skip
     """Equilibria of many designs, each on its own branch: see :func:`walk`.
 
@@ -196,7 +168,7 @@ def follow_many(
     walls : the columns of a wall, SOURCE or PHYSICAL of :mod:`problem`
     settled : (k,) pressure at which the loads of each are full
     pressures : (n,) p = P/C10; infinity is the locked shape, where the wall no longer counts
-    course, edges, places : what varies along the tubes, and where segments begin and end on the base mesh and along x
+    tube : (course, edges, places), what varies along them, where segments begin and end on the base mesh, and along x
     accuracy : bound to reach, scaled
     values, bounds : (n, 5) length, volume, twist, energy of half the tube, stretch in the middle, and error bounds; of
         physical tubes (n, 11), with the numbers of :mod:`..along.places`
@@ -205,6 +177,7 @@ def follow_many(
     limits : (k, 2) limit pressure and its bound; what is there stays if none is met
     stations, profiles : (m,), (n, FIELDS, m): see :func:`..along.profile.at_stations`; m = 0 for none
     """
+    course, edges, places = tube
     middle, half = edges[len(edges) - 1], 0.5 * places[len(places) - 1]
     for k in range(len(places)):
         if abs(places[k] - half) < 1e-9 * half:
@@ -217,9 +190,9 @@ def follow_many(
             base = factor * edges[len(edges) - 1]
             room = make_room(base, False, False, guide.PLACES)
             cells = make_cells(course, len(room.space.fine[0]))
-            tube = Tube(course, factor * edges, cells, False, factor * middle, places)
+            whole = Tube(course, factor * edges, cells, False, factor * middle, places)
             rows = Rows(pressures[own], values[own], bounds[own], status[own], slack[own], stations, profiles[own])
-            walk(problems[k], walls, settled[k], tube, room, rows, limits[k], accuracy)
+            walk(problems[k], walls, settled[k], whole, room, rows, limits[k], accuracy)
             again = False
             for i in range(first[k], first[k + 1]):
                 if status[i] == NOT_CONVERGED or status[i] == INACCURATE:

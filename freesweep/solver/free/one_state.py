@@ -27,7 +27,7 @@ REGRADES, COLD = 1, 3  # of the base mesh, from a good guess and from a rough on
 @kernel
 def solve(space, tube, load, target, regrades, accuracy):
     """:func:`..numerics.nested.solve` from the guess in ``space``: ``(status, doublings)``, and that the state is stable."""
-    status, unstable, doublings, _ = nested.solve(of_tube(), space, tube, load, target, 1.0, regrades, accuracy)
+    status, unstable, doublings = nested.solve(of_tube(), space, tube, load, target, 1.0, regrades, accuracy)
     solved = status == newton.CONVERGED or status == nested.UNREACHED
     if not solved or unstable > 0:
         return NOT_CONVERGED, doublings
@@ -35,22 +35,16 @@ def solve(space, tube, load, target, regrades, accuracy):
 
 
 @kernel
-def free(space, tube, load, regrades, accuracy):
-    """The state at ``load``, from a guess."""
-    return solve(space, tube, load, NOTHING, regrades, accuracy)
-
-
-@kernel
 def cold(space, tube, load, accuracy):
     """The state at ``load``, from a rough guess: where there is one only."""
-    return free(space, tube, load, COLD, accuracy)
+    return solve(space, tube, load, NOTHING, COLD, accuracy)
 
 
 @kernel
 def plain(space, tube, load, accuracy):
     """The state at ``load`` that the guess all but is."""
     guess = extremes(space.y, tube.middle)
-    status, doublings = free(space, tube, load, REGRADES, accuracy)
+    status, doublings = solve(space, tube, load, NOTHING, REGRADES, accuracy)
     return (NOT_CONVERGED if differ(guess, extremes(space.y, tube.middle)) else status), doublings
 
 

@@ -23,7 +23,6 @@ class Space(NamedTuple):
     x: np.ndarray
     y: np.ndarray
     u: np.ndarray
-    ahead: np.ndarray
 
 
 class Room(NamedTuple):
@@ -53,7 +52,7 @@ def make_space(base, places):
     return Space(
         np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
         np.zeros((5, size)), np.zeros((4, nested.OUTPUTS)), np.zeros(base + 1), np.zeros(base + 1),
-        np.zeros(places), np.zeros(places),
+        np.zeros(places),
     )  # fmt: skip
 
 

@@ -36,7 +36,7 @@ from .sought import (  # noqa: F401
 )
 from .ways import EVERY, cylinder_multiplier, held_at
 
-PULLS = 0.0, 1.0, -1.0, 4.0, -4.0, 16.0, -16.0  # of the load that holds, as others rise: a tube may snap without it
+PULLS = 0.0, 4.0, -4.0, 16.0, -16.0  # of the load that holds, as others rise: a tube may snap without it
 
 
 @kernel

@@ -226,20 +226,20 @@ def hold(states, i, problem, asked, tube, accuracy, room):
 
 @entry_point
 def hold_many(
-    problems, walls, first, pressures, others, targets, kind, course, edges, places, accuracy, values, bounds, status,
-    stable, slack, paths, stations, profiles,
+    problems, walls, first, pressures, others, targets, kind, given, accuracy, values, bounds, status, stable, slack, paths,
+    stations, profiles,
 ):  # fmt: skip
     """Held states of designs, each for pressures, the load that is not unknown, and what is held (``kind`` HELD_LENGTH, or
     HELD_ROTATION).
 
-    ``problems``, ``first``, ``pressures``, ``course``, ``edges``, ``places`` are those of
-    :func:`..free.free_states.follow_many`. The n-th entries of ``pressures``, ``others`` and ``targets`` belong together;
-    those whose status is not PENDING are passed over, and where no value is found none is written. ``targets`` are in radii
-    (deformed length) or radians, of the whole tube; a tube that is the same all along is solved by half. ``values`` and
-    ``bounds`` are (n, 6): length, volume, twist, energy of half the tube, stretch in the middle, multiplier; of physical
-    tubes (n, 12), if the numbers of :mod:`..along.places` are asked for. ``paths`` (n,) takes the way by which a state was
-    found.
+    ``problems``, ``first`` and ``pressures`` are those of :func:`..free.free_states.follow_many`, ``given`` its tube. The
+    n-th entries of ``pressures``, ``others`` and ``targets`` belong together; those whose status is not PENDING are
+    passed over, and where no value is found none is written. ``targets`` are in radii (deformed length) or radians, of
+    the whole tube; a tube that is the same all along is solved by half. ``values`` and ``bounds`` are (n, 6): length,
+    volume, twist, energy of half the tube, stretch in the middle, multiplier; of physical tubes (n, 12), if the numbers
+    of :mod:`..along.places` are asked for. ``paths`` (n,) takes the way by which a state was found.
     """
+    course, edges, places = given
     alike, base = course.shape[0] == 0, edges[len(edges) - 1]
     own_course, own_places = of_problems(course) if alike else course, np.zeros(2) if alike else places.copy()
     whole = own_places[len(own_places) - 1]

@@ -57,20 +57,16 @@ def extrapolate(shares, level, scales, broken, unit, space):
     """The share and its bound from the last four ``shares``, the outputs and theirs from as many rows of the table, with the
     ``scales`` and floors of these; returns ``(share, its bound, largest scaled bound of the outputs)``.
     """
-    out, table, size = space.out, space.table, max(abs(unit.f), abs(unit.m))
-    third = (4.0 * shares[level] - shares[level - 1]) / 3.0
-    second = (4.0 * shares[level - 1] - shares[level - 2]) / 3.0
-    first = (4.0 * shares[level - 2] - shares[level - 3]) / 3.0
-    for k in range(nested.OUTPUTS):
-        out[2, k], out[3, k] = scales[0][k], scales[1][k]
-    out[2, nested.MULTIPLIER] /= max(size, 1.0)
-    out[3, nested.MULTIPLIER] /= size
-    largest = nested.extrapolate(table, level, out[2], out[3], 0.0, broken, out[0], out[1])
+    out, table = space.out, space.table
+    nested.measure(scales, unit, True, out)
+    largest = nested.extrapolate(table, level, out[2], out[3], broken, out[0], out[1])
     finest.leave_loads(
         table[:, nested.MULTIPLIER], level, out[0, nested.MULTIPLIER], unit, nested.SMALLEST_TOLERANCE, space.fine
     )
-    order, before = (1.0, 4.0) if broken else (15.0, 225.0)
-    return third, nested.SAFETY * max(abs(third - second) / order, abs(second - first) / before) + ROUNDING, largest
+    share, estimate = nested.fourth_order(
+        shares[level - 3], shares[level - 2], shares[level - 1], shares[level], broken
+    )
+    return share, nested.SAFETY * estimate + ROUNDING, largest
 
 
 @kernel

@@ -84,7 +84,7 @@ def on_meshes(room, tube, end, sought, path, accuracy):
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.y[i]
     target = Target(unit, sought.wanted, True)
-    status, unstable, doublings, _ = nested.solve(of_tube(), space, tube, load, target, track.y[n + 1], 1, accuracy)
+    status, unstable, doublings = nested.solve(of_tube(), space, tube, load, target, track.y[n + 1], 1, accuracy)
     if status == newton.CONVERGED or status == nested.UNREACHED:
         if not differ(extremes(track.y[: n + 1], tube.middle), extremes(space.y, tube.middle)):
             now = loaded(load, unit, space.out[0, nested.MULTIPLIER])

@@ -8,6 +8,7 @@ from ...jit import kernel
 from .. import guide
 from ..load import Load, at_pressure, by, loaded
 from ..physics import lagrangian
+from ..physics.lagrangian import LONGER
 from ..physics.wall import may_go_slack
 from ..problem import GAMMA, rubber_of, wall_of
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, OK, PENDING
@@ -15,7 +16,6 @@ from .ways import cylinder_multiplier
 
 HELD_LENGTH, HELD_ROTATION = 0, 1
 FROM_REST, FROM_FREE = 0, 1
-LONGER = 1e-9  # relative: from what the fibers allow
 WITHOUT_PRESSURE = 0.1  # times the wall's section: the pressure that is gone to first where none is asked for
 CYLINDER = 3  # numbers of a cell, of which a body has more
 MIRROR_OFFSET, MIRROR_TOLERANCE = 0.37, 1e-12  # places off jumps; of H, D and the section

@@ -3,41 +3,22 @@
 from rest while something is held, or nothing; what is held moves to its target; the pressure falls to the one asked for.
 """
 
-from typing import NamedTuple
-
 from ...jit import kernel
 from .. import guide
-from ..free.branch import begin
-from ..free.meshes import stand, take
+from ..free.meshes import stand
+from ..free.way import HALVINGS, follow, rise, stopped
 from ..load import NO_CHANGE, Load, by, loaded
 from ..numerics import held
 from ..numerics.bordered import FOLLOWED
-from ..numerics.continuation import CHANGE, FIRST_STEP, advance, between, is_flat, is_stable, last_alike
-from ..numerics.path import NOTHING, Held, Path, load_at
+from ..numerics.path import NOTHING, Held, Path
 from ..numerics.properties_along import fill
-from ..numerics.shapes import differ, extremes
-from ..of_tube import of_tube
 from ..physics import lagrangian
+from ..physics.uniform_tube import SMALL_STRAIN
 from ..physics.wall import may_go_slack, with_bonded_fibers
-from ..stability import pushed
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK
 
 EVERY = 1 << 30  # unstable directions allowed: any number
-MOST_STEPS = 1000
-SMALL_STRAIN = 0.02  # of the first state on the way from rest: there the wall has one state only
-HALVINGS = 60  # of its load, until that holds
 LEAST_SHARE = 1e-6  # of the loads: all but none
-
-
-class End(NamedTuple):
-    """Where a way was left: OK at its end, BEYOND_LIMIT where it turns back or becomes unstable; (mu, the tangent's mu) of
-    the state in the track, and (mu, the tangent's mu, step) of the last one ahead of it.
-    """
-
-    status: int
-    path: Path
-    here: tuple
-    ahead: tuple
 
 
 @kernel
@@ -98,50 +79,6 @@ def make_straight(track, tube, multiplier):
 
 
 @kernel
-def stopped(status, path, mu, tangent_mu):
-    """The end of a way at the state in the track."""
-    return End(status, path, (mu, tangent_mu), (mu, tangent_mu, 0.0))
-
-
-@kernel
-def land(room, tube, path, here, ahead, until):
-    """Stand at ``until``, on the step that leads beyond it."""
-    track = room.track
-    n, guess = len(track.x) - 1, room.space.curve[0, : len(track.y)]
-    between(track, n, here[0], here[1], ahead[0], ahead[1], ahead[2], until, guess)
-    for i in range(len(track.y)):
-        track.y[i] = guess[i]
-    status, _, tangent_mu = stand(track, tube, path, until, 1.0, 0, room.space.work)
-    if status != FOLLOWED or differ(extremes(guess[: n + 1], tube.middle), extremes(track.y[: n + 1], tube.middle)):
-        return stopped(NOT_CONVERGED, path, here[0], here[1])
-    return stopped(OK, path, until, tangent_mu)
-
-
-@kernel
-def follow(room, tube, path, mu, tangent_mu, until):
-    """Follow the branch from the state in the track, at ``mu``, to the state at ``until``."""
-    track, work = room.track, room.space.work
-    course, edges, cells, _, _, _ = tube
-    n, here, step = len(track.x) - 1, (mu, tangent_mu), FIRST_STEP * CHANGE
-    for _ in range(MOST_STEPS):
-        own = fill(course, edges, track.x, n, n, cells)
-        status, negative, mu, tangent_mu, made, step = advance(of_tube(), track, n, own, path, here, step, work)
-        if status != FOLLOWED:
-            gone = pushed(track.y[: n + 1], own, load_at(path, track.y, n, here[0]))
-            flat = is_flat(here[0], here[1], path)  # no step leads round so sharp a fold
-            return stopped(COMPRESSED if gone else BEYOND_LIMIT if flat else NOT_CONVERGED, path, here[0], here[1])
-        ahead, ends = (mu, tangent_mu, made), not is_stable(negative, tangent_mu, 1.0)
-        if ends:
-            ahead = last_alike(of_tube(), track, n, own, path, here, made, 1.0, True, work)
-        if ahead[0] >= until:
-            return land(room, tube, path, here, ahead, until)
-        if ends:
-            return End(BEYOND_LIMIT, path, here, ahead)
-        here = take(track, tube, path, mu, tangent_mu, work)
-    return stopped(NOT_CONVERGED, path, here[0], here[1])
-
-
-@kernel
 def go(room, tube, path):
     """All of a path, from the state in the track."""
     status, negative, tangent_mu = stand(room.track, tube, path, 0.0, 1.0, 0, room.space.work)
@@ -196,13 +133,9 @@ def from_free(room, tube, load, unit, pull, target):
     n = len(track.x) - 1
     course, edges, cells, _, _, _ = tube
     track.y[n + 1] = track.next_y[n + 1] = 0.0
-    status, mu, tangent_mu = begin(room, tube, path)
-    if status != FOLLOWED:
-        return stopped(NOT_CONVERGED, path, 0.0, 1.0)
-    if mu < 1.0:
-        end = follow(room, tube, path, mu, tangent_mu, 1.0)
-        if end.status != OK:
-            return end
+    end = rise(room, tube, path)
+    if end.status != OK:
+        return end
     track.y[n + 1] = pull
     own, now = fill(course, edges, track.x, n, n, cells), loaded(load, unit, pull)
     first, _ = held.hold(lagrangian.conjugate, track.x, track.y, n, own, now, unit, room.space.work[8])

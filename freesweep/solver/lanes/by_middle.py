@@ -12,8 +12,7 @@ from . import slack_ends
 from .meridian import ALMOST, DEEPEST, fallen, middle_at
 from .outputs import DX, FLOOR, WITHIN, finish, unmet
 from .pack import COLUMNS, LENGTH, PRESSURE, WEIGHT, aligned, enter, loads
-from .rule import LAST
-from .sums import between_ends, find_ends, scan
+from .sums import between_ends, find_ends, make_room, scan
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, spread
 
 OF_LOAD = PRESSURE, FORCE, TORQUE, GAMMA, WEIGHT  # the columns of a load
@@ -26,20 +25,21 @@ ROUNDING = 1e-15  # of the drive at an end, of which little is left in the middl
 
 
 @kernel
-def measure(y, cell, load, half, active, pieces, rows, ends, starts, edges, numbers, scratch, counts, out, told):
+def measure(y, cell, load, half, active, pieces, room, out, told):
     """What is told of half tubes whose middles have the stretch ``y``, in the ``active`` lanes: outputs, and what sums
     may miss, to ``out`` as :func:`.quadrature.solve` does; to ``told`` (COUNT, WIDTH) how much the drive of the middle
     is too large for a tube of that ``half`` length (:func:`.meridian.middle_at`), what may be missing of that, and by
     what outputs are measured. Returns masks: (alpha slack or pushed somewhere, beta).
     """
-    zero = spread(0.0)
+    zero, numbers, scratch = spread(0.0), room.numbers, room.scratch
     mid, driven, lack = middle_at(y, cell, load, half, scratch)
     active = active & driven
     _, (alpha, beta), middle_limp, doubts, valid, short = scan(
-        pieces, mid, cell, load, rows, ends, counts, starts, scratch
+        pieces, mid, cell, load, room.rows, room.ends, room.counts, room.starts, scratch
     )
-    parts, unsure = find_ends(mid, cell, load, active & valid, ends, counts, starts, edges, scratch)
-    fine, limps = between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch)
+    active = active & valid
+    parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, room.edges, scratch)
+    fine, limps = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, numbers, scratch)
     fine = fine & (unsure < slack_ends.ENOUGH)
     if len(load.wall) == 1:
         alpha, beta = limps
@@ -74,10 +74,8 @@ def measure_many(problems, owners, given, middles, constants, walls, layers, pie
     OF_LOAD, whose middle has the stretch ``middles[i]``, in so many ``pieces``; other arguments as of
     :func:`.free.solve`. Rows of ``values``, ``bounds`` and ``told`` (n, COUNT) take what is told.
     """
-    room, ends, numbers = aligned(15, LAST + 1), aligned(9, slack_ends.MOST), aligned(4, 16)
-    edges, small = aligned(1, slack_ends.MOST + 2)[0], aligned(4, COLUMNS)
-    columns, start, scratch, own = small[0], small[1], small[2], small[3]
-    counts = np.zeros(WIDTH, np.int64)
+    room, out, small = make_room(), aligned(2, 16), aligned(3, COLUMNS)
+    columns, start, own = small[0], small[1], small[2]
     for group in range(0, len(owners), WIDTH):
         count = min(WIDTH, len(owners) - group)
         for lane in range(WIDTH):
@@ -88,13 +86,12 @@ def measure_many(problems, owners, given, middles, constants, walls, layers, pie
                 columns[OF_LOAD[k], lane] = given[row, k]
         cell, _, load = loads(columns, constants, walls, layers)
         alpha, beta = measure(
-            get(start, 0), cell, load, get(columns, LENGTH), mask_of((1 << count) - 1), pieces, room, ends[:5], ends[5:],
-            edges, numbers[:2], scratch, counts, numbers[2:], own,
-        )  # fmt: skip
+            get(start, 0), cell, load, get(columns, LENGTH), mask_of((1 << count) - 1), pieces, room, out, own
+        )
         for lane in range(count):
             row = group + lane
             for k in range(values.shape[1]):
-                values[row, k], bounds[row, k] = numbers[2, k, lane], numbers[3, k, lane]
+                values[row, k], bounds[row, k] = out[0, k, lane], out[1, k, lane]
             for k in range(COUNT):
                 told[row, k] = own[k, lane]
             told[row, SLACK] = ((bits(alpha) >> lane) & 1) | (((bits(beta) >> lane) & 1) << 1)

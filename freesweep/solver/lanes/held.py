@@ -19,7 +19,7 @@ from ...jit import entry_point, kernel
 from ..cells import nothing_yet
 from ..load import SPARED, Load, under
 from ..physics import lagrangian, membrane, physical
-from ..physics.lagrangian import ROUNDING
+from ..physics.lagrangian import LONGER, ROUNDING
 from ..physics.wall import may_go_slack, with_bonded_fibers
 from ..problem import FORCE, PHYSICAL, SOURCE, TORQUE
 from ..status import COMPRESSED, HELD_IMPOSSIBLE, OK
@@ -29,7 +29,6 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 SYMMETRIC = 4.493409458 / pi  # tan k = k: the first mode that leaves C as it is, and is symmetric, to a whole sine
 POLE = 1e-9  # dC/dy of the cylinder, to what it is made of: below it, fibers alone hold C
-LONGER = 1e-9  # relative: more than rounding
 STRONG, STRONGER = 4.0, 32.0  # pulls, to pressure and torque
 # of a beginning: stretch and multiplier, length or rotation C of half the tube (NaN: not known yet), dC/dmu of a cylinder,
 # the longest half tube that the fibers allow, and whether the way from rest with C held is gone

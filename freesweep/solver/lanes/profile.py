@@ -10,8 +10,9 @@ from math import atan, sqrt
 import numpy as np
 
 from ...jit import entry_point, kernel
-from ..along.profile import FIELDS, SMALLEST, VALUES
+from ..along.profile import FIELDS, VALUES
 from ..cells import nothing_yet
+from ..numerics.nested import TINY
 from ..physics import lagrangian
 from ..physics.lagrangian import ROUNDING
 from ..problem import PHYSICAL, SOURCE
@@ -98,7 +99,7 @@ def between(t, row, first, lane):
 def meet(x, way, first, lane):
     """The share of one rule at which x is met."""
     low, high = 0.0, 1.0
-    t = (x - way[X, first, lane]) / max(way[X, first + LAST, lane] - way[X, first, lane], SMALLEST)
+    t = (x - way[X, first, lane]) / max(way[X, first + LAST, lane] - way[X, first, lane], TINY)
     for _ in range(STEPS):
         t = min(max(t, low), high)
         miss = between(t, way[X], first, lane) - x
@@ -274,7 +275,7 @@ def draw(asked, depths, stations, kind, pieces, accuracy, profiles, drawn):
             for lane in range(count):
                 for k in range(FIELDS):
                     profiles[rows[lane], k, j] = out[k, lane]
-        worst = max(worst, loose / max(tension, SMALLEST))
+        worst = max(worst, loose / max(tension, TINY))
         ready = bits(valid & fine & (worst <= accuracy) & (unsure < slack_ends.ENOUGH))
         for lane in range(count):
             drawn[rows[lane]] = (ready >> lane) & 1 == 1

@@ -9,6 +9,7 @@ uniform tube does, but for what is left of the layer there.
 from math import sqrt
 
 from ...jit import kernel
+from ..numerics.nested import TINY
 from .element import LOST, PIVOT, SQUARES, gather
 from .second import BY_Y, LOADS, NUMBERS, OF_LOADS, VV, YY
 from .vector import get, put, select, spread
@@ -21,7 +22,6 @@ SAFETY, ALIKE = 0.25, 0.03  # of what FEWER bubbles lose; and of the most that t
 FORCED, ROUGH = 10.0, 4.0  # times the force that is left; and what is not smooth
 ENDS, ROUNDING, FAINT = 3e-9, 1e-11, 1e-14  # of where ends of slack lie, of numbers, and of the drive of the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
-TINY = 1e-300
 
 
 @kernel

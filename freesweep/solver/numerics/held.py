@@ -18,6 +18,7 @@ from .newton import (
     CONVERGED,
     INFEASIBLE,
     MAX_HALVINGS,
+    MAX_ITERATIONS,
     STALLED,
     UNKNOWN,
     assemble,
@@ -60,10 +61,10 @@ def hold(conjugate, x, y, n, cells, load, direction, b):
 
 
 @kernel
-def solve_held(functional, y, mesh, load, target, mu, tolerance, iterations, work):
-    """Newton, at most so many ``iterations``, for ``y`` (in place) and the multiplier ``mu`` of the :class:`Target`.
+def solve_held(functional, y, mesh, load, target, mu, tolerance, work):
+    """Newton's method for ``y`` (in place) and the multiplier ``mu`` of the :class:`Target`.
 
-    Returns ``(status, unstable directions that keep the integral, mu, sigma)``.
+    Returns ``(status, unstable directions that keep the integral, mu)``.
     """
     (x, n, free, cells), direction, system = mesh, target.direction, system_in(work)
     g, d, e, inverse, step, trial, room, least = system
@@ -74,11 +75,11 @@ def solve_held(functional, y, mesh, load, target, mu, tolerance, iterations, wor
         least[i] = 0.0
     size, before, rate, fraction, change, sigma = 1e300, 1e300, UNKNOWN, 0.0, 0.0, 0.0
     made, halvings = 0, 0
-    while made < iterations and halvings < MAX_HALVINGS:
+    while made < MAX_ITERATIONS and halvings < MAX_HALVINGS:
         now = loaded(load, direction, mu + fraction * change)
         if not assemble(functional.density, x, trial, n, cells, now, False, system):
             if made == 0:
-                return INFEASIBLE, 0, mu, 0.0
+                return INFEASIBLE, 0, mu
             fraction *= 0.5
             halvings += 1
             for i in range(n + 1):
@@ -113,6 +114,6 @@ def solve_held(functional, y, mesh, load, target, mu, tolerance, iterations, wor
         if settled(size, before, rate, tolerance):
             for i in range(n + 1):
                 y[i] = trial[i]
-            return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu + change, sigma
+            return CONVERGED, negative - (1 if sigma < 0.0 else 0), mu + change
         fraction, halvings, made = 1.0, 0, made + 1
-    return STALLED, 1, mu, 0.0
+    return STALLED, 1, mu

@@ -17,7 +17,7 @@ import numpy as np
 from ...jit import kernel
 from ..cells import behind, cell_at, largest_sizes, nothing_yet
 from ..load import loaded
-from . import finest, held, middle, newton
+from . import finest, held, newton
 from . import mesh as grading
 from .newton import Mesh
 from .properties_along import fill
@@ -70,25 +70,28 @@ def integrate(integrands, x, y, n, cells, load, row):
 
 
 @kernel
-def extrapolate(table, level, scales, floors, missed, broken, values, bounds):
-    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound. ``missed`` is the error of
-    the stretch in the middle that no mesh shows. On a ``broken`` mesh a cell somewhere holds a change of smoothness: it errs
-    now by more, now by less, and no difference is divided by what an order allows.
+def fourth_order(a, b, c, d, broken):
+    """``(value, estimate of its error)`` from results on meshes of twice the cells each. On ``broken`` ones a cell somewhere
+    holds a change of smoothness: it errs now by more, now by less, and no difference is divided by what an order allows.
     """
+    first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
     order, before = (1.0, 4.0) if broken else (15.0, 225.0)
+    return third, max(abs(third - second) / order, abs(second - first) / before)
+
+
+@kernel
+def extrapolate(table, level, scales, floors, broken, values, bounds):
+    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound."""
     largest, share, change = 0.0, 0.0, TINY
     for k in range(OUTPUTS):
         change += FAINT / OUTPUTS * abs(table[level, k] - table[level - 1, k]) / scales[k]
     for k in range(OUTPUTS):
-        a, b, c, d = table[level - 3, k], table[level - 2, k], table[level - 1, k], table[level, k]
-        first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-        estimate = max(abs(third - second) / order, abs(second - first) / before)
-        values[k] = third
+        c, d = table[level - 1, k], table[level, k]
+        values[k], estimate = fourth_order(table[level - 3, k], table[level - 2, k], c, d, broken)
         bounds[k] = SAFETY * estimate
         share = max(share, estimate / scales[k] / (abs(d - c) / scales[k] + change))
     for k in range(OUTPUTS):
         bounds[k] = max(bounds[k], share * abs(table[level, k] - table[level - 1, k]))
-        bounds[k] += missed if k == MIDDLE else 0.0
         largest = max(largest, bounds[k] / scales[k])
         bounds[k] += floors[k]
     return largest
@@ -187,9 +190,7 @@ def on_mesh(functional, y, mesh, load, target, mu, rate, tolerance, work):
     the last step left)``.
     """
     if target.any:
-        status, unstable, mu, _ = held.solve_held(
-            functional, y, mesh, load, target, mu, tolerance, newton.MAX_ITERATIONS, work
-        )
+        status, unstable, mu = held.solve_held(functional, y, mesh, load, target, mu, tolerance, work)
         return status, unstable, mu, rate, tolerance
     status, unstable, rate, error = newton.solve(functional.density, y, mesh, load, rate, tolerance, work)
     return status, unstable, mu, rate, error
@@ -207,33 +208,32 @@ def rescue(functional, room, level, guess, mesh, load):
 
 
 @kernel
-def tell(functional, y, mesh, base, center, mu, load, layer, row):
-    """Write the outputs on one mesh, nested in one of ``base`` cells, to a ``row`` of the table; ``layer`` is where the base
-    mesh has it, and the stretch beyond (:func:`.middle.node`). Returns whether the kind of cell changes along the tube,
-    and the error of the stretch in the middle that no mesh shows.
+def tell(functional, y, mesh, base, center, mu, load, row):
+    """Write the outputs on one mesh, nested in one of ``base`` cells, to a ``row`` of the table. Returns whether the kind of
+    cell changes along the tube.
     """
-    broken = integrate(functional.integrands, mesh.x, y, mesh.n, mesh.cells, load, row)
-    row[MIDDLE], row[MULTIPLIER], missed = y[center * mesh.n // base], mu, 0.0
-    if mesh.free:
-        row[MIDDLE], missed = middle.stretch(
-            functional.density, mesh.x, y, mesh.n, layer[0], base, layer[1], cell_at(mesh.cells, 0), load
-        )
-    return broken, missed
+    row[MIDDLE], row[MULTIPLIER] = y[center * mesh.n // base], mu
+    return integrate(functional.integrands, mesh.x, y, mesh.n, mesh.cells, load, row)
 
 
 @kernel
-def judge(functional, room, level, cells, load, target, error, missed, broken):
-    """Values and bounds from the last four rows of the table, into ``out``; returns the largest scaled bound."""
-    x, out = room.x, room.out
-    units, floors = functional.scales(room.table[level], largest_sizes(cells), load, x[len(x) - 1] - x[0], error)
+def measure(scales, direction, held, out):
+    """Write scales and floors of outputs, the pair of ``scales``, to ``out``; of a multiplier in units of its direction."""
     for k in range(OUTPUTS):
-        out[2, k], out[3, k] = units[k], floors[k]
-    if target.any:  # the multiplier counts in units of its direction
-        direction = target.direction
+        out[2, k], out[3, k] = scales[0][k], scales[1][k]
+    if held:
         unit = max(abs(direction.p), max(abs(direction.f), abs(direction.m)))
         out[2, MULTIPLIER] /= max(unit, 1.0)
         out[3, MULTIPLIER] /= unit
-    return extrapolate(room.table, level, out[2], out[3], missed, broken, out[0], out[1])
+
+
+@kernel
+def judge(functional, room, level, cells, load, target, error, broken):
+    """Values and bounds from the last four rows of the table, into ``out``; returns the largest scaled bound."""
+    x, out = room.x, room.out
+    scales = functional.scales(room.table[level], largest_sizes(cells), load, x[len(x) - 1] - x[0], error)
+    measure(scales, target.direction, target.any, out)
+    return extrapolate(room.table, level, out[2], out[3], broken, out[0], out[1])
 
 
 @kernel
@@ -262,12 +262,12 @@ def solve(functional, room, tube, load, target, mu, regrades, accuracy):
     what has all that a :class:`Room` has, begins with a guess, and the multiplier of the :class:`.held.Target` with about
     ``mu``; its base mesh and guess are replaced by the adapted mesh and its solution: the next call's warm start.
 
-    Returns ``(status, unstable directions, doublings of the base mesh, multiplier on it)``.
+    Returns ``(status, unstable directions, doublings of the base mesh)``.
     """
     n, table = len(room.x) - 1, room.table
     course, edges, cells, free, center, _ = tube
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
-    error, layer, on_base, rate = tolerance, (middle.NOT_LONG, 1.0), mu, newton.UNKNOWN
+    error, on_base, rate = tolerance, mu, newton.UNKNOWN
     passes, level, count, shrunk, xs, ys = 0, 1, n, False, room.x, room.y
     while True:
         own, coarser = Mesh(xs, count, free, fill(course, edges, xs, count, n, cells)), error
@@ -278,22 +278,20 @@ def solve(functional, room, tube, load, target, mu, regrades, accuracy):
             if rescue(functional, room, level, ys, own, now):
                 continue
         if status != newton.CONVERGED:
-            return status, unstable, max(level - 1, 0), on_base
+            return status, unstable, max(level - 1, 0)
         shrunk = False
         if level == 1 and passes < regrades:
             adapt(functional, room.x, room.y, n, tube, now, room.work)
             passes += 1
             continue
-        if level == 1 and free:
-            layer = middle.node(functional.density, xs, ys, n, cell_at(own.cells, 0), now, accuracy)
-        broken, missed = tell(functional, ys, own, n, center, mu, now, layer, table[level])
+        broken = tell(functional, ys, own, n, center, mu, now, table[level])
         if level >= 3:
             left = max(error, coarser)
-            largest = judge(functional, room, level, own.cells, now, target, left, missed, broken)
+            largest = judge(functional, room, level, own.cells, now, target, left, broken)
             if largest <= accuracy or level == MAX_DOUBLINGS + 1:
                 multiplier = room.out[0, MULTIPLIER]
                 finest.leave_loads(table[:, MULTIPLIER], level, multiplier, target.direction, left, room.fine)
-                return newton.CONVERGED if largest <= accuracy else UNREACHED, unstable, level - 1, on_base
+                return newton.CONVERGED if largest <= accuracy else UNREACHED, unstable, level - 1
         on_base = mu if level == 1 else on_base
         mu = on_base if level == 0 else mu
         level, count, xs, ys = next_mesh(room, edges, level)

@@ -33,6 +33,8 @@ from .membrane import (  # noqa: F401
 )
 from .wall import has_two_families
 
+LONGER = 1e-9  # relative: more than rounding, of lengths that the fibers allow
+
 
 @kernel
 def clamped(cell, gamma, wall):
