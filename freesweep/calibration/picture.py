@@ -81,9 +81,7 @@ def between(found: Calibration, k: int) -> list:
 def _predicted(states, setup):
     """What the model says of states (n, measured); of pushes that nobody measured, which are told roughly only, nothing."""
     predictor = Predictor([states])
-    for _ in range(2):  # of short tubes what vectors miss is corrected
-        predictor.predict([[setup]])
-        predictor.refresh([setup])
+    predictor.settle([setup])
     ((predicted,),) = predictor.predict([[setup]])
     if "force" in states.measured:
         force = predicted[:, states.measured.index("force")]
