@@ -9,7 +9,8 @@ from .measured import COLUMNS, Measurement
 from .predicted import Predictor
 
 STEP = 0.3  # standard errors: of the differences that carry them over
-DUMMY = {"deformed_length": 0.9, "rotation": 0.0, "mid_radius": 1.0, "force": 1.0, "torque": 1.0}
+PUSH = -1e9  # [N]: whoever asks for a band may ask where the tube pushes
+DUMMY = {"deformed_length": 0.9, "rotation": 0.0, "mid_radius": 1.0, "force": PUSH, "torque": 1.0}
 
 
 def band_of(found, quantity, pressure, actuator=0, **imposed):
@@ -38,6 +39,7 @@ def band_of(found, quantity, pressure, actuator=0, **imposed):
             point[k] = np.clip(point[k] + sign * STEP * errors[k], parameters.low[k], parameters.high[k])
             points.append(point)
     setups = [[parameters.setups(point)[actuator]] for point in points]
+    predictor.settle(setups[0])
     values = np.array([each[0][:, 0] for each in predictor.predict(setups)])
     spans = np.array([points[2 * i + 2][k] - points[2 * i + 1][k] for i, k in enumerate(known)])
     slopes = (values[2::2] - values[1::2]) / spans[:, None] if len(known) else np.zeros((0, count))

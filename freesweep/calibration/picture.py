@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -81,9 +80,7 @@ def between(found: Calibration, k: int) -> list:
 def _predicted(states, setup):
     """What the model says of states (n, measured); of pushes that nobody measured, which are told roughly only, nothing."""
     predictor = Predictor([states])
-    for _ in range(2):  # of short tubes what vectors miss is corrected
-        predictor.predict([[setup]])
-        predictor.refresh([setup])
+    predictor.settle([setup])
     ((predicted,),) = predictor.predict([[setup]])
     if "force" in states.measured:
         force = predicted[:, states.measured.index("force")]
@@ -151,7 +148,7 @@ def words_of(found: Calibration, k: int, shown: dict = USUAL) -> list[str]:
 def _head(ax, heading, words):
     """A heading, and words below it."""
     width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
-    below = textwrap.wrap(", ".join(words).replace("-", "\N{MINUS SIGN}"), max(int(width / LETTER), 30))
+    below = style.broken([word.replace("-", "\N{MINUS SIGN}") for word in words], width, LETTER)
     pad, size = 6.0 + style.points(9.0) * len(below), style.points(style.NORMAL + 1.0)
     ax.set_title(heading, loc="left", pad=pad, fontsize=size, fontweight="bold")
     ax.annotate("\n".join(below), (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), textcoords="offset points",

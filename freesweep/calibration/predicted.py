@@ -12,6 +12,7 @@ from .parameters import Setup
 from .states import Forces, free_states, held_torques, model_of, points_of, rough_states
 
 ACCURACY = 1e-8  # of the scalar solver, scaled
+SETTLED_AFTER = 2  # corrections of short tubes: the second is that of the force which the first one changed
 
 
 class Asked(NamedTuple):
@@ -53,6 +54,12 @@ class Predictor:
             for k, state in enumerate(states):
                 _as_read(self.measurements[k], state.setup, found[t][k])
         return found
+
+    def settle(self, setups):
+        """Correct, as a fit does, what vectors miss of short tubes with these ``setups``, and with some hardly other."""
+        for _ in range(SETTLED_AFTER):
+            self.predict([setups])
+            self.refresh(setups)
 
     def refresh(self, setups) -> float:
         """Correct what vectors miss of short physical tubes; the largest change of a force that makes [N]."""

@@ -147,6 +147,7 @@ def _address(text):
 def _run_sweep(options):
     from pathlib import Path
 
+    from ..sweep.atlas_name import named_otherwise
     from ..sweep.spec import read_file
 
     if (options.spec is None) == (options.example is None):
@@ -161,6 +162,8 @@ def _run_sweep(options):
         raise ValueError(f"--threads: found {options.threads}; give 1 or more")
     if out.exists() and out.samefile(options.spec):
         raise ValueError(f"--out: {out} is the specification itself; give the name of the atlas to make")
+    if faults := named_otherwise(out):
+        raise ValueError(*faults)
     if options.map:
         check_map(sweep, options.map)
     if options.dry_run:

@@ -1,6 +1,10 @@
 """The commands that judge: verify, bench, census. They parse and call."""
 
+from argparse import ArgumentTypeError
+
 from ..description.tube_model import DEFAULT, MODELS
+
+SUBJECTS = ("solver", "query")  # of a bench
 
 
 def add_judging(commands):
@@ -21,11 +25,12 @@ def add_judging(commands):
     bench = commands.add_parser(
         "bench", help="how fast this is on this machine, beside its peers, and with which errors"
     )
-    bench.add_argument(
-        "subject", nargs="?", choices=("solver", "query"), default="solver", help="what is timed (default: solver)"
-    )
+    bench.add_argument("subject", nargs="?", choices=SUBJECTS, default="solver", help="what is timed (default: solver)")
     bench.add_argument("--quick", action="store_true", help="few designs: a first look in seconds")
-    bench.add_argument("--json", metavar="FILE", help="keep all figures, too")
+    bench.add_argument(
+        "--json", nargs="?", const="", type=_kept_as, metavar="FILE",
+        help="print all figures as JSON; with FILE the table, and all figures there",
+    )  # fmt: skip
     bench.set_defaults(run=_run_bench)
     census = commands.add_parser("census", help="random designs over the whole domain: every one solved, or explained")
     census.add_argument("count", type=int, metavar="N", help="how many designs")
@@ -38,6 +43,13 @@ def add_judging(commands):
     census.add_argument("--quiet", action="store_true", help="no progress bar")
     census.add_argument("--json", action="store_true", help="print all figures as JSON")
     census.set_defaults(run=_run_census)
+
+
+def _kept_as(text):
+    """The word behind --json, unless it was meant to be what is timed."""
+    if text in SUBJECTS:
+        raise ArgumentTypeError(f"found {text!r}, which is no file; write it before --json")
+    return text
 
 
 def _run_verify(options):
@@ -115,7 +127,7 @@ def _run_bench(options):
         from ..bench.solver import measure
         from ..bench.table import table
     found = measure(options.quick, lambda text: print(f"{text} ...", file=sys.stderr))
-    print(table(found))
+    print(json.dumps(found, indent=1) if options.json == "" else table(found))
     if options.json:
         write_whole(options.json, json.dumps(found, indent=1).encode())
         print(options.json)

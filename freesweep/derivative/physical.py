@@ -25,6 +25,7 @@ STEPS, CHANGES = 60, 30
 FIRST_CELLS = 48  # in which the kernel tells where they settle; their neighbours begin there
 SETTLED = 1e-13  # of what is sought
 SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves
+ROUNDED = 1e-7  # of G: a shorter way to the edge is rounding; from a longer one steps grow until they settle
 BEYOND = 1e-12  # by which a family may be beyond its reach, or a multiplier negative, of the load
 NO_ROOM = 1e-30
 
@@ -198,10 +199,10 @@ class PhysicalTube(Physics):
                 step = -np.linalg.solve(matrix, wrong[..., None])[..., 0].T
             except np.linalg.LinAlgError:
                 raise NotFound from None
-            before = four[0]
+            before, way = four[0], four[0] - low
             four = four + step
-            four[0] = np.maximum(four[0], low + SHORT * (before - low))
-            moved = max(np.max(np.abs(four[0] - before) / (1.0 + before)), np.max(np.abs(step[1])))
+            four[0] = np.maximum(four[0], low + SHORT * way)
+            moved = max(np.max(np.abs(four[0] - before) / (way + ROUNDED * (1.0 + before))), np.max(np.abs(step[1])))
             if not np.isfinite(moved):
                 raise NotFound
             if moved < 1e-8:

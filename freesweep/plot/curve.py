@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -159,15 +158,17 @@ def curve(
             np.isfinite(line.get_ydata()).any() for line in drawn
         ):  # axes without a line have no range of their own
             ax.set(xlim=np.sort(shown_units(along)[1] * plane[along].values)[[0, -1]], yticks=[])
+        named = ""
         if each is not None:
             label_ends(ax, drawn, _texts(plane[each].values[nodes], each))
             units = "" if each == DESIGN else f" [{shown_units(each)[0]}]".replace(" [1]", "")
-            ax.annotate(each.replace("_", " ") + units, (1.0, 1.0), xycoords="axes fraction", xytext=(4.0, 9.0),
+            named = each.replace("_", " ") + units
+            ax.annotate(named, (1.0, 1.0), xycoords="axes fraction", xytext=(4.0, 9.0),
                         textcoords="offset points", color=style.QUIET, gid="each")  # fmt: skip
         relevant = point.only(lambda name: name in dataset[variable].coords)
         shown_nodes = plane if each is None else plane.isel({each: nodes})
         marks = [words for gid, words in MARKS.items() if _marked(ax, gid)]
-        _name_choice(ax, relevant, [*marks, *_reasons(shown_nodes, variable)])
+        _name_choice(ax, relevant, [*marks, *_reasons(shown_nodes, variable)], named)
     return ax
 
 
@@ -223,12 +224,12 @@ def _marked(ax, gid):
     return any(line.get_gid() == gid for line in ax.lines)
 
 
-def _name_choice(ax, point, marks):
-    """What was chosen and what marks mean, in words below the heading."""
+def _name_choice(ax, point, marks, beside):
+    """What was chosen and what marks mean, in words below the heading, where there are others ``beside`` the axes."""
     words = [*point.words(), *marks]
     if words:
         width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
-        below = textwrap.wrap(", ".join(words), max(int(width / (LETTER * style.wider())), 30))
+        below = style.broken(words, width - LETTER * style.wider() * len(beside), LETTER)
         ax.set_title(ax.get_title("left"), loc="left", pad=6.0 + style.points(9.0) * len(below),
                      fontsize=style.points(style.NORMAL + 1.0), fontweight="bold")  # fmt: skip
         ax.annotate("\n".join(below), (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), gid="chosen",

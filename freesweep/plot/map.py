@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import TYPE_CHECKING
 
 import matplotlib as mpl
@@ -93,7 +92,7 @@ def _dress(ax, sheet: Plane, variable, handles):
     ax.tick_params(labelsize=style.points(style.NORMAL), labelfontfamily=family["fontfamily"])
 
     width = ax.get_position().width * ax.figure.bbox.width / ax.figure.dpi * style.INCH  # before the layout [mm]
-    below = textwrap.wrap(", ".join(sheet.point.words()), max(int(width / (LETTER * style.wider())), 30))
+    below = style.broken(sheet.point.words(), width, LETTER)
     heading = {**plain, "fontsize": style.points(style.LARGE), "fontweight": "bold"}
     ax.set_title(title(variable), loc="left", pad=7.0 + style.points(10.0) * len(below), **heading)
     ax.annotate(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -155,7 +154,7 @@ def window(ax, sheet: Plane) -> None:
 def head(figure, ax, text, point, lift) -> None:
     """Title of the figure and, ``lift`` points above the first map, what was chosen."""
     width = figure.get_size_inches()[0] * style.INCH
-    below = textwrap.wrap(", ".join(point.words()), int(width / (LETTER * style.wider())))
+    below = style.broken(point.words(), width, LETTER)
     heading = "\n".join([text, *[" "] * len(below)])  # room for what was chosen
     figure.suptitle(heading, x=0.01, ha="left", fontsize=style.points(style.LARGE), fontweight="bold", linespacing=1.0)
     how = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False, "gid": "chosen"}

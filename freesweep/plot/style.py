@@ -8,6 +8,7 @@ import contextlib
 import functools
 import io
 import os
+import textwrap
 from pathlib import Path
 
 import matplotlib as mpl
@@ -44,6 +45,7 @@ DESIGN = {"color": INK, "markerfacecolor": PAPER, "markersize": 3.4, "markeredge
 
 LIGHTEST_TYPE = 0.24  # relative luminance: a contrast of 3.6 to paper
 SAMPLE = "length 192 mm, radius 4.76 mm, wall 1.59 mm, thin lines"
+FEWEST = 20  # letters of a line, however narrow: more lines would leave no room for the axes
 SMALL, NORMAL, LARGE = 7.0, 8.0, 10.0  # type [points]
 
 SETTINGS = {
@@ -134,6 +136,12 @@ def wider() -> float:
     own, plain = tuple(mpl.rcParams["font.family"]), tuple(SETTINGS["font.family"])
     scale = mpl.rcParams["font.size"] / SETTINGS["font.size"]
     return scale * (1.0 if own == plain else _mean_letter(own) / _mean_letter(plain))
+
+
+def broken(words, width: float, letter: float) -> list[str]:
+    """Lines of ``words``, one after the other, for a ``width`` and letters of such a width in SETTINGS' own type [mm]."""
+    most = max(int(width / (letter * wider())), FEWEST)
+    return textwrap.wrap(", ".join(words), most, break_on_hyphens=False)
 
 
 def legible(colour: str) -> str:

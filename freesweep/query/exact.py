@@ -30,6 +30,7 @@ FEW, ROUGH = (
     (1, 3),
     1e-5,
 )  # tries of vectors that are worth it where a state may be left out; at an accuracy that is rough
+MESHES = "meshes"  # how thorough
 
 
 def load():
@@ -54,9 +55,9 @@ def solve(kind, points, tubes, accuracy, largest_pressure=None, cells=CELLS, tho
     on base meshes of so many ``cells``.
 
     With ``largest_pressure`` [Pa] each design is followed up to there, for its ``limit_pressure``. Not ``thorough``: what
-    vectors leave to the scalar kernels, a thousand times dearer, is left out. ``along``: of free states of the source's
-    tubes, too, slack shares and least tensions are told, which physical tubes always tell: membranes whose fibers may push
-    are such tubes.
+    vectors leave to the scalar kernels, a thousand times dearer, is left out; thorough by MESHES: vectors, which search long
+    for held states in vain, are not tried. ``along``: of free states of the source's tubes, too, slack shares and least
+    tensions are told, which physical tubes always tell: membranes whose fibers may push are such tubes.
     """
     design = {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(COLUMNS)}
     lines = lines_of(design["alpha"], design["beta"], tubes.families, tubes.model.is_loose)
@@ -217,7 +218,8 @@ def _held(kind, rows, own, accuracy, followed, thorough):
     )  # fmt: skip
     tube, error = followed
     meshes = thorough or len(tube[0]) > 0
-    found = hold_batch.hold_all(*asked, tube, accuracy - SENSITIVITY * error, soon=meshes, meshes=meshes)
+    accuracy -= SENSITIVITY * error
+    found = hold_batch.hold_all(*asked, tube, accuracy, lanes=thorough != MESHES, soon=meshes, meshes=meshes)
     found.status[found.status == PENDING] = NOT_CONVERGED
     own = slice(hold_batch.OUTPUTS - 1, None)  # the stretch in the middle, and what is known along the tube
     values = np.column_stack([found.loads, found.states.values[:, own]])

@@ -19,6 +19,7 @@ from ..description.quantities import Path
 from ..description.unit_warnings import warn_of
 from ..status import STATUSES
 from . import estimate, kernels
+from .atlas_name import named_otherwise
 from .changes import changes
 from .collect import groups
 from .grid import coordinates
@@ -134,6 +135,7 @@ def _read(spec, out, threads, executor, progress, overwrite):
     if not isinstance(spec, Sweep):
         spec = read_path("spec", spec, "a TOML specification, or a Sweep", faults)
     out = read_path("out", out, "the atlas to make", faults)
+    faults += [] if out is None else named_otherwise(out)
     if threads is not None:
         threads = read_count("threads", threads, faults)
     if executor is not None and not callable(getattr(type(executor), "submit", None)):

@@ -11,7 +11,7 @@ from benches import FIT, TIES, bench, exact, muscle, values
 from commands import refused, run
 
 import freesweep
-from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, calibrate, inflate
+from freesweep import Actuator, ActuatorError, Measurement, MooneyRivlin, blocked_force, calibrate, inflate
 from freesweep.calibration.parameters import Setup
 from freesweep.calibration.picture import axis, between, picture, words_of
 from freesweep.calibration.predicted import Asked, Predictor, scalar
@@ -97,6 +97,18 @@ def test_a_dead_length_and_a_threshold():
     assert (found.dead_length, found.threshold_pressure) == (found.values[2], found.values[3])
     again = found.band("force", 3e5, contraction=0.1, actuator=1)
     assert again.force_low < again.force < again.force_high
+
+
+def test_a_band_of_a_short_tube_and_of_one_that_pushes():
+    """Their ends feel each other; at a tenth of contraction under 1 bar it pushes."""
+    tube = Actuator(alpha=25, beta=-25, length=0.03, radius=5e-3, wall=1e-3, material=TRUTH.material)
+    force = blocked_force(tube, PRESSURE, x=0.0)["force"].values
+    found = calibrate(Measurement(tube, PRESSURE, contraction=np.zeros(8), force=force, measured="force"), ["c10"])
+    for contraction in (0.02, 0.1):
+        band = found.band("force", [1e5, 2e5], contraction=contraction)
+        own = blocked_force(found.tubes[0], [1e5, 2e5], (1.0 - contraction) * 0.03, x=0.0)["force"]
+        assert band["force"].values == pytest.approx(own.values, rel=1e-5)
+    assert band["force"].values[0] < 0.0 < band["force"].values[1]
 
 
 def test_priors_bounds_and_ties():

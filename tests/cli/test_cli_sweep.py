@@ -6,8 +6,10 @@ import pytest
 from commands import refused, run
 from grids import spec
 
+from freesweep import run_sweep
 from freesweep.cli import DONE, ENVIRONMENT, INTERRUPTED
 from freesweep.sweep import duration
+from freesweep.sweep.shards import SweepError
 from freesweep.sweep.spec import parse
 from freesweep.sweep.unit_doubts import doubts_of
 
@@ -168,6 +170,15 @@ def test_a_specification_is_neither_overwritten_nor_taken_for_an_address(specifi
     assert (tmp_path / "tiny.toml").read_text() == TINY
     err = refused(capsys, "sweep", "--dask", specification)
     assert "tiny.toml', which is no address; write SPEC before --dask" in err
+
+
+@pytest.mark.parametrize(("name", "more"), [("x.csv", "freesweep export x.nc -o x.csv"), ("x.PNG", "such as x.nc")])
+def test_an_atlas_is_not_named_as_what_it_is_not(name, more, specification, tmp_path, capsys):
+    for words in (["--dry-run"], []):
+        assert more in refused(capsys, "sweep", specification, "-o", str(tmp_path / name), *words)
+    with pytest.raises(SweepError, match="an atlas is netCDF"):
+        run_sweep(specification, tmp_path / name)
+    assert not list(tmp_path.glob("x*"))
 
 
 def test_threads_and_places_in_the_atlas_are_checked(specification, capsys):

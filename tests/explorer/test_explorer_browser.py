@@ -77,6 +77,14 @@ def put_pin(driver):
     at_rest(driver)
 
 
+def test_the_table_of_pins_fades_where_there_is_more_of_it(page):
+    put_pin(page)
+    pins = "document.getElementById('pins')"
+    assert page.execute_script(f"return {pins}.scrollWidth > {pins}.clientWidth && {pins}.classList.contains('more')")
+    page.execute_script(f"{pins}.scrollLeft = {pins}.scrollWidth")
+    until(page, f"!{pins}.classList.contains('more')")
+
+
 def test_hovering_and_clicking_tell_what_a_query_answers(page, atlas):
     place = page.find_element(By.ID, "map_place")
     ActionChains(page).move_to_element_with_offset(place, *on_map(page, 35.0, -55.0)).perform()

@@ -6,11 +6,12 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 import pytest
-from commands import run
+from commands import refused, run
 
 from freesweep.bench import models, peak, scipy_bvp, solver, table
 from freesweep.bench.flops import density_flops
 from freesweep.bench.sample import Reference, reference, sample, typical
+from freesweep.cli import DONE
 from freesweep.solver.lanes.vector import WIDTH
 from freesweep.solver.physics import membrane
 
@@ -109,3 +110,10 @@ def test_the_command_prints_one_table_and_keeps_the_figures(tmp_path, capsys, mo
     assert found["threads"][0]["threads"] == 1
     assert [cost["designs"] for cost in found["newton_passes"]] == [1, WIDTH]
     assert all(0.0 < cost["share_of_peak"] < 1.0 for cost in found["newton_passes"])
+
+
+def test_json_is_printed_and_what_is_timed_is_no_file(capsys, monkeypatch):
+    monkeypatch.setattr(solver, "measure", lambda *_: {"rows": []})
+    assert run("bench", "--json") == DONE
+    assert json.loads(capsys.readouterr().out) == {"rows": []}
+    assert "write it before --json" in refused(capsys, "bench", "--json", "query")

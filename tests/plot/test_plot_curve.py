@@ -87,6 +87,15 @@ def test_chosen_nodes_are_named_and_lines_end_where_there_is_no_result(data):
     assert words.replace("\n", " ").replace("\u00a0", " ").endswith("no result: beyond limit pressure")
 
 
+@pytest.mark.parametrize(("width", "each"), [(45.0, None), (55.0, None), (55.0, "alpha"), (70.0, "alpha")])
+def test_words_below_the_heading_are_as_wide_as_narrow_axes(width, each):
+    """They end before the figure does, and before the name of what lines differ in."""
+    ax = curve(example_atlas().data, "rotation", each=each, ax=style.new_axes(width, width), beta=-60)
+    ax.figure.draw_without_rendering()
+    boxes = {text.get_gid(): text.get_window_extent() for text in ax.texts}
+    assert boxes["chosen"].x1 < (boxes["each"].x0 if each else ax.figure.bbox.x1)
+
+
 def test_slack_parts_are_thin_and_unstable_nodes_are_circles(data):
     ax = curve(data, alpha=20.0)
     (firm,) = lines(ax, "firm")

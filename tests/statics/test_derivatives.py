@@ -376,6 +376,14 @@ def test_a_held_balloon_with_sharp_layers():
     assert by_force == pytest.approx(-np.degrees(by_rotation), rel=1e-6)
 
 
+def test_a_varying_balloon_that_is_all_but_folded_at_its_ends():
+    """Thirtythree times as wide: a cell's way to the edge of its domain is a billionth of its stretch."""
+    state = {"alpha": None, "beta": None, "length": 0.36316244, "radius": 0.01053595}
+    state |= {"wall": [(0, 1.44635879e-3), (1, 1.67392690e-3)], "material": fs.MooneyRivlin(145159.708, 109537.264)}
+    found = solved("inflate", state | {"pressure": 156009.225}, derivatives="c01")
+    assert float(found["d_mid_radius_d_c01"]) == pytest.approx(-3.756742e-6, rel=1e-6)  # of differences
+
+
 @pytest.mark.parametrize("pressure", [3e4, 9e4])  # of which the second would buckle, were its rotation not held
 def test_a_tube_that_is_held_straight_has_derivatives_in_closed_form(pressure, monkeypatch):
     """No mesh is asked, and meshes tell the same."""

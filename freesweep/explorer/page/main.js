@@ -63,7 +63,8 @@ async function begin() {
   buildControls();
   listen();
   addEventListener("keydown", onKey);
-  addEventListener("resize", () => setTimeout(drawShapes, 120));
+  addEventListener("resize", () => { fadeTable(); setTimeout(drawShapes, 120); });
+  byId("pins").addEventListener("scroll", fadeTable);
   addEventListener("hashchange", () => { follow(location.hash.slice(1)); change({ at: state.at, m: state.m, x: state.x, y: state.y, pins: state.pins, dark: state.dark, u: state.u }); });
   dress();
   drawFront();

@@ -77,6 +77,13 @@ function drawTable() {
     return `<tr data-pin="${k}" class="${k === state.active ? "active" : ""}"><td><span class="dot" style="background:${colourOf(k)}"></span> <button data-unpin="${k}" title="unpin (Delete)">×</button> ${solve}</td>${cells.join("")}</tr>`;
   });
   byId("pins").innerHTML = rows.length ? `<table><thead><tr><th></th>${heads.join("")}</tr></thead><tbody>${rows.join("")}</tbody></table>` : HINT;
+  fadeTable();
+}
+
+// The table fades out at the right where there is more of it.
+function fadeTable() {
+  const box = byId("pins");
+  box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 1);
 }
 
 const HINT = `<p class="hint">Click the map to pin a design and to see its shape, its curve and its numbers here. Add a wish at the left and drag over
