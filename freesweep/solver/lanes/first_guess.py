@@ -8,7 +8,7 @@ from ...jit import kernel
 from ..cells import nothing_yet
 from ..physics import lagrangian
 from ..physics.uniform_tube import CLOSE, FAR, ITERATIONS, LARGEST_CHANGE, SCAN, SECANTS, between
-from ..physics.wall import leaves_choice, may_go_slack
+from ..physics.wall import has_two_families, leaves_choice, may_go_slack
 from .meridian import CERTAIN
 from .vector import HUGE, isnt, mask_of, select, some, spread
 
@@ -60,13 +60,15 @@ def seek(here, cell, start, end, low, high, t, steep, near, todo):
 @kernel
 def reaches(u, cell, load):
     """Where a tube whose middle has the stretch ``u`` has a meridian from there to its clamped end: on the way no stretch
-    may have a higher level, as one has where loose fibers leave another equilibrium.
+    may have a higher level, as one has where two loose families leave another equilibrium.
     """
-    level, _, _, _ = lagrangian.level_of(u, cell, load, nothing_yet(u))
+    _, near = lagrangian.density_beside(u, 0.0 * u, cell, load, nothing_yet(u))
+    level, _, _, _ = lagrangian.level_of(u, cell, load, near)
     reached = mask_of(-1)
     for k in range(1, ON_THE_WAY + 1):
         y = u + (1.0 - u) * (k / ON_THE_WAY)
-        higher, _, _, _ = lagrangian.level_of(y, cell, load, nothing_yet(u))
+        _, near = lagrangian.density_beside(y, 0.0 * u, cell, load, near)
+        higher, _, _, _ = lagrangian.level_of(y, cell, load, near)
         reached = reached & isnt(higher - level > CERTAIN * (abs(level) + abs(higher)))
     return reached
 
@@ -169,7 +171,7 @@ def follow(u, cell, start, end, half, asked):
                 break
         arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived
         loaded = arrived & (abs(end.f) + abs(end.m) + abs(end.gamma - 1.0) > 0.0)
-        if leaves_choice(end.wall) and some(loaded):
+        if leaves_choice(end.wall) and has_two_families(end.wall) and some(loaded):
             arrived = arrived & (isnt(loaded) | reaches(trial, cell, between(start, end, ahead)))
         t, u = select(arrived, ahead, t), select(arrived, trial, u)
         step = select(arrived, 2.0 * step, 0.5 * step)
