@@ -139,12 +139,9 @@ def wider() -> float:
 
 
 def broken(words, width: float, letter: float) -> list[str]:
-    """Lines of ``words``, one after the other, for a ``width`` and letters of such a width in SETTINGS' own type [mm]. The
-    last word has company.
-    """
+    """Lines of ``words``, one after the other, for a ``width`` and letters of such a width in SETTINGS' own type [mm]."""
     most = max(int(width / (letter * wider())), FEWEST)
-    broken_at = [textwrap.wrap(", ".join(words), n, break_on_hyphens=False) for n in range(most, FEWEST - 1, -1)]
-    return next((lines for lines in broken_at if len(lines) == 1 or " " in lines[-1]), broken_at[0])
+    return textwrap.wrap(", ".join(words), most, break_on_hyphens=False)
 
 
 def legible(colour: str) -> str:
