@@ -130,6 +130,7 @@ def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon, most)
             given = problems, owners, pressures, stretches, rows[alike], *kind, pieces, accuracy, *found[:5]
             if len(rows):
                 run(solve, len(rows), soon, *given)
+    found.middles[found.status == PENDING] = np.nan  # others may find these states elsewhere
 
 
 def _draw(problems, first, pressures, stations, accuracy, found, soon):

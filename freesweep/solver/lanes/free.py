@@ -85,13 +85,15 @@ def carry(problems, first, pressures, order, kind, told, stretches, likeness):
 
 
 @kernel
-def seat_states(group, count, asked, rows, columns, start):
-    """Put the next ``count`` rows in the given order into the lanes; those that are left take the last one, too."""
+def seat_states(group, count, asked, middles, rows, columns, start):
+    """Put the next ``count`` rows in the given order into the lanes; those that are left take the last one, too. Depths of
+    ``middles`` that were found before are where they ``start``, (2, WIDTH).
+    """
     for lane in range(WIDTH):
         row = asked.order[group + min(lane, count - 1)]
         rows[lane] = row
         enter(lane, asked.problems[asked.owners[row]], columns)
-        start[0, lane] = asked.starts[row]
+        start[0, lane], start[1, lane] = asked.starts[row], middles[row, 1] if middles[row, 1] > 0.0 else 0.0
         if asked.pressures[row] == np.inf:
             lock(lane, columns)
         else:
@@ -101,23 +103,24 @@ def seat_states(group, count, asked, rows, columns, start):
 @kernel
 def solve(asked, kind, pieces, accuracy, told, middles):
     """Solve the rows that are ``asked`` for, WIDTH at a time, by :mod:`quadrature`, each part in so many ``pieces``: they
-    begin at uniform stretches. Rows that a lane could not do keep the status that they have. Of the others ``middles``
-    (n, 2) take the uniform stretch and the depth of the middle, from which profiles are drawn.
+    begin at uniform stretches. Rows that a lane could not do keep the status that they have. ``middles`` (n, 2) take the
+    uniform stretch and the depth of the middle, from which profiles are drawn, and finer pieces start.
     """
     room, out, small = sums.make_room(), aligned(2, 16), aligned(2, COLUMNS)
     columns, start, rows = small[0], small[1], np.zeros(WIDTH, np.int64)
     for group in range(0, len(asked.order), WIDTH):
         count = min(WIDTH, len(asked.order) - group)
-        seat_states(group, count, asked, rows, columns, start)
+        seat_states(group, count, asked, middles, rows, columns, start)
         cell, _, load = loads(columns, kind.constants, kind.walls, kind.layers)
-        met, alpha, beta, (u, depth) = quadrature.solve(
-            get(start, 0), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy, room, out
-        )
+        found, met, alpha, beta, (u, depth) = quadrature.solve(
+            (get(start, 0), get(start, 1)), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy,
+            room, out,
+        )  # fmt: skip
         record(bits(met), bits(alpha), bits(beta), rows, out, told)
         put(start, 0, u)
         put(start, 1, depth)
         for lane in range(count):
-            if (bits(met) >> lane) & 1:
+            if (bits(found) >> lane) & 1:
                 middles[rows[lane], 0], middles[rows[lane], 1] = start[0, lane], start[1, lane]
 
 

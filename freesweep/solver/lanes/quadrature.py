@@ -3,7 +3,7 @@ mesh, no Newton's method but that for what loose fibers leave the wall at one pl
 
 A state is one number, the depth of its middle (:mod:`meridian`), at which half a tube is as long as it is: the secant
 finds it, first by one rule along the whole depth, then by the :mod:`sums` of all parts. :mod:`outputs` makes of these what
-is told.
+is told. That goes along the secant, too: of two trials, one of which is close, follows what would be told of the right one.
 """
 
 from typing import NamedTuple
@@ -18,11 +18,12 @@ from . import slack_ends
 from .meridian import DEEPEST, middle
 from .outputs import DX, WITHIN, by_depth, finish, unmet
 from .sums import between_ends, find_ends, scan
-from .vector import WIDTH, bits, get, isnt, mask_of, select, some, spread
+from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 FITS = 16  # trials for the depth of the middle
 ROUGH, CLOSE = 3e-3, 3e-10  # shares of the strain that may be wrong there
 MUCH = 1e-2  # of the accuracy asked for
+NEARER, BENT = 0.1, 4.0  # a trial is close that misses so much less than one before: what is told bends by both shares
 STEPS, MET = 8, 1e-12  # to the uniform stretch, relative
 SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
 
@@ -86,12 +87,12 @@ def stationary(u, cell, load, active):
 
 
 @kernel
-def is_off(mid, miss, straight, share):
-    """Where half a tube is not as long as it is, by what more than a ``share`` of the strain hangs on. What is left behind
-    the deepest middle, or that of a ``straight`` tube, is uniform.
+def off_by(mid, miss, straight):
+    """By what share of itself what hangs on the strain is wrong where half a tube is not as long as it is. What is left
+    behind the deepest middle, or that of a ``straight`` tube, is uniform.
     """
     long = (straight | (mid.depth >= DEEPEST)) & (miss >= 0.0)
-    return isnt(long) & (abs(miss) * mid.rate * by_depth(mid) > share)
+    return select(long, 0.0, abs(miss) * mid.rate * by_depth(mid))
 
 
 @kernel
@@ -124,28 +125,33 @@ def sum_parts(pieces, mid, cell, load, active, room):
 
 
 @kernel
-def tell(mid, miss, seen, unsure, cell, load, half, room, out):
-    """Write what is told of a state (:mod:`outputs`) whose half is missed by so much; returns the largest scaled bound."""
+def tell(mid, miss, left, seen, unsure, cell, load, half, room, out):
+    """Write what is told of a state (:mod:`outputs`) whose half is missed by so much, of which so much is ``left`` to be
+    wrong by; returns the largest scaled bound.
+    """
     share = by_depth(mid)
-    moved = share * min(mid.rate * unmet(mid, miss, get(room.numbers[1], DX)), 1.0)
-    placed = share * min(mid.rate * unmet(mid, miss, get(room.numbers[1], WITHIN)), 1.0)
+    moved = share * min(mid.rate * unmet(mid, left, get(room.numbers[1], DX)), 1.0)
+    placed = share * min(mid.rate * unmet(mid, left, get(room.numbers[1], WITHIN)), 1.0)
     behind = select(mid.depth >= DEEPEST, max(miss, 0.0), 0.0)
+    limp, doubts = seen.middle, seen.doubts
     return finish(
-        mid,
-        miss,
-        moved,
-        placed,
-        behind,
-        cell,
-        load,
-        half,
-        seen.middle,
-        seen.doubts,
-        unsure,
-        room.numbers,
-        room.scratch,
-        out,
+        mid, miss, moved, placed, behind, cell, load, half, limp, doubts, unsure, room.numbers, room.scratch, out
     )
+
+
+@kernel
+def keep(where, told, kept):
+    """What was ``told`` (n, WIDTH) in some lanes, to what is ``kept`` (n, WIDTH) of a trial before."""
+    for k in range(len(kept)):
+        put(kept, k, select(where, get(told, k), get(kept, k)))
+
+
+@kernel
+def along_secant(onward, kept, told):
+    """What is ``told`` (n, WIDTH), so many times ``onward`` what it differs by from what was ``kept`` of a trial before."""
+    for k in range(len(kept)):
+        here = get(told, k)
+        put(told, k, here + select(onward == 0.0, 0.0, onward * (here - get(kept, k))))
 
 
 @kernel
@@ -156,43 +162,65 @@ def there(limps, wall):
 
 
 @kernel
-def solve(u, cell, load, half, active, pieces, accuracy, room, out):
-    """Solve the ``active`` lanes, whose uniform tubes have about the stretch ``u``, all rules in so many ``pieces``.
-    ``out`` (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of :mod:`..along.places`, and their
-    bounds. Returns masks, and uniform stretch and depth of the middle: ``(met, alpha slack or pushed somewhere, beta,
-    (u, depth))``.
+def roughly(u, depth, straight, slope, cell, load, half, active, pieces, room):
+    """``(depth, miss, (depth, miss) before, slope, what is Seen, lanes that may be)`` by one rule along the whole depth: the
+    secant, from a guess of the depth and of how the miss changes with it.
     """
-    u, active = stationary(u, cell, load, active)
-    mid, none, zero = middle(u, spread(DEEPEST), cell, load, room.scratch), mask_of(0), spread(0.0)
-    depth, straight = min(mid.rate * half, DEEPEST), u == 1.0
-    slope, before, settled, found = -1.0 / mid.rate, (depth, half), none, none
-    seen, unsure, miss = Seen((none, none), (none, none), (zero, zero)), zero, zero
-    rough, fine = 0, 0  # trials that each lane has had, whatever its neighbours need
-    ended = mask_of(-1)  # whose parts have to be looked for again: of all the same, they are one
-    while fine < FITS:
-        mid, wrong = middle(u, depth, cell, load, room.scratch), none
-        if fine == 0 or some(active & ended):
-            total, now, valid = look_along(pieces, mid, cell, load, room)
-            seen, active, miss = seen_again(ended, now, seen), active & (valid | isnt(ended)), half - total
-            rough += 1
-            wrong = active & isnt(settled) & is_off(mid, miss, straight, ROUGH)
-            if rough == FITS:
-                active, wrong = active & isnt(wrong), none
-            arrived = active & isnt(wrong) & isnt(settled)
-            settled = settled | arrived
-            before = select(arrived, depth, before[0]), before[1]
+    none, zero = mask_of(0), spread(0.0)
+    before, settled, miss = (depth, half), none, zero
+    seen = Seen((none, none), (none, none), (zero, zero))
+    for _ in range(FITS):
+        mid = middle(u, depth, cell, load, room.scratch)
+        total, seen, valid = look_along(pieces, mid, cell, load, room)
+        active, miss = active & valid, half - total
+        settled = settled | (active & (off_by(mid, miss, straight) <= ROUGH))
+        wrong = active & isnt(settled)
         if not some(wrong):
-            fine += 1
-            ended = ended & with_ends(room.counts, ended)
-            active, limps, unsure = sum_parts(pieces, mid, cell, load, active, room)
-            if len(load.wall) == 1:
-                seen = Seen(limps, seen.middle, seen.doubts)
-            miss = half - get(room.numbers[0], DX)
-            wrong = active & is_off(mid, miss, straight, min(CLOSE, MUCH * accuracy))
-            found = active & isnt(wrong)
-            if not some(wrong):
-                break
+            break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    largest = tell(mid, miss, seen, unsure, cell, load, half, room, out)
+    return depth, miss, before, slope, seen, active & settled
+
+
+@kernel
+def solve(start, cell, load, half, active, pieces, accuracy, room, out):
+    """Solve the ``active`` lanes from their ``start``, (about the uniform stretch, about the depth of the middle or 0), all
+    rules in so many ``pieces``. ``out`` (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of
+    :mod:`..along.places`, and their bounds. Returns masks, and uniform stretch and depth of the middle: ``(found, met, alpha
+    slack or pushed somewhere, beta, (u, depth))``, met what is found to the accuracy.
+    """
+    u, active = stationary(start[0], cell, load, active)
+    mid, none, allowed = middle(u, spread(DEEPEST), cell, load, room.scratch), mask_of(0), min(CLOSE, MUCH * accuracy)
+    guess, straight = select(start[1] > 0.0, start[1], min(mid.rate * half, DEEPEST)), u == 1.0
+    depth, miss, before, slope, seen, active = roughly(
+        u, guess, straight, -1.0 / mid.rate, cell, load, half, active, pieces, room
+    )
+    ended = with_ends(room.counts, mask_of(-1))  # the others are one part, of which this was the rule: one step more
+    before = select(ended, depth, before[0]), before[1]
+    wrong = active & isnt(ended | straight)
+    found, tried, off, left, unsure, between = none, none, spread(0.0), miss, spread(0.0), none
+    for fine in range(FITS):
+        depth, before, slope = next_depth(wrong, depth, miss, before, slope)
+        mid = middle(u, depth, cell, load, room.scratch)
+        if fine > 0 and some(active & ended):
+            _, now, valid = look_along(pieces, mid, cell, load, room)
+            seen, active = seen_again(ended, now, seen), active & (valid | isnt(ended))
+            ended = ended & with_ends(room.counts, ended)
+        active, limps, unsure = sum_parts(pieces, mid, cell, load, active, room)
+        if len(load.wall) == 1:
+            seen = Seen(limps, seen.middle, seen.doubts)
+        miss = half - get(room.numbers[0], DX)
+        between = tried & (abs(miss) < NEARER * abs(before[1]))
+        bent, now_off = select(between, min(BENT * off, 1.0), 1.0), off_by(mid, miss, straight)
+        left, wrong = bent * abs(miss), active & (bent * now_off > allowed)
+        found = active & isnt(wrong)
+        if not some(wrong):
+            break
+        tell(mid, miss, left, seen, unsure, cell, load, half, room, out)
+        keep(wrong, out[0], room.kept)
+        tried, off = tried | wrong, select(wrong, now_off, off)
+    largest = tell(mid, miss, left, seen, unsure, cell, load, half, room, out)
+    onward = select(found & between, miss / select(between, before[1] - miss, 1.0), 0.0)
+    along_secant(onward, room.kept, out[0])
+    met = found & (largest <= accuracy) & isnt(let_go(mid, cell, load, half))
     alpha, beta = there(seen.limp, load.wall)
-    return found & (largest <= accuracy) & isnt(let_go(mid, cell, load, half)), alpha, beta, (u, depth)
+    return found, met, alpha, beta, (u, depth + onward * (depth - before[0]))

@@ -16,19 +16,20 @@ from . import slack_ends
 from .extremes import highest, widest
 from .meridian import CERTAIN, handed_on, look
 from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WITHIN, WORST, pulled
-from .pack import aligned
+from .pack import OUTPUTS, aligned
 from .rule import LAST, PLACES, missed_within, summed
 from .vector import HUGE, WIDTH, get, isnt, mask_of, put, select, spread
 
 ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5, 15)
 SHORT = SQUARE  # which only what is known of the whole needs
 NARROW = 1e-6  # of the depth: a part of no length
+TOLD = OUTPUTS + len(places.NUMBERS)  # of a state
 
 
 class Room(NamedTuple):
     """Scratch: ``rows`` (15, > LAST, WIDTH) of the places of one rule; brackets of ``ends`` (5, MOST, ...), their ``counts``
     (WIDTH,), ``starts`` (4, MOST, ...) and ``edges`` (MOST + 2, ...); ``numbers`` (2, 16, ...), sums and what they may miss;
-    and one row (1, WIDTH).
+    what is ``kept`` (11, WIDTH) of what was told of a trial; and one row (1, WIDTH).
     """
 
     rows: np.ndarray
@@ -37,6 +38,7 @@ class Room(NamedTuple):
     starts: np.ndarray
     edges: np.ndarray
     numbers: np.ndarray
+    kept: np.ndarray
     scratch: np.ndarray
 
 
@@ -46,7 +48,7 @@ def make_room():
     ends = aligned(9, slack_ends.MOST)
     return Room(
         aligned(15, LAST + 1), ends[:5], np.zeros(WIDTH, np.int64), ends[5:], aligned(1, slack_ends.MOST + 2)[0],
-        aligned(2, 16), aligned(1, 1)[0],
+        aligned(2, 16), aligned(1, TOLD)[0], aligned(1, 1)[0],
     )  # fmt: skip
 
 
