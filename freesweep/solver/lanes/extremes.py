@@ -6,7 +6,7 @@ through three it may be wrong, and by a little of what bends it.
 """
 
 from ...jit import kernel
-from .vector import get, select
+from .vector import HUGE, get, select, spread
 
 CAUTION, BENT = 6.0, 0.2  # times what two curves differ by, and times the fourth difference
 
@@ -19,11 +19,18 @@ def beside(row, k, last):
 
 
 @kernel
-def rises(before, here, after, slope, bend, third, fourth):
-    """``(by what a curve of these differences rises to its peak beside a place, what may be wrong of it)``."""
+def parabola(before, here, after):
+    """By what a parabola through three places rises beside the middle one, where that is the highest."""
     flat, own = 0.5 * (after - before), before - 2.0 * here + after
     peak = (here >= before) & (here >= after) & (own < 0.0)
-    simple = select(peak, flat * flat / select(peak, -2.0 * own, 1.0), 0.0)
+    return select(peak, flat * flat / select(peak, -2.0 * own, 1.0), 0.0)
+
+
+@kernel
+def rises(before, here, after, slope, bend, third, fourth):
+    """``(by what a curve of these differences rises to its peak beside a place, what may be wrong of it)``."""
+    simple = parabola(before, here, after)
+    peak = (here >= before) & (here >= after) & (before - 2.0 * here + after < 0.0)
     bent = peak & (bend < 0.0)
     on = select(bent, -slope / select(bent, bend, 1.0), 0.0)
     on = min(max(on, -1.0), 1.0)
@@ -34,18 +41,25 @@ def rises(before, here, after, slope, bend, third, fourth):
 
 @kernel
 def widest(row, last, most, missed):
-    """``(most, missed)``: the largest number so far, with those of a ``row`` up to ``last``, and what may be wrong of it."""
+    """``(most, missed)``: the largest number so far, with those of a ``row`` up to ``last``, and what may be wrong of it. Of
+    the row that is looked at beside which a parabola rises the highest.
+    """
+    highest_yet = spread(-HUGE)
+    first = before = here = after = second = get(row, 0)
     for k in range(last + 1):
-        first, before, here = beside(row, k - 2, last), beside(row, k - 1, last), get(row, k)
-        after, second = beside(row, k + 1, last), beside(row, k + 2, last)
-        lift, wrong = rises(
-            before, here, after, (8.0 * (after - before) - second + first) / 12.0,
-            (16.0 * (after + before) - 30.0 * here - second - first) / 12.0,
-            0.5 * (second - first) - (after - before), second + first - 4.0 * (after + before) + 6.0 * here,
-        )  # fmt: skip
-        wider = here + lift > most
-        most, missed = select(wider, here + lift, most), select(wider, wrong, missed)
-    return most, missed
+        left, own, right = beside(row, k - 1, last), get(row, k), beside(row, k + 1, last)
+        top = own + parabola(left, own, right)
+        higher = top > highest_yet
+        highest_yet = select(higher, top, highest_yet)
+        first, second = select(higher, beside(row, k - 2, last), first), select(higher, beside(row, k + 2, last), second)
+        before, here, after = select(higher, left, before), select(higher, own, here), select(higher, right, after)
+    lift, wrong = rises(
+        before, here, after, (8.0 * (after - before) - second + first) / 12.0,
+        (16.0 * (after + before) - 30.0 * here - second - first) / 12.0,
+        0.5 * (second - first) - (after - before), second + first - 4.0 * (after + before) + 6.0 * here,
+    )  # fmt: skip
+    wider = here + lift > most
+    return select(wider, here + lift, most), select(wider, wrong, missed)
 
 
 @kernel
@@ -53,7 +67,5 @@ def highest(row, last, most):
     """The largest number so far, with those of a ``row`` up to ``last``, between which lie parabolas."""
     for k in range(last + 1):
         before, here, after = beside(row, k - 1, last), get(row, k), beside(row, k + 1, last)
-        flat, own = 0.5 * (after - before), before - 2.0 * here + after
-        peak = (here >= before) & (here >= after) & (own < 0.0)
-        most = max(most, here + select(peak, flat * flat / select(peak, -2.0 * own, 1.0), 0.0))
+        most = max(most, here + parabola(before, here, after))
     return most
