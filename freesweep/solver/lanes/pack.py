@@ -86,20 +86,21 @@ def rubber_in(columns, constants):
 
 @kernel
 def wall_in(columns, walls, count):
-    """The walls in the lanes, of the columns SOURCE or PHYSICAL; those have ``count`` layers, and all of them loose fibers,
+    """The walls in the lanes, of the columns SOURCE or PHYSICAL; those count as ``count`` layers, and all of them loose fibers,
     or none.
     """
     if len(walls) == 1:
         return (get(columns, SHEAR),)
     inner = get(columns, INNER)
-    return get(columns, SHEAR), inner, columns[THREADS, 0], count, reciprocal(get(columns, AREA), inner, count)
+    return get(columns, SHEAR), inner, columns[THREADS, 0], count, reciprocal(get(columns, AREA), inner)
 
 
 @entry_point
 def count_layers(problems, walls, out):
-    """How many layers the wall of each of the physical tubes has."""
+    """As how many layers the wall of each of the physical tubes counts: as one that is summed exactly."""
     for k in range(len(problems)):
-        out[k] = layers(problems[k, AREA], wall_of(problems[k], walls))
+        exact = problems[k, SECOND] == 0.0 and problems[k, THIRD] == 0.0
+        out[k] = 1 if exact else layers(problems[k, AREA], wall_of(problems[k], walls))
 
 
 @kernel

@@ -1,8 +1,13 @@
-"""The wall of :mod:`wall` where the energy is linear in I1 and I2 (Mooney and Rivlin, no Yeoh): far fewer operations.
+"""The wall of :mod:`wall` where the energy is linear in I1 and I2 (Mooney and Rivlin, no Yeoh): exactly, without layers.
 
-With ``d = rho^2 - 1``, ``g = -1/(2 G^(3/2))`` a layer's q has ``q_y = 2 y, q_G = g d``, so that what depends on the layer is
-a power of d times one of ``rho^2/q, rho^2/q^2, rho^2/q^3``. As ``d/q`` is linear in ``1/q``, three sums over the layers make
-all first and second derivatives.
+With ``d = rho^2 - 1``, ``g = -1/(2 G^(3/2))`` a layer's q has ``q_y = 2 y, q_G = g d``. As q is linear in d, all that
+depends on the layer is a power of d times one of ``1/q, rho^2/q^2, rho^2/q^3``, and as ``d/q`` is linear in ``1/q``, the sums
+of ``1/q, 1/q^2, 1/q^3`` make W and all first and second derivatives. Means of powers over a range from a to b are ::
+
+    mean of 1/q = 1/(logarithmic mean of a and b),   mean of 1/q^2 = 1/(a b),   mean of 1/q^3 = (a + b)/(2 a^2 b^2)
+
+With the arithmetic mean m and the geometric one g, and h = (b - a)/2/(m + g), the first is ``2/(m + g) atanh(h)/h``. W is a
+sum of terms of the size of the strain, each of which is known to all digits.
 """
 
 from math import sqrt
@@ -11,124 +16,137 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from .membrane import excess
+
+TERMS = 12  # of a Gauss rule, whose mean of 1/(1 + h x) stands for atanh(h)/h: 2e-14 off at h = 1/2, where b = 9 a
+_PLACES, _WEIGHTS = (row[TERMS // 2 :] for row in np.polynomial.legendre.leggauss(TERMS))
+_FACTORS = [np.polynomial.Polynomial([1.0, -x * x]) for x in _PLACES]  # two places together
+_BELOW = np.prod(_FACTORS)
+_ABOVE = sum(w * np.prod([*_FACTORS[:j], *_FACTORS[j + 1 :]]) for j, w in enumerate(_WEIGHTS))
+BELOW, ABOVE = _BELOW.coef[::-1].copy(), _ABOVE.coef[::-1].copy()
+NO_ROOM = 1e-30  # stands for a b where the innermost layer would reach the axis
 
 
-class Layers(NamedTuple):
-    """A wall as layers: its area, k, and rho_i^2; how many there are, and where their rule begins among the ``places`` and
-    ``weights`` of all.
-    """
+class Section(NamedTuple):
+    """A wall: its area, k, mean of d and half the range of rho^2, none of a membrane; mean of 1/rho^2."""
 
     area: float
     k: float
-    inner: float
-    count: int
-    at: int
-    places: np.ndarray
-    weights: np.ndarray
+    d: float
+    half: float
+    reciprocal: float
+
+
+class Known(NamedTuple):
+    """``1/G, 1/sqrt(G)``, mean of q, product of its ends, mean of 1/q."""
+
+    e: float
+    root: float
+    q: float
+    ends: float
+    one: float
 
 
 @kernel
-def weigh(area, inner, count, reciprocal):
-    """Sums over the layers of 1, d, and 1/rho^2."""
-    if count == 1:
-        return area, 0.0 * area, area
-    return area, area * (inner + 0.5 * area - 1.0), area * reciprocal
+def polynomial(coefficients, v):
+    """By Horner's rule, the highest power first."""
+    total = coefficients[0] + 0.0 * v
+    for k in range(1, len(coefficients)):
+        total = total * v + coefficients[k]
+    return total
 
 
 @kernel
-def stored(y, G_1, psi, c, layers):
-    """W alone."""
-    area, k, inner, count, at, places, weights = layers
-    G = 1.0 + G_1
-    e = 1.0 / G
+def mean_reciprocal(middle, half, product):
+    """Mean of 1/q where q goes from ``middle - half`` to ``middle + half``, whose ``product`` is given."""
+    i = 1.0 / (middle + sqrt(product))
+    h = half * i
+    v = h * h
+    return 2.0 * i * (polynomial(ABOVE, v) / polynomial(BELOW, v))
+
+
+@kernel
+def known(y, G_1, section):
+    """What is :class:`Known` of the layers."""
+    e = 1.0 / (1.0 + G_1)
     root = sqrt(e)
-    n = k * psi * psi
-    bend = root * G_1 / (1.0 / root + 1.0)
-    square, one, W = 1.0 + 0.0 * area, area, 0.0 * area
-    for j in range(count):
-        if count > 1:
-            square, one = inner + area * places[at + j], area * weights[at + j]
-        q = y * y + (square - 1.0) * root
-        i = 1.0 / square
-        x = square / q
-        b = ((y - 1.0) * (y + 1.0) - (square - 1.0) * bend) * i  # q/rho^2 - 1
-        first = excess(G_1, b, x * e) + q * n
-        second = excess(-G_1 * e, -b * x, G * q * i) + square * n * e
-        W += one * (first + c * second)
-    return W
+    q, half = y * y + section.d * root, section.half * root
+    ends = max((q - half) * (q + half), NO_ROOM)
+    return Known(e, root, q, ends, mean_reciprocal(q, half, ends))
 
 
 @kernel
-def slopes(y, G_1, psi, c, layers, reciprocal):
-    """With the mean of 1/rho^2 over the layers: ``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
-    area, k, inner, count, at, places, weights = layers
-    G = 1.0 + G_1
-    e = 1.0 / G
-    root = sqrt(e)
-    y2, n, g = y * y, k * psi * psi, -0.5 * root * e
-    square, one = 1.0 + 0.0 * area, area
-    one_q = two_q = three_q = 0.0 * area
-    for j in range(count):
-        if count > 1:
-            square, one = inner + area * places[at + j], area * weights[at + j]
-        z = 1.0 / (y2 + (square - 1.0) * root)
-        part = one * square * z
-        one_q += part
-        part = part * z
-        two_q += part
-        three_q += part * z
-    whole, d, i = weigh(area, inner, count, reciprocal)
-    per_root = G * root  # 1/root
+def energy(y, G_1, psi, c, section, own):
+    """W where what is :class:`Known` is ``own``."""
+    area, k, d, _, reciprocal = section
+    e, root, q, _, one = own
+    n, hoop, both = k * psi * psi, (y - 1.0) * (y + 1.0), G_1 * y * y + (y - 1.0) * (y + 1.0)
+    per_root = (1.0 + G_1) * root
+    wide = G_1 / (per_root + 1.0)  # 1/root - 1, with all its digits
+    bend, away = root * wide, (1.0 - y * y * one) * per_root  # 1 - root; mean of d/q
+    # means of q/rho^2 - 1, rho^2/(G q) - 1; of G q/rho^2 - 1, rho^2/q - 1
+    first = (hoop + bend) * reciprocal - bend - e * (both * one + wide * away)
+    second = (both - wide) * reciprocal + wide + bend * away - hoop * one
+    return area * (G_1 + first + n * q + c * (second - G_1 * e + n * e * (1.0 + d)))
+
+
+@kernel
+def rising(y, G_1, psi, c, section, own):
+    """``(W_y, W_G, W_psi)`` over the area, and of these the means that W_yy, W_yG and W_GG know, too: ``rho^2/q^2``,
+    ``d rho^2/q^2``, and d times W_q.
+    """
+    _, k, d, _, i = section
+    e, root, q, ends, one = own
+    y2, n, G = y * y, k * psi * psi, 1.0 + G_1
+    per_root, two = G * root, 1.0 / ends
+    one_q = one + (1.0 - y2 * one) * per_root  # mean of rho^2/q
+    two_q = two + (one - y2 * two) * per_root
     d_two = (one_q - y2 * two_q) * per_root
+    d_i, squares, slope, stiff = 1.0 - i, 1.0 + d, e + c, 1.0 + c * G
+    w_q, d_w_q = stiff * i + n - slope * two_q, stiff * d_i + n * d - slope * d_two
+    w_G = 1.0 - e * e * one_q + c * (y2 * i + root * d_i - e * e * (1.0 + n * squares))
+    first = 2.0 * y * w_q, w_G - 0.5 * root * e * d_w_q, 2.0 * k * psi * (q + c * e * squares)
+    return first, (one_q, two_q, d_two, w_q, d_w_q)
+
+
+@kernel
+def stored(y, G_1, psi, c, section):
+    """W alone."""
+    return energy(y, G_1, psi, c, section, known(y, G_1, section))
+
+
+@kernel
+def rises(y, G_1, psi, c, section):
+    """``(W, W_y, W_G, W_psi)``."""
+    own = known(y, G_1, section)
+    (W_y, W_G, W_p), _ = rising(y, G_1, psi, c, section, own)
+    area = section.area
+    return energy(y, G_1, psi, c, section, own), area * W_y, area * W_G, area * W_p
+
+
+@kernel
+def slopes(y, G_1, psi, c, section):
+    """``(W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)``."""
+    return slopes_of(y, G_1, psi, c, section, known(y, G_1, section))
+
+
+@kernel
+def slopes_of(y, G_1, psi, c, section, own):
+    """:func:`slopes` where what is :class:`Known` is ``own``."""
+    area, k, d, _, i = section
+    e, root, q, ends, _ = own
+    (W_y, W_G, W_p), (one_q, two_q, d_two, w_q, d_w_q) = rising(y, G_1, psi, c, section, own)
+    y2, n, g, per_root = y * y, k * psi * psi, -0.5 * root * e, (1.0 + G_1) * root
+    two = 1.0 / ends
+    three = q * two * two
+    three_q = three + (two - y2 * three) * per_root
     d_three = (two_q - y2 * three_q) * per_root
     dd_three = (d_two - y2 * d_three) * per_root
-    squares = whole + d  # sum of rho^2
-    d_i = whole - i
-    q, q_i = y2 * whole + root * d, y2 * i + root * d_i
-    slope, bend, stiff = e + c, 2.0 * (e + c), 1.0 + c * G
-    w_q, d_w_q = stiff * i + n * whole - slope * two_q, stiff * d_i + n * d - slope * d_two
-    w_G = whole - e * e * one_q + c * (q_i - e * e * (whole + n * squares))
-    w_qG, d_w_qG = e * e * two_q + c * i, e * e * d_two + c * d_i
-    w_GG = 2.0 * e * e * e * (one_q + c * (whole + n * squares))
-    twist = 2.0 * k * psi
+    bend, squares, twist = 2.0 * (e + c), 1.0 + d, 2.0 * k * psi
+    w_qG, d_w_qG = e * e * two_q + c * i, e * e * d_two + c * (1.0 - i)
+    w_GG = 2.0 * e * e * e * (one_q + c * (1.0 + n * squares))
     return (
-        2.0 * y * w_q, w_G + g * d_w_q, twist * (q + c * e * squares), 4.0 * y2 * bend * three_q + 2.0 * w_q,
-        2.0 * y * (w_qG + g * bend * d_three), 2.0 * y * twist * whole,
-        w_GG + 2.0 * g * d_w_qG + g * g * bend * dd_three - 1.5 * g * e * d_w_q,
-        twist * (g * d - c * e * e * squares), 2.0 * k * (q + c * e * squares),
-    )  # fmt: skip
-
-
-@kernel
-def rises(y, G_1, psi, c, layers, reciprocal):
-    """``(W, W_y, W_G, W_psi)``, in one go along the layers."""
-    area, k, inner, count, at, places, weights = layers
-    G = 1.0 + G_1
-    e = 1.0 / G
-    root = sqrt(e)
-    y2, n = y * y, k * psi * psi
-    bend = root * G_1 / (1.0 / root + 1.0)
-    square, one, W = 1.0 + 0.0 * area, area, 0.0 * area
-    one_q = two_q = 0.0 * area
-    for j in range(count):
-        if count > 1:
-            square, one = inner + area * places[at + j], area * weights[at + j]
-        q = y2 + (square - 1.0) * root
-        z, i = 1.0 / q, 1.0 / square
-        x = square * z
-        b = ((y - 1.0) * (y + 1.0) - (square - 1.0) * bend) * i  # q/rho^2 - 1
-        first = excess(G_1, b, x * e) + q * n
-        W += one * (first + c * (excess(-G_1 * e, -b * x, G * q * i) + square * n * e))
-        part = one * x
-        one_q += part
-        two_q += part * z
-    whole, d, i = weigh(area, inner, count, reciprocal)
-    d_two = (one_q - y2 * two_q) * G * root
-    squares, d_i = whole + d, whole - i  # the first the sum of rho^2
-    slope, stiff = e + c, 1.0 + c * G
-    w_q, d_w_q = stiff * i + n * whole - slope * two_q, stiff * d_i + n * d - slope * d_two
-    w_G = whole - e * e * one_q + c * (y2 * i + root * d_i - e * e * (whole + n * squares))
-    return (
-        W, 2.0 * y * w_q, w_G - 0.5 * root * e * d_w_q, 2.0 * k * psi * (y2 * whole + root * d + c * e * squares)
+        area * W_y, area * W_G, area * W_p, area * (4.0 * y2 * bend * three_q + 2.0 * w_q),
+        area * 2.0 * y * (w_qG + g * bend * d_three), area * 2.0 * y * twist,
+        area * (w_GG + 2.0 * g * d_w_qG + g * g * bend * dd_three - 1.5 * g * e * d_w_q),
+        area * twist * (g * d - c * e * e * squares), area * 2.0 * k * (q + c * e * squares),
     )  # fmt: skip

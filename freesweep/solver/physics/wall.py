@@ -9,12 +9,13 @@ has, exactly in a uniform tube and as a layered membrane elsewhere (theory, sect
     I2  = G q/rho^2 + rho^2/q + (1 + k rho^2 psi^2)/G
     W   = integral over rho^2 of w(I1, I2),  w as in :mod:`membrane`
 
-A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick wall is summed at Gauss points in rho^2, as
-many as its integrand, a rational function of rho^2 with poles at 0 and where q vanishes, asks for.
+A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick wall of Mooney and Rivlin's rubber is
+summed exactly (:mod:`mooney_wall`), that of another at Gauss points in rho^2, as many as its integrand, a rational function
+of rho^2 with poles at 0 and where q vanishes, asks for.
 
 ``wall`` is (k, inner, threads): ``inner`` = rho_i^2, or 0 for a membrane; ``threads`` says which families of fibers there
-are, and whether they may push (:mod:`relaxed`). In vectors of designs it is (k, inner, threads, layers, mean of 1/rho^2 over
-the layers), the third and fourth the same for all of them.
+are, and whether they may push (:mod:`relaxed`). In vectors of designs it is (k, inner, threads, layers, mean of 1/rho^2), the
+third and fourth the same for all of them.
 """
 
 from math import sqrt
@@ -26,7 +27,7 @@ from ..either import select, some
 from ..load import Load
 from . import mooney_wall
 from .membrane import excess, yeoh_slope
-from .mooney_wall import Layers
+from .mooney_wall import Section, mean_reciprocal
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
@@ -105,22 +106,19 @@ def layers(area, wall):
 
 
 @kernel
-def reciprocal(area, inner, count):
-    """Mean of 1/rho^2 over so many layers."""
-    total, at = 0.0 * area, first_place(count)
-    if count == 1:
-        return 1.0 + total
-    for j in range(count):
-        total += WEIGHTS[at + j] / (inner + area * PLACES[at + j])
-    return total
+def reciprocal(area, inner):
+    """Mean of 1/rho^2; ``inner`` is 0 of a membrane."""
+    thick = inner > 0.0
+    square, half = select(thick, inner + 0.5 * area, 1.0), select(thick, 0.5 * area, 0.0)
+    return mean_reciprocal(square, half, (square - half) * (square + half))
 
 
 @kernel
-def reciprocal_of(area, wall, count):
-    """:func:`reciprocal` of a wall; those in vectors know that of themselves."""
-    if len(wall) > 3:
-        return wall[4]
-    return reciprocal(area, wall[1], count)
+def section(area, wall):
+    """The :class:`Section` of a wall; those in vectors know the mean of 1/rho^2 of themselves."""
+    thick = wall[1] > 0.0
+    d, half = select(thick, wall[1] + 0.5 * area - 1.0, 0.0), select(thick, 0.5 * area, 0.0)
+    return Section(area, wall[0], d, half, wall[4] if len(wall) > 3 else reciprocal(area, wall[1]))
 
 
 @kernel
@@ -197,7 +195,10 @@ def energy(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)`` of the whole wall; ``G_1`` is G - 1."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)
-    return (stored(y, G_1, psi, area, rubber, wall), *slopes(y, G_1, psi, area, rubber, wall))
+    own = section(area, wall)
+    known = mooney_wall.known(y, G_1, own)
+    c = rubber[0]
+    return (mooney_wall.energy(y, G_1, psi, c, own, known), *mooney_wall.slopes_of(y, G_1, psi, c, own, known))
 
 
 @kernel
@@ -205,9 +206,7 @@ def stored(y, G_1, psi, area, rubber, wall):
     """W alone."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[0]
-    count = layers(area, wall)
-    own = Layers(area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS)
-    return mooney_wall.stored(y, G_1, psi, rubber[0], own)
+    return mooney_wall.stored(y, G_1, psi, rubber[0], section(area, wall))
 
 
 @kernel
@@ -215,9 +214,7 @@ def slopes(y, G_1, psi, area, rubber, wall):
     """The derivatives of :func:`energy`, without W."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[1:]
-    count = layers(area, wall)
-    own = Layers(area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS)
-    return mooney_wall.slopes(y, G_1, psi, rubber[0], own, reciprocal_of(area, wall, count))
+    return mooney_wall.slopes(y, G_1, psi, rubber[0], section(area, wall))
 
 
 @kernel
@@ -225,9 +222,7 @@ def rises(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi)``."""
     if len(rubber) > 1:
         return of_any(y, G_1, psi, area, rubber, wall)[:4]
-    count = layers(area, wall)
-    own = Layers(area, wall[0], wall[1], count, first_place(count), PLACES, WEIGHTS)
-    return mooney_wall.rises(y, G_1, psi, rubber[0], own, reciprocal_of(area, wall, count))
+    return mooney_wall.rises(y, G_1, psi, rubber[0], section(area, wall))
 
 
 @kernel
