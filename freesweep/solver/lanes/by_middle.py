@@ -7,6 +7,7 @@ import numpy as np
 from ...jit import entry_point, kernel
 from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
+from ..physics.wall import may_go_slack
 from ..problem import FORCE, GAMMA, PHYSICAL, SOURCE, TORQUE
 from . import slack_ends
 from .meridian import ALMOST, DEEPEST, fallen, middle_at
@@ -39,10 +40,10 @@ def measure(y, cell, load, half, active, pieces, room, out, told):
     )
     active = active & valid
     parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, room.edges, scratch)
-    fine, limps = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, numbers, scratch)
+    fine, pushed = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, numbers, scratch)
     fine = fine & (unsure < slack_ends.ENOUGH)
-    if len(load.wall) == 1:
-        alpha, beta = limps
+    if not may_go_slack(load.wall):
+        (alpha, beta), middle_limp, doubts = pushed
     miss = half - get(numbers[0], DX)
     grown = fallen(-min(max(min(mid.rate * miss, DEEPEST - mid.depth), -DEEPEST), DEEPEST), scratch)
     deep = (mid.depth >= DEEPEST) & (miss >= 0.0)  # what is left of the tube is as its middle

@@ -85,15 +85,13 @@ def carry(problems, first, pressures, order, kind, told, stretches, likeness):
 
 
 @kernel
-def seat_states(group, count, asked, middles, rows, columns, start):
-    """Put the next ``count`` rows in the given order into the lanes; those that are left take the last one, too. Depths of
-    ``middles`` that were found before are where they ``start``, (2, WIDTH).
-    """
+def seat_states(group, count, asked, rows, columns, start):
+    """Put the next ``count`` rows in the given order into the lanes; those that are left take the last one, too."""
     for lane in range(WIDTH):
         row = asked.order[group + min(lane, count - 1)]
         rows[lane] = row
         enter(lane, asked.problems[asked.owners[row]], columns)
-        start[0, lane], start[1, lane] = asked.starts[row], middles[row, 1] if middles[row, 1] > 0.0 else 0.0
+        start[0, lane] = asked.starts[row]
         if asked.pressures[row] == np.inf:
             lock(lane, columns)
         else:
@@ -110,7 +108,9 @@ def solve(asked, kind, pieces, accuracy, told, middles):
     columns, start, rows = small[0], small[1], np.zeros(WIDTH, np.int64)
     for group in range(0, len(asked.order), WIDTH):
         count = min(WIDTH, len(asked.order) - group)
-        seat_states(group, count, asked, middles, rows, columns, start)
+        seat_states(group, count, asked, rows, columns, start)
+        for lane in range(WIDTH):
+            start[1, lane] = middles[rows[lane], 1]  # NaN at first
         cell, _, load = loads(columns, kind.constants, kind.walls, kind.layers)
         found, met, alpha, beta, (u, depth) = quadrature.solve(
             (get(start, 0), get(start, 1)), cell, load, get(columns, HALF), mask_of((1 << count) - 1), pieces, accuracy,

@@ -13,7 +13,7 @@ from ..cells import nothing_yet
 from ..guide import FAR_FROM
 from ..physics import lagrangian
 from ..physics.uniform_tube import FAR
-from ..physics.wall import has_any_family, has_two_families
+from ..physics.wall import has_any_family, has_two_families, may_go_slack
 from . import slack_ends
 from .meridian import DEEPEST, middle
 from .outputs import DX, WITHIN, by_depth, finish, unmet
@@ -116,12 +116,12 @@ def look_along(pieces, mid, cell, load, room):
 
 @kernel
 def sum_parts(pieces, mid, cell, load, active, room):
-    """Sum all parts, to the room's ``numbers``: ``(lanes that may be, (alpha, beta) limp in the last part, by how much an
+    """Sum all parts, to the room's ``numbers``: ``(lanes that may be, what is Seen of fibers that may push, by how much an
     end may be off)``.
     """
     parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, room.edges, room.scratch)
-    valid, limps = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, room.numbers, room.scratch)
-    return active & (unsure < slack_ends.ENOUGH) & valid, limps, unsure
+    valid, seen = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, room.numbers, room.scratch)
+    return active & (unsure < slack_ends.ENOUGH) & valid, Seen(*seen), unsure
 
 
 @kernel
@@ -183,7 +183,7 @@ def roughly(u, depth, straight, slope, cell, load, half, active, pieces, room):
 
 @kernel
 def solve(start, cell, load, half, active, pieces, accuracy, room, out):
-    """Solve the ``active`` lanes from their ``start``, (about the uniform stretch, about the depth of the middle or 0), all
+    """Solve the ``active`` lanes from their ``start``, (about the uniform stretch, about the depth of the middle or NaN), all
     rules in so many ``pieces``. ``out`` (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of
     :mod:`..along.places`, and their bounds. Returns masks, and uniform stretch and depth of the middle: ``(found, met, alpha
     slack or pushed somewhere, beta, (u, depth))``, met what is found to the accuracy.
@@ -205,9 +205,9 @@ def solve(start, cell, load, half, active, pieces, accuracy, room, out):
             _, now, valid = look_along(pieces, mid, cell, load, room)
             seen, active = seen_again(ended, now, seen), active & (valid | isnt(ended))
             ended = ended & with_ends(room.counts, ended)
-        active, limps, unsure = sum_parts(pieces, mid, cell, load, active, room)
-        if len(load.wall) == 1:
-            seen = Seen(limps, seen.middle, seen.doubts)
+        active, pushed, unsure = sum_parts(pieces, mid, cell, load, active, room)
+        if not may_go_slack(load.wall):
+            seen = pushed
         miss = half - get(room.numbers[0], DX)
         between = tried & (abs(miss) < NEARER * abs(before[1]))
         bent, now_off = select(between, min(BENT * off, 1.0), 1.0), off_by(mid, miss, straight)

@@ -18,11 +18,11 @@ _ANGLES = np.pi * np.arange(LAST + 1) / LAST
 _BASIS = np.polynomial.chebyshev.chebvander(-np.cos(_ANGLES), LAST)
 PLACES = 0.5 - 0.5 * np.cos(_ANGLES)
 WEIGHTS = np.linalg.solve(_BASIS.T, [0.0 if k % 2 else 1.0 / (1.0 - k * k) for k in range(LAST + 1)])
-_COEFFICIENTS = np.linalg.inv(_BASIS)
-_INTEGRALS = np.polynomial.chebyshev.chebint(_COEFFICIENTS, lbnd=-1)
+COEFFICIENTS = np.linalg.inv(_BASIS)  # of a row in Chebyshev polynomials, and those of its sum up to a place
+INTEGRALS = 0.5 * np.polynomial.chebyshev.chebint(COEFFICIENTS, lbnd=-1)
 # up to the place of a row, for the number at the place of a column
-UP_TO = np.ascontiguousarray(0.5 * np.polynomial.chebyshev.chebval(-np.cos(_ANGLES), _INTEGRALS).T)
-LATE, EARLY = (np.ascontiguousarray(_COEFFICIENTS[k - 2 : k + 1]) for k in (LAST, LAST // 2))
+UP_TO = np.ascontiguousarray(np.polynomial.chebyshev.chebval(-np.cos(_ANGLES), INTEGRALS).T)
+LATE, EARLY = (np.ascontiguousarray(COEFFICIENTS[k - 2 : k + 1]) for k in (LAST, LAST // 2))
 MISSED = 0.05  # of the largest of the last coefficients: what a sum up to any place may miss
 _FOLLOWING = np.arange(LAST + 2, 4 * LAST, 2)
 _TAKEN_FOR = LAST - np.abs(_FOLLOWING % (2 * LAST) - LAST)  # at the rule's places they are the same

@@ -1,6 +1,6 @@
 """Sums along half a tube that is the same all along, for a vector of designs: along the depth of its middle
-(:mod:`meridian`), part by part between the places where families go slack (:mod:`slack_ends`); the source's tubes, which
-nobody asks where those are, have one part. What is summed (:mod:`rule`) is what an output differs by from that of the
+(:mod:`meridian`), part by part between the places where families go slack (:mod:`slack_ends`). Fibers that may push leave
+no corner: their tubes have one part, along which :mod:`pushed` tells where they do. What is summed (:mod:`rule`) is what an output differs by from that of the
 middle.
 """
 
@@ -12,7 +12,8 @@ from ...jit import kernel
 from ..along import places
 from ..cells import nothing_yet
 from ..physics import lagrangian
-from . import slack_ends
+from ..physics.wall import may_go_slack
+from . import pushed, slack_ends
 from .extremes import highest, widest
 from .meridian import CERTAIN, handed_on, look
 from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WITHIN, WORST, pulled
@@ -20,14 +21,14 @@ from .pack import OUTPUTS, aligned
 from .rule import LAST, PLACES, missed_within, summed
 from .vector import HUGE, WIDTH, get, isnt, mask_of, put, select, spread
 
-ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE = range(5, 15)
+ALPHA, BETA, PUSH_ALPHA, PUSH_BETA, SQUARE, STRAIN, KIND, Y, PSI, WIDE, SERIES = range(5, 16)
 SHORT = SQUARE  # which only what is known of the whole needs
 NARROW = 1e-6  # of the depth: a part of no length
 TOLD = OUTPUTS + len(places.NUMBERS)  # of a state
 
 
 class Room(NamedTuple):
-    """Scratch: ``rows`` (15, > LAST, WIDTH) of the places of one rule; brackets of ``ends`` (5, MOST, ...), their ``counts``
+    """Scratch: ``rows`` (17, > LAST + 1, WIDTH) of the places of one rule; brackets of ``ends`` (5, MOST, ...), their ``counts``
     (WIDTH,), ``starts`` (4, MOST, ...) and ``edges`` (MOST + 2, ...); ``numbers`` (2, 16, ...), sums and what they may miss;
     what is ``kept`` (11, WIDTH) of what was told of a trial; and one row (1, WIDTH).
     """
@@ -47,14 +48,14 @@ def make_room():
     """Scratch of a vector."""
     ends = aligned(9, slack_ends.MOST)
     return Room(
-        aligned(15, LAST + 1), ends[:5], np.zeros(WIDTH, np.int64), ends[5:], aligned(1, slack_ends.MOST + 2)[0],
+        aligned(17, LAST + 2), ends[:5], np.zeros(WIDTH, np.int64), ends[5:], aligned(1, slack_ends.MOST + 2)[0],
         aligned(2, 16), aligned(1, TOLD)[0], aligned(1, 1)[0],
     )  # fmt: skip
 
 
 @kernel
 def along(first, last, mid, cell, load, near, whole, rows, scratch):
-    """Look at the places of one rule between two shares of the depth. ``rows`` (15, > LAST, WIDTH) take how x grows
+    """Look at the places of one rule between two shares of the depth. ``rows`` (17, > LAST + 1, WIDTH) take how x grows
     with the share of the part, pulls, and what was handed on; and as the ``whole`` also what else is to be summed and
     known; if not, a row takes by what share R falls SHORT of T. Returns what is handed on, and the lanes that may be.
     """
@@ -108,7 +109,7 @@ def graded(i, pieces):
 def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
     """Look along the whole depth in so many ``pieces``: ``(length, (alpha, beta) limp somewhere, (alpha, beta) limp in
     the middle, (alpha, beta) lengths in doubt, lanes that may be, share by which R falls short of T)``. Brackets of the
-    ends go to ``ends``, what may be handed on to them to ``starts``, (4, MOST, WIDTH).
+    ends, where fibers cannot push, go to ``ends``, what may be handed on to them to ``starts``, (4, MOST, WIDTH).
     """
     valid, near, total = mask_of(-1), nothing_yet(spread(0.0)), spread(0.0)
     limp_a, limp_b, doubt_a, doubt_b = mask_of(0), mask_of(0), spread(0.0), spread(0.0)
@@ -121,7 +122,7 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
         valid, total = valid & fine, total + summed(rows[DX])[0]
         short = highest(rows[SHORT], LAST, short)
         limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
-        if len(load.wall) == 1:
+        if not may_go_slack(load.wall):
             continue
         doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
         doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
@@ -181,9 +182,11 @@ def limp(pull):
 def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
     """Sum all parts, each in so many ``pieces``. ``numbers`` (2, > 10, WIDTH) take the SUMS and what they may miss; of
     physical tubes behind them the lengths without a pull, and the largest of the rows from PUSH_ALPHA to STRAIN.
-    Returns the lanes that may be, and ``(alpha, beta)`` limp somewhere in the last part.
+    Returns the lanes that may be, and of fibers that may push (alpha, beta) each: which do somewhere, and in the middle; and
+    lengths in doubt.
     """
     valid, near, limp_a, limp_b = mask_of(-1), nothing_yet(spread(0.0)), mask_of(0), mask_of(0)
+    doubt_a, doubt_b = spread(0.0), spread(0.0)
     for k in range(WITHIN + 1):
         put(numbers[0], k, spread(-HUGE if WORST <= k < WITHIN else 0.0))
         put(numbers[1], k, spread(0.0))
@@ -198,20 +201,28 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
             for k in range(LENGTH, ENERGY + 1):
                 add(numbers, k, *summed(rows[k]))
             valid = valid & fine
-            if len(load.wall) == 1:
-                limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
-                continue
             own = width > 0.0  # others have more parts
-            valid = valid & ((width < NARROW) | isnt(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
-            for family in range(2):
-                slack = get(rows[ALPHA + family], LAST // 2) <= 0.0
-                add(numbers, SLACK + family, select(slack, dx, 0.0), select(slack, doubt, 0.0))
+            if not may_go_slack(load.wall):
+                limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
+            if len(load.wall) == 1:
+                continue
+            if may_go_slack(load.wall):
+                valid = valid & ((width < NARROW) | isnt(is_mixed(rows[ALPHA]) | is_mixed(rows[BETA])))
+                for family in range(2):
+                    slack = get(rows[ALPHA + family], LAST // 2) <= 0.0
+                    add(numbers, SLACK + family, select(slack, dx, 0.0), select(slack, doubt, 0.0))
+            else:
+                doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
+                doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
+                for family in range(2):
+                    add(numbers, SLACK + family, *pushed.length(rows[ALPHA + family], rows[DX], rows[SERIES:], dx, doubt))
             for k in range(4):
                 before = get(numbers[0], WORST + k), get(numbers[1], WORST + k)
                 most, missed = widest(rows[PUSH_ALPHA + k], LAST, *before)
                 put(numbers[0], WORST + k, select(own, most, before[0]))
                 put(numbers[1], WORST + k, select(own, missed, before[1]))
-    return valid, (limp_a, limp_b)
+    middle = get(rows[ALPHA], LAST) <= 0.0, get(rows[BETA], LAST) <= 0.0
+    return valid, ((limp_a, limp_b), middle, (doubt_a, doubt_b))
 
 
 @kernel
