@@ -55,6 +55,18 @@ class Middle(NamedTuple):
     uniform: tuple
 
 
+class Uniform(NamedTuple):
+    """Stretch of a uniform tube, L_yy and L_vv, sqrt(G), twist rate and energy, and what is handed on."""
+
+    u: float
+    L_yy: float
+    L_vv: float
+    s: float
+    psi: float
+    energy: float
+    near: tuple
+
+
 class Place(NamedTuple):
     """Stretch and :class:`..physics.first_integral.Level` of a place, cosine of the meridian's angle there, how x grows
     with the share t of the depth, and by what share R falls short of T: none in the middle, less before it.
@@ -84,12 +96,25 @@ def deep(t, depth):
 
 
 @kernel
-def middle(u, depth, cell, load, scratch):
-    """The :class:`Middle` at that depth."""
+def uniform_at(u, cell, load):
+    """The :class:`Uniform` tube of that stretch."""
     zero = spread(0.0)
     (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
-    _, G_1, psi_u, energy_u = lagrangian.level_of(u, cell, load, near)
-    q, s_u = fallen(depth, scratch), sqrt(1.0 + G_1)
+    _, G_1, psi, energy = lagrangian.level_of(u, cell, load, near)
+    return Uniform(u, L_yy, L_vv, sqrt(1.0 + G_1), psi, energy, near)
+
+
+@kernel
+def rate_of(uniform):
+    """Rate of the layer toward it."""
+    return sqrt(max(uniform.L_yy / uniform.L_vv, LEAST_RATE))
+
+
+@kernel
+def middle(uniform, depth, cell, load, scratch):
+    """The :class:`Middle` at that depth toward a :class:`Uniform` tube."""
+    u, L_yy, L_vv, s_u, psi_u, energy_u, near = uniform
+    zero, q = spread(0.0), fallen(depth, scratch)
     whole = 1.0 / (1.0 + q * q)
     away = (1.0 - u) * 2.0 * q * whole
     y = u + away
@@ -101,7 +126,7 @@ def middle(u, depth, cell, load, scratch):
     mean_yy, s_y = select(far, L_y * per_away, L_yy), select(far, (s - s_u) * per_away, 0.0)  # on the way from u
     rise = -mean_yy * away / s
     return Middle(
-        u, sqrt(max(L_yy / L_vv, LEAST_RATE)), depth, q, whole, y, level, sqrt(max(-T / (s * mean_yy), 0.0)), rise,
+        u, rate_of(uniform), depth, q, whole, y, level, sqrt(max(-T / (s * mean_yy), 0.0)), rise,
         -(own_yy + 2.0 * rise * s_y) / s, s, psi, energy,
         behind(u, s_u, psi_u, energy_u, y, s, psi, energy),
     )  # fmt: skip

@@ -18,7 +18,7 @@ from ..physics.lagrangian import ROUNDING
 from ..problem import PHYSICAL, SOURCE
 from . import slack_ends
 from .free import seat_states
-from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at
+from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at, uniform_at
 from .outputs import DX, LENGTH, TWIST, by_depth
 from .pack import COLUMNS, Asked, Kind, aligned, loads
 from .pack import LENGTH as HALF
@@ -240,7 +240,7 @@ def seated(start, cell, load, half, scratch):
     u, depth = get(start, 0), get(start, 1)
     known = depth == depth
     found, driven, _ = middle_at(u, cell, load, half, scratch)
-    return chosen(known | isnt(driven), middle(u, select(known, depth, DEEPEST), cell, load, scratch), found)
+    return chosen(known | isnt(driven), middle(uniform_at(u, cell, load), select(known, depth, DEEPEST), cell, load, scratch), found)
 
 
 @kernel

@@ -8,7 +8,7 @@ from ...jit import kernel
 from .rule import COEFFICIENTS, INTEGRALS, LAST, LATE, PLACES, largest, missed_within
 from .vector import get, isnt, mask_of, put, select, some, spread
 
-STEPS, CLOSE = 40, 1e-14  # of the search for a root; its last step, of the piece
+STEPS, PATIENT, CLOSE = 40, 10, 1e-13  # of the search for a root, which halves from a step on; its last one
 NONE = 1e-300
 
 
@@ -33,13 +33,26 @@ def evaluate(series, count, t):
 
 
 @kernel
+def next_end(pull, taken):
+    """``(left, right, pull before, pull behind, place, lanes)`` of the first change of sign behind the place ``taken``."""
+    zero, none = spread(0.0), mask_of(0)
+    left, right, before, behind, place, there = zero, spread(1.0), zero, zero, taken, none
+    for k in range(LAST):
+        here, ahead = get(pull, k), get(pull, k + 1)
+        fresh = isnt(there) & (taken < k) & ((here > 0.0) & (ahead <= 0.0) | (here <= 0.0) & (ahead > 0.0))
+        left, right = select(fresh, PLACES[k], left), select(fresh, PLACES[k + 1], right)
+        before, behind = select(fresh, here, before), select(fresh, ahead, behind)
+        place, there = select(fresh, spread(1.0 * k), place), there | fresh
+    return left, right, before, behind, place, there
+
+
+@kernel
 def root(series, left, right, before, behind, going):
     """Where the polynomial of the ``series`` ends between two shares of the piece: the regula falsi of Anderson and Bjorck."""
-    t = spread(right)
-    left, right = spread(left), spread(right)
+    t = right
     for i in range(STEPS):
         new = right - behind * (right - left) / select(going, behind - before, 1.0)
-        halved = mask_of(-1 if i % 3 == 2 else 0)
+        halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)
         new = select((new > left) & (new < right) & isnt(halved), new, 0.5 * (left + right))
         moved = abs(new - t)
         t = select(going, new, t)
@@ -61,19 +74,22 @@ def length(pull, dx, series, whole, missed):
     by the ``whole`` in all, of which so much may be ``missed``. ``series`` (2, > LAST + 1, WIDTH) is scratch.
     """
     slack = get(pull, LAST) <= 0.0
-    total, doubt, known = select(slack, whole, 0.0), select(slack, missed, 0.0), False
-    for k in range(LAST):
-        before, behind = get(pull, k), get(pull, k + 1)
-        begins, ends = (before <= 0.0) & (behind > 0.0), (before > 0.0) & (behind <= 0.0)
-        if not some(begins | ends):
-            continue
-        if not known:
-            expand(COEFFICIENTS, pull, series[0])
-            expand(INTEGRALS, dx, series[1])
-            known = True
-        up_to = evaluate(series[1], LAST + 2, root(series[0], PLACES[k], PLACES[k + 1], before, behind, begins | ends))
-        total = total + select(begins, up_to, select(ends, -up_to, 0.0))
-        steep = abs(behind - before) / (PLACES[k + 1] - PLACES[k]) + NONE
-        off = missed_within(dx) + largest(pull, LATE) / steep * max(get(dx, k), get(dx, k + 1))
-        doubt = doubt + select(begins | ends, off, 0.0)
+    total, doubt, taken = select(slack, whole, 0.0), select(slack, missed, 0.0), spread(-1.0)
+    left, right, before, behind, taken, there = next_end(pull, taken)
+    if not some(there):
+        return total, doubt
+    expand(COEFFICIENTS, pull, series[0])
+    expand(INTEGRALS, dx, series[1])
+    wrong, within, most = largest(pull, LATE), missed_within(dx), spread(0.0)
+    for k in range(LAST + 1):
+        most = max(most, get(dx, k))
+    for _ in range(LAST):
+        t = root(series[0], left, right, before, behind, there)
+        up_to = evaluate(series[1], LAST + 2, t)
+        total = total + select(there, select(behind > 0.0, up_to, -up_to), 0.0)
+        steep = abs(behind - before) / (right - left) + NONE
+        doubt = doubt + select(there, within + wrong / steep * most, 0.0)
+        left, right, before, behind, taken, there = next_end(pull, taken)
+        if not some(there):
+            break
     return total, doubt

@@ -15,7 +15,7 @@ from ..physics import lagrangian
 from ..physics.uniform_tube import FAR
 from ..physics.wall import has_any_family, has_two_families, may_go_slack
 from . import slack_ends
-from .meridian import DEEPEST, middle
+from .meridian import DEEPEST, middle, rate_of, uniform_at
 from .outputs import DX, WITHIN, by_depth, finish, unmet
 from .sums import between_ends, find_ends, scan
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
@@ -162,7 +162,7 @@ def there(limps, wall):
 
 
 @kernel
-def roughly(u, depth, straight, slope, cell, load, half, active, pieces, room):
+def roughly(uniform, depth, straight, slope, cell, load, half, active, pieces, room):
     """``(depth, miss, (depth, miss) before, slope, what is Seen, lanes that may be)`` by one rule along the whole depth: the
     secant, from a guess of the depth and of how the miss changes with it.
     """
@@ -170,7 +170,7 @@ def roughly(u, depth, straight, slope, cell, load, half, active, pieces, room):
     before, settled, miss = (depth, half), none, zero
     seen = Seen((none, none), (none, none), (zero, zero))
     for _ in range(FITS):
-        mid = middle(u, depth, cell, load, room.scratch)
+        mid = middle(uniform, depth, cell, load, room.scratch)
         total, seen, valid = look_along(pieces, mid, cell, load, room)
         active, miss = active & valid, half - total
         settled = settled | (active & (off_by(mid, miss, straight) <= ROUGH))
@@ -189,18 +189,20 @@ def solve(start, cell, load, half, active, pieces, accuracy, room, out):
     slack or pushed somewhere, beta, (u, depth))``, met what is found to the accuracy.
     """
     u, active = stationary(start[0], cell, load, active)
-    mid, none, allowed = middle(u, spread(DEEPEST), cell, load, room.scratch), mask_of(0), min(CLOSE, MUCH * accuracy)
-    guess, straight = select(start[1] > 0.0, start[1], min(mid.rate * half, DEEPEST)), u == 1.0
+    uniform, none, allowed = uniform_at(u, cell, load), mask_of(0), min(CLOSE, MUCH * accuracy)
+    rate, straight = rate_of(uniform), u == 1.0
+    guess = select(start[1] > 0.0, start[1], min(rate * half, DEEPEST))
     depth, miss, before, slope, seen, active = roughly(
-        u, guess, straight, -1.0 / mid.rate, cell, load, half, active, pieces, room
+        uniform, guess, straight, -1.0 / rate, cell, load, half, active, pieces, room
     )
+    mid = middle(uniform, depth, cell, load, room.scratch)
     ended = with_ends(room.counts, mask_of(-1))  # the others are one part, of which this was the rule: one step more
     before = select(ended, depth, before[0]), before[1]
     wrong = active & isnt(ended | straight)
     found, tried, off, left, unsure, between = none, none, spread(0.0), miss, spread(0.0), none
     for fine in range(FITS):
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-        mid = middle(u, depth, cell, load, room.scratch)
+        mid = middle(uniform, depth, cell, load, room.scratch)
         if fine > 0 and some(active & ended):
             _, now, valid = look_along(pieces, mid, cell, load, room)
             seen, active = seen_again(ended, now, seen), active & (valid | isnt(ended))

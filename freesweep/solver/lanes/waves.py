@@ -14,7 +14,7 @@ from ..load import under
 from ..numerics.nested import SMALLEST_TOLERANCE
 from ..physics import lagrangian
 from ..problem import SOURCE
-from .meridian import DEEPEST, fallen, logarithm, middle, middle_at
+from .meridian import DEEPEST, fallen, logarithm, middle, middle_at, uniform_at
 from .outputs import DX, FLOOR, WITHIN, finish
 from .pack import COLUMNS, LENGTH, OUTPUTS, PRESSURE, aligned, enter, loads
 from .profile import chosen
@@ -54,14 +54,14 @@ def measure(first, depth, cell, load, quarter, pieces, room, out, told):
     deepest = min(LAST_DIGITS + logarithm(max(abs(1.0 - u), FAINTEST), scratch), DEEPEST)
     given = select(known, depth, deepest)
     shallow, driven, _ = middle_at(first, cell, load, quarter, scratch)
-    mid = chosen(known, middle(u, min(given, deepest), cell, load, scratch), shallow)
+    mid = chosen(known, middle(uniform_at(u, cell, load), min(given, deepest), cell, load, scratch), shallow)
     _, _, limp, doubts, fine, short = scan(
         pieces, mid, cell, load, room.rows, room.ends, room.counts, room.starts, scratch
     )
     valid = ((known & met) | (isnt(known) & driven)) & fine & (short <= 0.0)
     put(room.edges, 0, zero)
     put(room.edges, 1, spread(1.0))
-    fine, (alpha, beta) = between_ends(1, pieces, room.edges, mid, cell, load, room.rows, numbers, scratch)
+    fine, ((alpha, beta), _, _) = between_ends(1, pieces, room.edges, mid, cell, load, room.rows, numbers, scratch)
     rest = max(given - deepest, 0.0) / mid.rate
     x = get(numbers[0], DX) + rest
     finish(mid, rest, zero, zero, rest, cell, load, x, limp, doubts, zero, numbers, scratch, out)
