@@ -16,6 +16,7 @@ FIRST_STEP = 1.0  # of the way: pressures of a sweep lie close
 GLANCE = 0.06  # relative change of the stretch between two looks at the slope, where that is even:
 EVEN = 0.5  # its smallest value is more than this share of the largest
 ON_THE_WAY = 8  # places between a stretch and the end
+MET = 1e-8  # of the stretch: the next step of Newton's method is its square
 SMALLEST_STEP = 1e-4  # of the way; below it a lane is left to the scalar kernels
 
 
@@ -151,7 +152,7 @@ def follow(u, cell, start, end, half, asked):
     todo, done, near = asked, mask_of(0), nothing_yet(zero)
     while some(todo):
         ahead = min(t + step, 1.0)
-        trial, before, least, most = u, spread(HUGE), spread(0.0), spread(HUGE)
+        trial, least, most = u, spread(0.0), spread(HUGE)
         going, arrived = todo, mask_of(0)
         for _ in range(ITERATIONS):
             (room, L_y, _, L_yy, _, _), then = lagrangian.density_beside(
@@ -165,8 +166,8 @@ def follow(u, cell, start, end, half, asked):
             size = abs(new - trial)
             trial = select(going, new, trial)
             going = going & (abs(trial - u) < LARGEST_CHANGE * u)
-            there = going & ((size < 1e-13 * u) | ((size < 1e-10 * u) & (size >= 0.5 * before)))
-            arrived, going, before = arrived | there, going & isnt(there), size
+            there = going & (size < MET * u)
+            arrived, going = arrived | there, going & isnt(there)
             if not some(going):
                 break
         arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived

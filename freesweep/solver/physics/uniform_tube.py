@@ -8,7 +8,7 @@ from ..load import Load
 LARGEST_CHANGE = 0.15  # relative change of the stretch in one step; a jump to another branch is larger
 ITERATIONS = 30  # five do nearly always
 SCAN = 0.015  # relative change of the stretch between two looks at the slope
-SECANTS, CLOSE = 24, 1e-3  # for the load of a stretch; share of L_y at the bounds that is as good as nothing
+SECANTS, CLOSE = 24, 3e-2  # for the load of a stretch; share of L_y at the bounds that is as good as nothing
 FAR = 8.0  # end layers per half tube, up to which clamped ends may turn back a tube that is drawn in
 SMALL_STRAIN = 0.02  # where a branch begins: there the wall has one state only
 
