@@ -12,7 +12,7 @@ from .by_middle.many import PIECES, follow_branches
 from .free.free_states import follow_many
 from .halves import one_by_one
 from .load_path import MISSED, is_loaded, legs, next_to_nothing, settling_pressure
-from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, wall_columns
+from .problem import MOONEY_RIVLIN, PHYSICAL, SECOND, THIRD, THREADS, YEOH, D, wall_columns
 from .status import INACCURATE, NOT_CONVERGED, OK, PENDING
 
 OUTPUTS = 5  # length, volume, twist, energy of half the tube, stretch in the middle; of physical tubes NUMBERS behind
@@ -116,9 +116,9 @@ def _nothing(problems, states, stations):
 
 def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon, most):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
-    # what shares a vector should need much the same work: as many pressures, and likeness tells the rest
+    # what shares a vector should need much the same work: as many pressures, like angles, and likeness tells the rest
     steps = np.diff(first)
-    owners, order = np.repeat(np.arange(len(problems)), steps), np.argsort(steps, kind="stable")
+    owners, order = np.repeat(np.arange(len(problems)), steps), np.lexsort((problems[:, D], steps))
     stretches, likeness = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
     for carry, solve, kind, some in kinds_of(problems):
         given = problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness

@@ -20,6 +20,7 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..cells import nothing_yet
 from ..physics import lagrangian, physical
+from ..physics.wall import may_go_slack
 from .vector import WIDTH, get, put, select, spread
 
 DEEPEST = 24.0  # where nothing is left of the layer
@@ -181,24 +182,31 @@ def logarithm(number, scratch):
 
 @kernel
 def work_of(u, cell, load, half):
-    """What tells states that are as much work, from 0 to 1: how many families pull at the end and not in the middle, or
-    the other way round; of states that are alike in this, the depth of the middle.
+    """What tells states that are as much work, from 0 to 1: which families pull at the end, and in the middle; of states
+    that are alike in this, the depth of the middle.
     """
     return _work_of(u, cell, load, half, load.wall)
 
 
 @kernel
 def _work_of(u, cell, load, half, wall):
-    if len(wall) == 1:
-        _, _, _, L_yy, _, L_vv = lagrangian.density(u, spread(0.0), cell, load)
-        return min(sqrt(L_yy / L_vv) * half / DEEPEST, 1.0)
     zero, one = spread(0.0), spread(1.0)
     (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
-    pull_alpha, pull_beta, near = physical.tensions(u, zero, cell, load, near)
-    end_alpha, end_beta, _ = physical.tensions(one, zero, cell, load, nothing_yet(zero))
-    changes = select((pull_alpha > 0.0) & (end_alpha > 0.0) | (pull_alpha <= 0.0) & (end_alpha <= 0.0), zero, one)
-    changes = changes + select((pull_beta > 0.0) & (end_beta > 0.0) | (pull_beta <= 0.0) & (end_beta <= 0.0), zero, one)
-    return (changes + ALMOST * min(sqrt(L_yy / L_vv) * half / DEEPEST, 1.0)) / 3.0
+    deep = min(sqrt(L_yy / L_vv) * half / DEEPEST, 1.0)
+    if len(wall) == 1:
+        return deep
+    if not may_go_slack(wall):
+        return deep
+    pulls_in_middle = physical.tensions(u, zero, cell, load, near)
+    pulls_at_end = physical.tensions(one, zero, cell, load, nothing_yet(zero))
+    alike = pulls(pulls_at_end, 8.0, 4.0) + pulls(pulls_in_middle, 2.0, 1.0)
+    return (alike + ALMOST * deep) / 16.0
+
+
+@kernel
+def pulls(tensions, alpha, beta):
+    """A number for each family that pulls."""
+    return select(tensions[0] > 0.0, alpha, 0.0 * tensions[0]) + select(tensions[1] > 0.0, beta, 0.0 * tensions[1])
 
 
 @kernel

@@ -94,6 +94,8 @@ def level_of_wall(y, level, cell, load, near):
     """
     wall = load.wall
     if has_two_families(wall):
+        if may_go_slack(wall) and not some((near[0] < 0.0) | (near[0] == BOTH_TAUT)):
+            return level_where_slack(y, level, cell, load, near)  # which knows where both go taut
         at = level_if_taut(y, level, cell, load)
         taut = (at.a >= 0.0) & (at.b >= 0.0)
         if not may_go_slack(wall) or not some(isnt(taut)):
