@@ -18,7 +18,7 @@ from . import slack_ends
 from .meridian import DEEPEST, middle, rate_of, uniform_at
 from .outputs import DX, WITHIN, by_depth, finish, unmet
 from .sums import between_ends, find_ends, scan
-from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
+from .vector import get, isnt, mask_of, put, select, some, spread
 
 FITS = 16  # trials for the depth of the middle
 ROUGH, CLOSE = 3e-3, 3e-10  # shares of the strain that may be wrong there
@@ -46,23 +46,6 @@ def next_depth(wrong, depth, miss, before, slope):
     trial = min(max(trial, SHORTEST * depth), min(LONGEST * depth, DEEPEST))
     before = select(wrong, depth, before[0]), select(wrong, miss, before[1])
     return select(wrong, trial, depth), before, slope
-
-
-@kernel
-def other(where, new, old):
-    """One mask where it is so, elsewhere the other."""
-    return (where & new) | (isnt(where) & old)
-
-
-@kernel
-def with_ends(counts, ended):
-    """Which lanes have ends, of those that had before; others have none any more."""
-    had, some_have = bits(ended), 0
-    for lane in range(WIDTH):
-        if not (had >> lane) & 1:
-            counts[lane] = 0
-        some_have |= (1 if counts[lane] > 0 else 0) << lane
-    return mask_of(some_have)
 
 
 @kernel
@@ -96,16 +79,6 @@ def off_by(mid, miss, straight):
 
 
 @kernel
-def seen_again(where, new, old):
-    """What is :class:`Seen`, in some lanes anew."""
-    return Seen(
-        (other(where, new.limp[0], old.limp[0]), other(where, new.limp[1], old.limp[1])),
-        (other(where, new.middle[0], old.middle[0]), other(where, new.middle[1], old.middle[1])),
-        (select(where, new.doubts[0], old.doubts[0]), select(where, new.doubts[1], old.doubts[1])),
-    )
-
-
-@kernel
 def look_along(pieces, mid, cell, load, room):
     """``(length, what is Seen, lanes that may be)`` of a :func:`scan`."""
     total, limp, middle_limp, doubts, valid, _ = scan(
@@ -115,13 +88,13 @@ def look_along(pieces, mid, cell, load, room):
 
 
 @kernel
-def sum_parts(pieces, mid, cell, load, active, room):
-    """Sum all parts, to the room's ``numbers``: ``(lanes that may be, what is Seen of fibers that may push, by how much an
-    end may be off)``.
+def sum_parts(pieces, mid, cell, load, moved, room):
+    """Sum all parts, to the room's ``numbers``; in the lanes that have ``moved`` their ends are looked for. ``(lanes that may
+    be, what is Seen of fibers that may push, by how much an end that was looked for may be off)``.
     """
-    parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, room.edges, room.scratch)
+    parts, unsure = find_ends(mid, cell, load, moved, room.ends, room.counts, room.starts, room.edges, room.scratch)
     valid, seen = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, room.numbers, room.scratch)
-    return active & (unsure < slack_ends.ENOUGH) & valid, Seen(*seen), unsure
+    return (unsure < slack_ends.ENOUGH) & valid, Seen(*seen), unsure
 
 
 @kernel
@@ -196,18 +169,22 @@ def solve(start, cell, load, half, active, pieces, accuracy, room, out):
         uniform, guess, straight, -1.0 / rate, cell, load, half, active, pieces, room
     )
     mid = middle(uniform, depth, cell, load, room.scratch)
-    ended = with_ends(room.counts, mask_of(-1))  # the others are one part, of which this was the rule: one step more
+    ended = mask_of(slack_ends.lanes_with(room.counts, 0))  # the others are one part, of which this was the rule: one step more
     before = select(ended, depth, before[0]), before[1]
     wrong = active & isnt(ended | straight)
-    found, tried, off, left, unsure, between = none, none, spread(0.0), miss, spread(0.0), none
+    found, tried, off, left, unsure, between, last = none, none, spread(0.0), miss, spread(0.0), none, depth
     for fine in range(FITS):
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
         mid = middle(uniform, depth, cell, load, room.scratch)
-        if fine > 0 and some(active & ended):
-            _, now, valid = look_along(pieces, mid, cell, load, room)
-            seen, active = seen_again(ended, now, seen), active & (valid | isnt(ended))
-            ended = ended & with_ends(room.counts, ended)
-        active, pushed, unsure = sum_parts(pieces, mid, cell, load, active, room)
+        moved = active if fine == 0 else active & wrong
+        if fine > 0 and some(moved & ended):
+            held = slack_ends.reopen(
+                abs(depth - last) / depth, moved & ended, room.counts, mid, cell, load, room.ends, room.starts, room.scratch
+            )
+            active = active & (held | isnt(moved & ended))
+        last = depth
+        valid, pushed, doubt = sum_parts(pieces, mid, cell, load, moved, room)
+        active, unsure = active & valid, select(moved, doubt, unsure)
         if not may_go_slack(load.wall):
             seen = pushed
         miss = half - get(room.numbers[0], DX)

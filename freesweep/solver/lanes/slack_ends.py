@@ -8,10 +8,11 @@ from ...jit import kernel
 from ..along.slack import NOTHING, TENSIONLESS
 from ..physics.wall import may_go_slack
 from .meridian import look
-from .vector import WIDTH, get, isnt, mask_of, select, some, spread
+from .vector import WIDTH, get, isnt, mask_of, put, select, some, spread
 
 MOST = 8  # ends in half a tube; more are left to finer parts
 STEPS, CLOSE, SURE = 48, 1e-9, 3e-8  # of the search, its last step [of the depth], and how exactly an end is known
+WIDER = 4.0  # times what a middle has moved: where an end is looked for beside the one before
 PATIENT, ENOUGH = 10, 1e-5  # steps, from which on each other one halves the bracket; an end known so well is not lost
 ENDS = LEFT, RIGHT, BEFORE, BEHIND, FAMILY = range(5)  # what brackets an end
 
@@ -79,6 +80,48 @@ def search(ends, j, going, mid, cell, load, near, scratch):
         before, behind = select(same, before * share, pull), select(same, pull, behind * share)
         left, right = select(same, left, t), select(same, t, right)
     return t, select(going, right - left, SURE)
+
+
+@kernel
+def reopen(shift, moved, counts, mid, cell, load, ends, starts, scratch):
+    """Brackets beside the ends that a trial before has left in ``ends``, in the lanes whose middle has ``moved`` by the share
+    ``shift`` of its depth. Returns those in which they hold an end.
+    """
+    held, most = moved, 0
+    for lane in range(WIDTH):
+        most = max(most, counts[lane])
+    for j in range(most):
+        there = moved & mask_of(lanes_with(counts, j))
+        t, width, near = get(ends[LEFT], j), WIDER * shift + SURE, start_of(starts, j)
+        left, right = max(t - width, 0.0), min(t + width, 1.0)
+        first = pulls(look(left, mid, cell, load, near, scratch).at, load)
+        last = pulls(look(right, mid, cell, load, near, scratch).at, load)
+        of_alpha = get(ends[FAMILY], j) < 0.5
+        before, behind = select(of_alpha, first[0], first[1]), select(of_alpha, last[0], last[1])
+        ended = get(ends[BEFORE], j) > 0.0
+        same = (ended & (before > 0.0) & (behind <= 0.0)) | (isnt(ended) & (before <= 0.0) & (behind > 0.0))
+        held = held & (same | isnt(there))
+        put(ends[LEFT], j, select(there, left, t))
+        put(ends[RIGHT], j, select(there, right, get(ends[RIGHT], j)))
+        put(ends[BEFORE], j, select(there, before, get(ends[BEFORE], j)))
+        put(ends[BEHIND], j, select(there, behind, get(ends[BEHIND], j)))
+    return held
+
+
+@kernel
+def lanes_with(counts, j):
+    """The lanes that have an end j, as bits."""
+    there = 0
+    for lane in range(WIDTH):
+        there |= (1 if j < counts[lane] else 0) << lane
+    return there
+
+
+@kernel
+def start_of(starts, j):
+    """What may be handed on to the search for the end j."""
+    zero = spread(0.0)
+    return get(starts[0], j), get(starts[1], j), zero, get(starts[2], j), zero, zero, get(starts[3], j), zero, zero
 
 
 @kernel

@@ -136,23 +136,21 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
 
 @kernel
 def find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch):
-    """Write the shares of the depth between which no family goes slack to ``edges`` (> MOST + 1, WIDTH); returns how
-    many parts there are, and by how much an end may be off.
+    """Write the shares of the depth between which no family goes slack to ``edges`` (> MOST + 1, WIDTH); in the ``active``
+    lanes they are looked for, and written to ``ends`` in place of their brackets, where others have left them. Returns how
+    many parts there are, and by how much an end that was looked for may be off.
     """
     most, zero, unsure = 0, spread(0.0), spread(0.0)
     for lane in range(WIDTH):
         most = max(most, counts[lane])
     put(edges, 0, zero)
     for j in range(most):
-        asked = 0
-        for lane in range(WIDTH):
-            asked |= (1 if j < counts[lane] else 0) << lane
-        near = (
-            get(starts[0], j), get(starts[1], j), zero, get(starts[2], j), zero, zero, get(starts[3], j), zero, zero
-        )  # fmt: skip
-        own = mask_of(asked) & active
+        there = mask_of(slack_ends.lanes_with(counts, j))
+        own, near = there & active, slack_ends.start_of(starts, j)
         t, doubt = slack_ends.search(ends, j, own, mid, cell, load, near, scratch)
-        put(edges, j + 1, t)
+        t = select(own, t, get(ends[slack_ends.LEFT], j))
+        put(ends[slack_ends.LEFT], j, t)
+        put(edges, j + 1, select(there, t, 1.0))
         unsure = unsure + select(own, doubt, zero)
     put(edges, most + 1, spread(1.0))
     slack_ends.sort(edges, counts)
