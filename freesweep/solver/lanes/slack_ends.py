@@ -14,7 +14,8 @@ MOST = 8  # ends in half a tube; more are left to finer parts
 STEPS, CLOSE, SURE = 48, 1e-9, 3e-8  # of the search, its last step [of the depth], and how exactly an end is known
 WIDER = 4.0  # times what a middle has moved: where an end is looked for beside the one before
 PATIENT, ENOUGH = 10, 1e-5  # steps, from which on each other one halves the bracket; an end known so well is not lost
-ENDS = LEFT, RIGHT, BEFORE, BEHIND, FAMILY = range(5)  # what brackets an end
+# what brackets an end, and did at first
+ENDS = LEFT, RIGHT, BEFORE, BEHIND, FAMILY, FIRST, LAST = range(7)
 
 
 @kernel
@@ -27,7 +28,7 @@ def pulls(at, load):
 @kernel
 def bracket(first, width, places, pull, family, last, seen, ends, counts, starts):
     """Write where the ``pull`` of a family changes its sign, at the ``places`` 0 to ``last`` of a part of that ``width``, to
-    ``ends`` (5, MOST, WIDTH), of which each lane has ``counts`` (WIDTH,); what was ``seen`` (4, ...) before to ``starts``.
+    ``ends`` (7, MOST, WIDTH), of which each lane has ``counts`` (WIDTH,); what was ``seen`` (4, ...) before to ``starts``.
     """
     for lane in range(WIDTH):
         for k in range(last):
@@ -35,6 +36,7 @@ def bracket(first, width, places, pull, family, last, seen, ends, counts, starts
             if (here > 0.0) != (there > 0.0) and counts[lane] < MOST:
                 j = counts[lane]
                 ends[LEFT, j, lane], ends[RIGHT, j, lane] = first + width * places[k], first + width * places[k + 1]
+                ends[FIRST, j, lane], ends[LAST, j, lane] = ends[LEFT, j, lane], ends[RIGHT, j, lane]
                 ends[BEFORE, j, lane], ends[BEHIND, j, lane], ends[FAMILY, j, lane] = here, there, family
                 for i in range(4):
                     starts[i, j, lane] = seen[i, k, lane]
@@ -84,27 +86,32 @@ def search(ends, j, going, mid, cell, load, near, scratch):
 
 @kernel
 def reopen(shift, moved, counts, mid, cell, load, ends, starts, scratch):
-    """Brackets beside the ends that a trial before has left in ``ends``, in the lanes whose middle has ``moved`` by the share
-    ``shift`` of its depth. Returns those in which they hold an end.
+    """Brackets of the ends that a trial before has left in ``ends``, in the lanes whose middle has ``moved`` by the share
+    ``shift`` of its depth: close beside them, or those that they had at first. Returns the lanes in which these hold them.
     """
     held, most = moved, 0
     for lane in range(WIDTH):
         most = max(most, counts[lane])
     for j in range(most):
-        there = moved & mask_of(lanes_with(counts, j))
+        todo = moved & mask_of(lanes_with(counts, j))
         t, width, near = get(ends[LEFT], j), WIDER * shift + SURE, start_of(starts, j)
+        of_alpha, ended = get(ends[FAMILY], j) < 0.5, get(ends[BEFORE], j) > 0.0
         left, right = max(t - width, 0.0), min(t + width, 1.0)
-        first = pulls(look(left, mid, cell, load, near, scratch).at, load)
-        last = pulls(look(right, mid, cell, load, near, scratch).at, load)
-        of_alpha = get(ends[FAMILY], j) < 0.5
-        before, behind = select(of_alpha, first[0], first[1]), select(of_alpha, last[0], last[1])
-        ended = get(ends[BEFORE], j) > 0.0
-        same = (ended & (before > 0.0) & (behind <= 0.0)) | (isnt(ended) & (before <= 0.0) & (behind > 0.0))
-        held = held & (same | isnt(there))
-        put(ends[LEFT], j, select(there, left, t))
-        put(ends[RIGHT], j, select(there, right, get(ends[RIGHT], j)))
-        put(ends[BEFORE], j, select(there, before, get(ends[BEFORE], j)))
-        put(ends[BEHIND], j, select(there, behind, get(ends[BEHIND], j)))
+        for _ in range(2):
+            first = pulls(look(left, mid, cell, load, near, scratch).at, load)
+            last = pulls(look(right, mid, cell, load, near, scratch).at, load)
+            before, behind = select(of_alpha, first[0], first[1]), select(of_alpha, last[0], last[1])
+            same = (ended & (before > 0.0) & (behind <= 0.0)) | (isnt(ended) & (before <= 0.0) & (behind > 0.0))
+            found = todo & same
+            put(ends[LEFT], j, select(found, left, get(ends[LEFT], j)))
+            put(ends[RIGHT], j, select(found, right, get(ends[RIGHT], j)))
+            put(ends[BEFORE], j, select(found, before, get(ends[BEFORE], j)))
+            put(ends[BEHIND], j, select(found, behind, get(ends[BEHIND], j)))
+            todo = todo & isnt(found)
+            if not some(todo):
+                break
+            left, right = get(ends[FIRST], j), get(ends[LAST], j)
+        held = held & isnt(todo)
     return held
 
 

@@ -28,7 +28,7 @@ TOLD = OUTPUTS + len(places.NUMBERS)  # of a state
 
 
 class Room(NamedTuple):
-    """Scratch: ``rows`` (17, > LAST + 1, WIDTH) of the places of one rule; brackets of ``ends`` (5, MOST, ...), their ``counts``
+    """Scratch: ``rows`` (17, > LAST + 1, WIDTH) of the places of one rule; brackets of ``ends`` (7, MOST, ...), their ``counts``
     (WIDTH,), ``starts`` (4, MOST, ...) and ``edges`` (MOST + 2, ...); ``numbers`` (2, 16, ...), sums and what they may miss;
     what is ``kept`` (11, WIDTH) of what was told of a trial; and one row (1, WIDTH).
     """
@@ -46,9 +46,9 @@ class Room(NamedTuple):
 @kernel
 def make_room():
     """Scratch of a vector."""
-    ends = aligned(9, slack_ends.MOST)
+    ends = aligned(11, slack_ends.MOST)
     return Room(
-        aligned(17, LAST + 2), ends[:5], np.zeros(WIDTH, np.int64), ends[5:], aligned(1, slack_ends.MOST + 2)[0],
+        aligned(17, LAST + 2), ends[:7], np.zeros(WIDTH, np.int64), ends[7:], aligned(1, slack_ends.MOST + 2)[0],
         aligned(2, 16), aligned(1, TOLD)[0], aligned(1, 1)[0],
     )  # fmt: skip
 
