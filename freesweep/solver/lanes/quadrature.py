@@ -23,7 +23,7 @@ from .vector import get, isnt, mask_of, put, select, some, spread
 FITS = 16  # trials for the depth of the middle
 ROUGH, CLOSE = 3e-3, 3e-10  # shares of the strain that may be wrong there
 MUCH = 1e-2  # of the accuracy asked for
-NEARER, BENT = 0.1, 4.0  # a trial is close that misses so much less than one before: what is told bends by both shares
+NEARER, BENT = 0.1, 25.0  # a trial is close that misses so much less than one before: what is told bends by both shares
 STEPS, MET = 8, 1e-12  # to the uniform stretch, relative
 SHORTEST, LONGEST = 0.3, 3.0  # of a depth: the next one
 
