@@ -10,8 +10,13 @@ has, exactly in a uniform tube and as a layered membrane elsewhere (theory, sect
     W   = integral over rho^2 of w(I1, I2),  w as in :mod:`membrane`
 
 A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick wall of Mooney and Rivlin's rubber is
-summed exactly (:mod:`mooney_wall`), that of another at Gauss points in rho^2, as many as its integrand, a rational function
-of rho^2 with poles at 0 and where q vanishes, asks for.
+summed exactly (:mod:`mooney_wall`), that of another at Gauss points. Its integrand is a rational function of rho^2 with poles
+at 0, where q vanishes, and at infinity. With p the nearer one of the first two, g^2 = (rho_i^2 - p) (rho_o^2 - p)::
+
+    rho^2 = p + g (1 + t)/(1 - t),    |t| <= (sqrt(rho_o^2 - p) - sqrt(rho_i^2 - p))/(the sum of both)
+
+has poles at 1 and -1 only, far from a wall of any thickness: a rule of n points errs by ``((1 - r)/(1 + r))^(2 n)``, r^4
+the ratio of ``rho_i^2 - p`` and ``rho_o^2 - p``.
 
 ``wall`` is (k, inner, threads): ``inner`` = rho_i^2, or 0 for a membrane; ``threads`` says which families of fibers there
 are, and whether they may push (:mod:`relaxed`). In vectors of designs it is (k, inner, threads, layers, mean of 1/rho^2), the
@@ -30,11 +35,12 @@ from .membrane import excess, yeoh_slope
 from .mooney_wall import Section, mean_reciprocal
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
-MEMBRANE, FEWEST, MOST = 1, 2, 10  # Gauss points
-MISSED = 1e-11  # of the energy: what a pole at the axis may leave; forces lose three digits of it
+MEMBRANE, FEWEST, MOST = 1, 2, 20  # Gauss points
+MISSED = 1e-12  # of the energy: what they may leave; forces lose three digits of it
+NARROWER, DEEPER = 3.0, 0.05  # a load may leave as much of the squared inner radius as of a wall so much thicker, or so much
+NO_ROOM = 1e-30  # stands for what is left of it where there is none
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
-PLACES = np.concatenate([0.5 + 0.5 * rule[0] for rule in _RULES])  # shares of rho_o^2 - rho_i^2, all rules in a row
-WEIGHTS = np.concatenate([0.5 * rule[1] for rule in _RULES])
+PLACES, WEIGHTS = (np.concatenate(rows) for rows in zip(*_RULES))  # all rules in a row
 
 
 @kernel
@@ -87,9 +93,10 @@ def _bonded(wall):
 
 @kernel
 def points(inner, area):
-    """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs."""
-    z = (2.0 * inner + area) / area
-    rate = z + sqrt(z * z - 1.0)  # a rule of n points errs by rate^-2n
+    """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs, under any load."""
+    thick = area / (inner + area)
+    r = sqrt(sqrt(max(1.0 - NARROWER * thick, DEEPER * (1.0 - thick))))
+    rate = (1.0 + r) / (1.0 - r)
     left, n = MISSED * rate * rate, 1
     while left < 1.0 and n < MOST:
         left *= rate * rate
@@ -234,9 +241,14 @@ def of_any(y, G_1, psi, area, rubber, wall):
     if some(area > 0.0):  # locked, the wall does not count
         count = layers(area, wall)
         at = first_place(count)
+    p = max(1.0 - y * y * sqrt(1.0 + G_1), 0.0)  # the nearer pole
+    near, far = sqrt(max(inner - p, NO_ROOM)), sqrt(max(inner + area - p, NO_ROOM))
+    size, reach = near * far, (far - near) / (far + near)
     for j in range(count):
         if count > 1:
-            square, one = inner + area * PLACES[at + j], area * WEIGHTS[at + j]
+            t = reach * PLACES[at + j]
+            i = 1.0 / (1.0 - t)
+            square, one = p + size * (1.0 + t) * i, 2.0 * size * reach * WEIGHTS[at + j] * i * i
         w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
         W += one * w
         W_y += one * w_y
