@@ -51,7 +51,8 @@ def widest(row, last, most, missed):
         top = own + parabola(left, own, right)
         higher = top > highest_yet
         highest_yet = select(higher, top, highest_yet)
-        first, second = select(higher, beside(row, k - 2, last), first), select(higher, beside(row, k + 2, last), second)
+        first = select(higher, beside(row, k - 2, last), first)
+        second = select(higher, beside(row, k + 2, last), second)
         before, here, after = select(higher, left, before), select(higher, own, here), select(higher, right, after)
     lift, wrong = rises(
         before, here, after, (8.0 * (after - before) - second + first) / 12.0,

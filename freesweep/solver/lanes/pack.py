@@ -86,8 +86,8 @@ def rubber_in(columns, constants):
 
 @kernel
 def wall_in(columns, walls, count):
-    """The walls in the lanes, of the columns SOURCE or PHYSICAL; those count as ``count`` layers, and all of them loose fibers,
-    or none.
+    """The walls in the lanes, of the columns SOURCE or PHYSICAL; those count as ``count`` layers, and all of them have loose
+    fibers, or none.
     """
     if len(walls) == 1:
         return (get(columns, SHEAR),)

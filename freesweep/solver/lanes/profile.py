@@ -240,7 +240,8 @@ def seated(start, cell, load, half, scratch):
     u, depth = get(start, 0), get(start, 1)
     known = depth == depth
     found, driven, _ = middle_at(u, cell, load, half, scratch)
-    return chosen(known | isnt(driven), middle(uniform_at(u, cell, load), select(known, depth, DEEPEST), cell, load, scratch), found)
+    given = middle(uniform_at(u, cell, load), select(known, depth, DEEPEST), cell, load, scratch)
+    return chosen(known | isnt(driven), given, found)
 
 
 @kernel

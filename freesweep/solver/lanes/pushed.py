@@ -48,7 +48,7 @@ def next_end(pull, taken):
 
 @kernel
 def root(series, left, right, before, behind, going):
-    """Where the polynomial of the ``series`` ends between two shares of the piece: the regula falsi of Anderson and Bjorck."""
+    """Where the polynomial of the ``series`` is none between two shares: the regula falsi of Anderson and Bjorck."""
     t = right
     for i in range(STEPS):
         new = right - behind * (right - left) / select(going, behind - before, 1.0)
@@ -70,8 +70,8 @@ def root(series, left, right, before, behind, going):
 
 @kernel
 def length(pull, dx, series, whole, missed):
-    """``(length, what may be wrong of it)`` of a piece along which the row ``pull`` is none, where x grows by the row ``dx``,
-    by the ``whole`` in all, of which so much may be ``missed``. ``series`` (2, > LAST + 1, WIDTH) is scratch.
+    """``(length, what may be wrong of it)`` along which the row ``pull`` is none in a piece; x grows by the row ``dx``, by
+    the ``whole`` in all, of which so much may be ``missed``. ``series`` (2, > LAST + 1, WIDTH) is scratch.
     """
     slack = get(pull, LAST) <= 0.0
     total, doubt, taken = select(slack, whole, 0.0), select(slack, missed, 0.0), spread(-1.0)

@@ -89,8 +89,8 @@ def look_along(pieces, mid, cell, load, room):
 
 @kernel
 def sum_parts(pieces, mid, cell, load, moved, room):
-    """Sum all parts, to the room's ``numbers``; in the lanes that have ``moved`` their ends are looked for. ``(lanes that may
-    be, what is Seen of fibers that may push, by how much an end that was looked for may be off)``.
+    """Sum all parts, to the room's ``numbers``; in the lanes that have ``moved`` their ends are looked for. Returns ``(lanes
+    that may be, what is Seen of fibers that may push, by how much an end that was looked for may be off)``.
     """
     parts, unsure = find_ends(mid, cell, load, moved, room.ends, room.counts, room.starts, room.edges, room.scratch)
     valid, seen = between_ends(parts, pieces, room.edges, mid, cell, load, room.rows, room.numbers, room.scratch)
@@ -135,15 +135,15 @@ def there(limps, wall):
 
 
 @kernel
-def roughly(uniform, depth, straight, slope, cell, load, half, active, pieces, room):
-    """``(depth, miss, (depth, miss) before, slope, what is Seen, lanes that may be)`` by one rule along the whole depth: the
-    secant, from a guess of the depth and of how the miss changes with it.
+def roughly(uniform, depth, straight, cell, load, half, active, pieces, room):
+    """``(Middle, miss, (depth, miss) before, slope, what is Seen, lanes that may be)`` by one rule along the whole depth:
+    the secant, from a guess of the depth.
     """
-    none, zero = mask_of(0), spread(0.0)
+    none, zero, slope = mask_of(0), spread(0.0), -1.0 / rate_of(uniform)
     before, settled, miss = (depth, half), none, zero
     seen = Seen((none, none), (none, none), (zero, zero))
+    mid = middle(uniform, depth, cell, load, room.scratch)
     for _ in range(FITS):
-        mid = middle(uniform, depth, cell, load, room.scratch)
         total, seen, valid = look_along(pieces, mid, cell, load, room)
         active, miss = active & valid, half - total
         settled = settled | (active & (off_by(mid, miss, straight) <= ROUGH))
@@ -151,38 +151,34 @@ def roughly(uniform, depth, straight, slope, cell, load, half, active, pieces, r
         if not some(wrong):
             break
         depth, before, slope = next_depth(wrong, depth, miss, before, slope)
-    return depth, miss, before, slope, seen, active & settled
+        mid = middle(uniform, depth, cell, load, room.scratch)
+    return mid, miss, before, slope, seen, active & settled
 
 
 @kernel
 def solve(start, cell, load, half, active, pieces, accuracy, room, out):
-    """Solve the ``active`` lanes from their ``start``, (about the uniform stretch, about the depth of the middle or NaN), all
-    rules in so many ``pieces``. ``out`` (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of
+    """Solve the ``active`` lanes from their ``start``, (about the uniform stretch, about the depth of the middle or NaN),
+    all rules in so many ``pieces``. ``out`` (2, > 11, WIDTH) takes the outputs, of physical tubes the numbers of
     :mod:`..along.places`, and their bounds. Returns masks, and uniform stretch and depth of the middle: ``(found, met, alpha
     slack or pushed somewhere, beta, (u, depth))``, met what is found to the accuracy.
     """
     u, active = stationary(start[0], cell, load, active)
     uniform, none, allowed = uniform_at(u, cell, load), mask_of(0), min(CLOSE, MUCH * accuracy)
-    rate, straight = rate_of(uniform), u == 1.0
-    guess = select(start[1] > 0.0, start[1], min(rate * half, DEEPEST))
-    depth, miss, before, slope, seen, active = roughly(
-        uniform, guess, straight, -1.0 / rate, cell, load, half, active, pieces, room
-    )
-    mid = middle(uniform, depth, cell, load, room.scratch)
-    ended = mask_of(slack_ends.lanes_with(room.counts, 0))  # the others are one part, of which this was the rule: one step more
-    before = select(ended, depth, before[0]), before[1]
-    wrong = active & isnt(ended | straight)
-    found, tried, off, left, unsure, between, last = none, none, spread(0.0), miss, spread(0.0), none, depth
+    straight = u == 1.0
+    guess = select(start[1] > 0.0, start[1], min(rate_of(uniform) * half, DEEPEST))
+    mid, miss, before, slope, seen, active = roughly(uniform, guess, straight, cell, load, half, active, pieces, room)
+    ended = mask_of(slack_ends.lanes_with(room.counts, 0))
+    before = select(ended, mid.depth, before[0]), before[1]
+    wrong, moved = active & isnt(ended | straight), active  # one part, of which this was the rule, goes a step further
+    found, tried, off, left, unsure, between = none, none, spread(0.0), miss, spread(0.0), none
     for fine in range(FITS):
-        depth, before, slope = next_depth(wrong, depth, miss, before, slope)
+        last = mid.depth
+        depth, before, slope = next_depth(wrong, last, miss, before, slope)
         mid = middle(uniform, depth, cell, load, room.scratch)
-        moved = active if fine == 0 else active & wrong
-        if fine > 0 and some(moved & ended):
-            held = slack_ends.reopen(
-                abs(depth - last) / depth, moved & ended, room.counts, mid, cell, load, room.ends, room.starts, room.scratch
-            )
+        if fine > 0:
+            moved = wrong
+            held = slack_ends.reopen(abs(depth - last) / depth, moved & ended, mid, cell, load, room)
             active = active & (held | isnt(moved & ended))
-        last = depth
         valid, pushed, doubt = sum_parts(pieces, mid, cell, load, moved, room)
         active, unsure = active & valid, select(moved, doubt, unsure)
         if not may_go_slack(load.wall):
@@ -202,4 +198,4 @@ def solve(start, cell, load, half, active, pieces, accuracy, room, out):
     along_secant(onward, room.kept, out[0])
     met = found & (largest <= accuracy) & isnt(let_go(mid, cell, load, half))
     alpha, beta = there(seen.limp, load.wall)
-    return found, met, alpha, beta, (u, depth + onward * (depth - before[0]))
+    return found, met, alpha, beta, (u, mid.depth + onward * (mid.depth - before[0]))

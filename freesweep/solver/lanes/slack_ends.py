@@ -85,15 +85,16 @@ def search(ends, j, going, mid, cell, load, near, scratch):
 
 
 @kernel
-def reopen(shift, moved, counts, mid, cell, load, ends, starts, scratch):
-    """Brackets of the ends that a trial before has left in ``ends``, in the lanes whose middle has ``moved`` by the share
-    ``shift`` of its depth: close beside them, or those that they had at first. Returns the lanes in which these hold them.
+def reopen(shift, moved, mid, cell, load, room):
+    """Brackets of the ends that a trial before has left in a :class:`.sums.Room`, in the lanes whose middle has ``moved`` by
+    the share ``shift`` of its depth: close beside them, or those that they had at first. Returns the lanes in which these
+    hold them.
     """
-    held, most = moved, 0
-    for lane in range(WIDTH):
-        most = max(most, counts[lane])
-    for j in range(most):
-        todo = moved & mask_of(lanes_with(counts, j))
+    held, (ends, starts, scratch) = moved, (room.ends, room.starts, room.scratch)
+    for j in range(MOST):
+        todo = moved & mask_of(lanes_with(room.counts, j))
+        if not some(todo):
+            break
         t, width, near = get(ends[LEFT], j), WIDER * shift + SURE, start_of(starts, j)
         of_alpha, ended = get(ends[FAMILY], j) < 0.5, get(ends[BEFORE], j) > 0.0
         left, right = max(t - width, 0.0), min(t + width, 1.0)

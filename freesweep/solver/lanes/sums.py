@@ -1,7 +1,7 @@
 """Sums along half a tube that is the same all along, for a vector of designs: along the depth of its middle
 (:mod:`meridian`), part by part between the places where families go slack (:mod:`slack_ends`). Fibers that may push leave
-no corner: their tubes have one part, along which :mod:`pushed` tells where they do. What is summed (:mod:`rule`) is what an output differs by from that of the
-middle.
+no corner: their tubes have one part, along which :mod:`pushed` tells where they do. What is summed (:mod:`rule`) is what an
+output differs by from that of the middle.
 """
 
 from typing import NamedTuple
@@ -28,9 +28,9 @@ TOLD = OUTPUTS + len(places.NUMBERS)  # of a state
 
 
 class Room(NamedTuple):
-    """Scratch: ``rows`` (17, > LAST + 1, WIDTH) of the places of one rule; brackets of ``ends`` (7, MOST, ...), their ``counts``
-    (WIDTH,), ``starts`` (4, MOST, ...) and ``edges`` (MOST + 2, ...); ``numbers`` (2, 16, ...), sums and what they may miss;
-    what is ``kept`` (11, WIDTH) of what was told of a trial; and one row (1, WIDTH).
+    """Scratch: ``rows`` (17, > LAST + 1, WIDTH) of the places of one rule; brackets of ``ends`` (7, MOST, ...), their
+    ``counts`` (WIDTH,), ``starts`` (4, MOST, ...) and ``edges`` (MOST + 2, ...); ``numbers`` (2, 16, ...), sums and what
+    they may miss; what is ``kept`` (11, WIDTH) of what was told of a trial; and one row (1, WIDTH).
     """
 
     rows: np.ndarray
@@ -213,7 +213,8 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
                 doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
                 doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
                 for family in range(2):
-                    add(numbers, SLACK + family, *pushed.length(rows[ALPHA + family], rows[DX], rows[SERIES:], dx, doubt))
+                    told = pushed.length(rows[ALPHA + family], rows[DX], rows[SERIES:], dx, doubt)
+                    add(numbers, SLACK + family, *told)
             for k in range(4):
                 before = get(numbers[0], WORST + k), get(numbers[1], WORST + k)
                 most, missed = widest(rows[PUSH_ALPHA + k], LAST, *before)

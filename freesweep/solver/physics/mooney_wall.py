@@ -1,8 +1,8 @@
 """The wall of :mod:`wall` where the energy is linear in I1 and I2 (Mooney and Rivlin, no Yeoh): exactly, without layers.
 
 With ``d = rho^2 - 1``, ``g = -1/(2 G^(3/2))`` a layer's q has ``q_y = 2 y, q_G = g d``. As q is linear in d, all that
-depends on the layer is a power of d times one of ``1/q, rho^2/q^2, rho^2/q^3``, and as ``d/q`` is linear in ``1/q``, the sums
-of ``1/q, 1/q^2, 1/q^3`` make W and all first and second derivatives. Means of powers over a range from a to b are ::
+depends on the layer is a power of d times one of ``1/q, rho^2/q^2, rho^2/q^3``, and as ``d/q`` is linear in ``1/q``, the
+sums of ``1/q, 1/q^2, 1/q^3`` make W and all first and second derivatives. Means of powers over a range from a to b are ::
 
     mean of 1/q = 1/(logarithmic mean of a and b),   mean of 1/q^2 = 1/(a b),   mean of 1/q^3 = (a + b)/(2 a^2 b^2)
 

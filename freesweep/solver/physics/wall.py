@@ -10,8 +10,8 @@ has, exactly in a uniform tube and as a layered membrane elsewhere (theory, sect
     W   = integral over rho^2 of w(I1, I2),  w as in :mod:`membrane`
 
 A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick wall of Mooney and Rivlin's rubber is
-summed exactly (:mod:`mooney_wall`), that of another at Gauss points. Its integrand is a rational function of rho^2 with poles
-at 0, where q vanishes, and at infinity. With p the nearer one of the first two, g^2 = (rho_i^2 - p) (rho_o^2 - p)::
+summed exactly (:mod:`mooney_wall`), that of another at Gauss points. Its integrand is a rational function of rho^2 with
+poles at 0, where q vanishes, and at infinity. With p the nearer one of the first two, g^2 = (rho_i^2 - p) (rho_o^2 - p)::
 
     rho^2 = p + g (1 + t)/(1 - t),    |t| <= (sqrt(rho_o^2 - p) - sqrt(rho_i^2 - p))/(the sum of both)
 
@@ -19,8 +19,8 @@ has poles at 1 and -1 only, far from a wall of any thickness: a rule of n points
 the ratio of ``rho_i^2 - p`` and ``rho_o^2 - p``.
 
 ``wall`` is (k, inner, threads): ``inner`` = rho_i^2, or 0 for a membrane; ``threads`` says which families of fibers there
-are, and whether they may push (:mod:`relaxed`). In vectors of designs it is (k, inner, threads, layers, mean of 1/rho^2), the
-third and fourth the same for all of them.
+are, and whether they may push (:mod:`relaxed`). In vectors of designs it is (k, inner, threads, layers, mean of 1/rho^2),
+the third and fourth the same for all of them.
 """
 
 from math import sqrt
@@ -37,7 +37,8 @@ from .mooney_wall import Section, mean_reciprocal
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 20  # Gauss points
 MISSED = 1e-12  # of the energy: what they may leave; forces lose three digits of it
-NARROWER, DEEPER = 3.0, 0.05  # a load may leave as much of the squared inner radius as of a wall so much thicker, or so much
+# a load may leave what is left of the squared inner radius of a wall so much thicker, or so much of its own
+NARROWER, DEEPER = 3.0, 0.05
 NO_ROOM = 1e-30  # stands for what is left of it where there is none
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
 PLACES, WEIGHTS = (np.concatenate(rows) for rows in zip(*_RULES))  # all rules in a row
