@@ -114,7 +114,7 @@ def rate_of(uniform):
 @kernel
 def middle(uniform, depth, cell, load, scratch):
     """The :class:`Middle` at that depth toward a :class:`Uniform` tube."""
-    u, L_yy, L_vv, s_u, psi_u, energy_u, near = uniform
+    u, L_yy, _, s_u, psi_u, energy_u, near = uniform
     zero, q = spread(0.0), fallen(depth, scratch)
     whole = 1.0 / (1.0 + q * q)
     away = (1.0 - u) * 2.0 * q * whole
