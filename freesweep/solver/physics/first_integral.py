@@ -94,11 +94,14 @@ def level_of_wall(y, level, cell, load, near):
     """
     wall = load.wall
     if has_two_families(wall):
-        if may_go_slack(wall) and not some((near[0] < 0.0) | (near[0] == BOTH_TAUT)):
-            return level_where_slack(y, level, cell, load, near)  # which knows where both go taut
+        if not may_go_slack(wall):
+            return level_if_taut(y, level, cell, load)
+        taut = (near[0] < 0.0) | (near[0] == BOTH_TAUT)  # from other neighbours it is found where both go taut
+        if not some(taut):
+            return level_where_slack(y, level, cell, load, near)
         at = level_if_taut(y, level, cell, load)
-        taut = (at.a >= 0.0) & (at.b >= 0.0)
-        if not may_go_slack(wall) or not some(isnt(taut)):
+        taut = taut & (at.a >= 0.0) & (at.b >= 0.0)
+        if not some(isnt(taut)):
             return at
         slack = level_where_slack(y, level, cell, load, near)
         return Level(
