@@ -9,7 +9,7 @@ from ...jit import entry_point, kernel
 from ..along.places import OUTER, STRETCH
 from ..load import Load, at_pressure, fibers_alone
 from ..physics import lagrangian
-from ..physics.wall import layers, reciprocal
+from ..physics.wall import FEWEST, layers, reciprocal
 from ..problem import (
     AREA,
     FORCE,
@@ -97,10 +97,11 @@ def wall_in(columns, walls, count):
 
 @entry_point
 def count_layers(problems, walls, out):
-    """As how many layers the wall of each of the physical tubes counts: as one that is summed exactly."""
+    """As how many layers the wall of each of the physical tubes counts: one that is summed exactly is like any other."""
     for k in range(len(problems)):
         exact = problems[k, SECOND] == 0.0 and problems[k, THIRD] == 0.0
-        out[k] = 1 if exact else layers(problems[k, AREA], wall_of(problems[k], walls))
+        count = layers(problems[k, AREA], wall_of(problems[k], walls))
+        out[k] = min(count, FEWEST) if exact else count
 
 
 @kernel
