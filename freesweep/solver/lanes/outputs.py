@@ -97,7 +97,7 @@ def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
         out, OUTPUTS,
         (share_a, share_b, least_a, least_b, outer, strain),
         (
-            doubt + doubts[0] / half, doubt + doubts[1] / half,
+            doubt + (doubts[0] + get(missed, SLACK)) / half, doubt + (doubts[1] + get(missed, SLACK + 1)) / half,
             off_a + faint + moved * abs(least_a), off_b + faint + moved * abs(least_b),
             0.5 * get(missed, WORST + 2) / outer + 3.0 * abs(1.0 - mid.y) * moved,
             0.5 * get(missed, WORST + 3) / strain + 3.0 * moved * (strain - 1.0),

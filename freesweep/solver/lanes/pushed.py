@@ -1,15 +1,19 @@
 """Along how much of a piece of half a tube fibers that may push would have to, for a vector of designs.
 
 Such fibers leave no corner: pull and length are polynomials through the places of the rule. Where the pull changes its sign
-between two places, it ends at the root of its polynomial; up to there the other is summed.
+between two places, it ends near the root of its polynomial, from which two steps of the secant lead to its end; up to there
+the other is summed.
 """
 
 from ...jit import kernel
-from .rule import COEFFICIENTS, INTEGRALS, LAST, LATE, PLACES, largest, missed_within
+from ..cells import nothing_yet
+from .meridian import look
+from .rule import COEFFICIENTS, INTEGRALS, LAST, PLACES, missed_within, summed
+from .slack_ends import SURE, pulls
 from .vector import get, isnt, mask_of, put, select, some, spread
 
-STEPS, PATIENT, CLOSE = 40, 10, 1e-13  # of the search for a root, which halves from a step on; its last one
-NONE = 1e-300
+STEPS, PATIENT, CLOSE = 40, 10, 1e-9  # of the search for a root, which halves from a step on; its last one
+NEAR, NONE = 1e-5, 1e-300  # of a piece: places beside a root
 
 
 @kernel
@@ -69,26 +73,46 @@ def root(series, left, right, before, behind, going):
 
 
 @kernel
-def length(pull, dx, series, whole, missed):
-    """``(length, what may be wrong of it)`` along which the row ``pull`` is none in a piece; x grows by the row ``dx``, by
-    the ``whole`` in all, of which so much may be ``missed``. ``series`` (2, > LAST + 1, WIDTH) is scratch.
+def end_of(family, t, steep, left, right, first, width, mid, cell, load, scratch):
+    """``(where the pull of a family ends, by how much that may be off)`` between two shares of a piece: two steps of the
+    secant from ``t``, near which the pull is as ``steep``.
     """
-    slack = get(pull, LAST) <= 0.0
+    before, pulled = t, spread(0.0)
+    for i in range(2):
+        alpha, beta = pulls(look(first + width * t, mid, cell, load, nothing_yet(t), scratch).at, load)
+        pull = alpha if family == 0 else beta
+        if i > 0:
+            moved = abs(t - before) > 0.0
+            steep = select(moved, (pull - pulled) / select(moved, t - before, 1.0), steep)
+        before, pulled = t, pull
+        t = t - pull / select(abs(steep) > NONE, steep, 1.0)
+        t = min(max(t, left), right)
+    return t, abs(t - before)
+
+
+@kernel
+def length(family, pull, dx, series, first, width, mid, cell, load, scratch):
+    """``(length, what may be wrong of it)`` along which a ``family`` (0, 1), whose row is ``pull``, would have to push in a
+    piece of that ``width`` from a ``first`` share of the depth on; x grows by the row ``dx`` along it. ``series`` (2, > LAST
+    + 1, WIDTH) is scratch.
+    """
+    slack, (whole, missed) = get(pull, LAST) <= 0.0, summed(dx)
     total, doubt, taken = select(slack, whole, 0.0), select(slack, missed, 0.0), spread(-1.0)
     left, right, before, behind, taken, there = next_end(pull, taken)
     if not some(there):
         return total, doubt
     expand(COEFFICIENTS, pull, series[0])
     expand(INTEGRALS, dx, series[1])
-    wrong, within, most = largest(pull, LATE), missed_within(dx), spread(0.0)
+    within, most = missed_within(dx), spread(0.0)
     for k in range(LAST + 1):
         most = max(most, get(dx, k))
     for _ in range(LAST):
         t = root(series[0], left, right, before, behind, there)
+        steep = (evaluate(series[0], LAST + 1, t + NEAR) - evaluate(series[0], LAST + 1, t - NEAR)) / (2.0 * NEAR)
+        t, off = end_of(family, t, steep, left, right, first, width, mid, cell, load, scratch)
         up_to = evaluate(series[1], LAST + 2, t)
         total = total + select(there, select(behind > 0.0, up_to, -up_to), 0.0)
-        steep = abs(behind - before) / (right - left) + NONE
-        doubt = doubt + select(there, within + wrong / steep * most, 0.0)
+        doubt = doubt + select(there, within + (off + SURE) * most, 0.0)
         left, right, before, behind, taken, there = next_end(pull, taken)
         if not some(there):
             break

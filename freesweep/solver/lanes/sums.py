@@ -213,7 +213,9 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
                 doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
                 doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
                 for family in range(2):
-                    told = pushed.length(rows[ALPHA + family], rows[DX], rows[SERIES:], dx, doubt)
+                    told = pushed.length(
+                        family, rows[ALPHA + family], rows[DX], rows[SERIES:], first, last - first, mid, cell, load, scratch
+                    )  # fmt: skip
                     add(numbers, SLACK + family, *told)
             for k in range(4):
                 before = get(numbers[0], WORST + k), get(numbers[1], WORST + k)
