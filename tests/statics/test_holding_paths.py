@@ -60,6 +60,20 @@ def test_a_tube_that_snaps_where_nothing_holds_it_is_held_from_where_it_was_pull
     assert held["force"].item() / unit == pytest.approx(force, rel=1e-6)
 
 
+def test_loose_fibers_that_vary_are_held_straight_where_no_step_leads_from_rest():
+    """They slacken place by place from the first load on; the free state's rotation goes back to none."""
+    tube = fs.Actuator(
+        alpha=[(0, -45.9), (0.758, 10.1), (1, -22.88)], beta=-79.9, length=22.399e-3, radius=2.68e-3,
+        wall=[(0, 0.35e-3), (0.827, 0.35e-3), (0.827, 0.185e-3), (1, 0.185e-3)], material=fs.Yeoh(53565, 651, 0),
+        model="physical",
+    )  # fmt: skip
+    held = fs.blocked_torque(tube, 5465.1, x=0.0)
+    assert (held["status"], held["stable"], held["held_path"]) == (OK, 1, 1)
+    assert held["torque"].item() == pytest.approx(
+        -2.101010e-4, rel=1e-6
+    )  # finite elements of degree 4, in another program
+
+
 MUSCLE = {
     "alpha": 28.6,
     "beta": -28.6,

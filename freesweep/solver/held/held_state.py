@@ -5,9 +5,10 @@ proportion while the undeformed length (no rotation) is held, then what is held 
 y = 1 of a tube that is the same all along is an equilibrium on this way under the load that makes L_y(1, 0) = 0: the way
 may begin there at once, as long as no state on it is unstable. Else all of it is gone, as by a tube that varies.
 
-Where the wall would have to be pushed on that way, or another length or rotation than the undeformed one is not come to,
-the other is gone: the loads rise with nothing held, then what is held changes from what was found. A tube that snaps on
-that way may not do so where the load that will hold it, as large as all others, rises as well. Without pressure neither
+Where the wall would have to be pushed on that way, or it leads nowhere (another length or rotation than the undeformed one
+is not come to, or steps die out where no turn is, or none begins: loose fibers), the other is gone: the loads rise with
+nothing held, then what is held changes from what was found. A tube that snaps on that way may not do so where the load that
+will hold it, as large as all others, rises as well. Without pressure neither
 way begins; they go to a pressure like the wall's stiffness, which is lowered at the end.
 
 A tube that is the same all along, or its own mirror image, keeps a symmetric state. Beyond a critical pressure of blocked
@@ -58,7 +59,7 @@ def find(problem, asked, tube, accuracy, room):
             necked = with_neck(room, tube, end, sought, accuracy)
             if valued(necked.status):
                 return necked
-    lost = sought.wanted != sought.natural and not (came_to and found.status == NOT_CONVERGED)
+    lost = (sought.wanted != sought.natural or not found.sure) and not (came_to and found.status == NOT_CONVERGED)
     if found.status == COMPRESSED or (lost and not valued(found.status)):
         snaps = True
         for pull in PULLS:
