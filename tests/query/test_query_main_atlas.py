@@ -23,7 +23,7 @@ def campaign(atlas, designs=DESIGNS, seed=SEED):
     points = {name: draw.uniform(*span, designs) for name, span in spans.items()}
     shares, variables = [], []
     for key in ("state", "locked"):
-        family, names = FAMILIES[key], list(FAMILIES[key].variables)
+        family, names = FAMILIES[key], [name for name in FAMILIES[key].variables if name in reader.names]
         found = atlas.query(variables=names, **points)
         answered = np.isin(found[family.status].values, VALUED)
         solved = exact_answers(reader, key, as_points(reader, key, reader.complete(points, designs)), names, 1e-8)
