@@ -77,7 +77,7 @@ def along(first, last, mid, cell, load, near, whole, rows, scratch):
         if not whole:
             put(rows[SHORT], k, here.short)
             continue
-        s, volume, psi, energy = lagrangian.summed(at, y, here.cosine, mid.level, cell, load)
+        s, volume, psi, energy = lagrangian.summed(at, y, here.cosine, cell, load)
         put(rows[LENGTH], k, dx * (s - mid.s))
         put(rows[VOLUME], k, dx * (volume - mid.y * mid.y * mid.s))
         put(rows[TWIST], k, dx * (psi - mid.psi))

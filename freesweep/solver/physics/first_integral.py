@@ -202,20 +202,7 @@ def energy_of(y, G_1, psi, cell, load, wall):
 
 
 @kernel
-def summed(at, y, cosine, level, cell, load):
-    """``(s, y^2 s, psi, W)`` of a place of that ``level``, whose meridian has that cosine."""
-    uniform = sqrt(max(1.0 + at.G_1, NO_ROOM))
-    s = uniform * cosine
-    return s, y * y * s, at.psi, energy_at(at, y, uniform, level, cell, load, load.wall)
-
-
-@kernel
-def energy_at(at, y, s, level, cell, load, wall):
-    """Energy W of the wall at a place: what its level leaves, where it counts."""
-    if len(wall) == 1:
-        return energy_of(y, at.G_1, at.psi, cell, load, wall)
-    counts = load.e > 0.0
-    W = (at.R * s + load.m * at.psi - level) / select(counts, load.e, 1.0)
-    if some(isnt(counts)):
-        W = select(counts, W, energy_of(y, at.G_1, at.psi, cell, load, wall))
-    return W
+def summed(at, y, cosine, cell, load):
+    """``(s, y^2 s, psi, W)`` of a place, whose meridian has that cosine."""
+    s = sqrt(max(1.0 + at.G_1, NO_ROOM)) * cosine
+    return s, y * y * s, at.psi, energy_of(y, at.G_1, at.psi, cell, load, load.wall)

@@ -17,13 +17,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
+from ..either import select
 
 TERMS = 10  # of a Gauss rule, whose mean of 1/(1 + i x) stands for atanh(i)/i: 1e-11 off at i = 1/2, where b = 81 a
 _PLACES, _WEIGHTS = (row[TERMS // 2 :] for row in np.polynomial.legendre.leggauss(TERMS))
 _FACTORS = [np.polynomial.Polynomial([1.0, -x * x]) for x in _PLACES]  # two places together
 _BELOW = np.prod(_FACTORS)
 _ABOVE = sum(w * np.prod([*_FACTORS[:j], *_FACTORS[j + 1 :]]) for j, w in enumerate(_WEIGHTS))
-BELOW, ABOVE = _BELOW.coef[::-1].copy(), _ABOVE.coef[::-1].copy()
+BELOW, ABOVE = _BELOW.coef[::-1].copy(), np.append(_ABOVE.coef[:0:-1], 1.0)  # what has no range is exact
 NO_ROOM = 1e-30  # stands for a b where the innermost layer would reach the axis
 
 
@@ -38,10 +39,13 @@ class Section(NamedTuple):
 
 
 class Known(NamedTuple):
-    """``1/G, 1/sqrt(G)``, mean of q, product of its ends, mean of 1/q."""
+    """``1/G, 1/sqrt(G), sqrt(G)`` (by which d follows from q: none of a membrane), mean of q, product of its ends, mean of
+    1/q.
+    """
 
     e: float
     root: float
+    per_root: float
     q: float
     ends: float
     one: float
@@ -74,17 +78,17 @@ def known(y, G_1, section):
     root = sqrt(e)
     q, half = y * y + section.d * root, section.half * root
     ends = max((q - half) * (q + half), NO_ROOM)
-    return Known(e, root, q, ends, mean_reciprocal(q, half, ends))
+    per_root = select(half > 0.0, (1.0 + G_1) * root, 0.0)
+    return Known(e, root, per_root, q, ends, mean_reciprocal(q, half, ends))
 
 
 @kernel
 def energy(y, G_1, psi, c, section, own):
     """W where what is :class:`Known` is ``own``."""
     area, k, d, _, reciprocal = section
-    e, root, q, _, one = own
+    e, root, per_root, q, _, one = own
     n, hoop, both = k * psi * psi, (y - 1.0) * (y + 1.0), G_1 * y * y + (y - 1.0) * (y + 1.0)
-    per_root = (1.0 + G_1) * root
-    wide = G_1 / (per_root + 1.0)  # 1/root - 1, with all its digits
+    wide = G_1 / ((1.0 + G_1) * root + 1.0)  # 1/root - 1, with all its digits
     bend, away = root * wide, (1.0 - y * y * one) * per_root  # 1 - root; mean of d/q
     # means of q/rho^2 - 1, rho^2/(G q) - 1; of G q/rho^2 - 1, rho^2/q - 1
     first = (hoop + bend) * reciprocal - bend - e * (both * one + wide * away)
@@ -98,9 +102,8 @@ def rising(y, G_1, psi, c, section, own):
     ``d rho^2/q^2``, and d times W_q.
     """
     _, k, d, _, i = section
-    e, root, q, ends, one = own
-    y2, n, G = y * y, k * psi * psi, 1.0 + G_1
-    per_root, two = G * root, 1.0 / ends
+    e, root, per_root, q, ends, one = own
+    y2, n, G, two = y * y, k * psi * psi, 1.0 + G_1, 1.0 / ends
     one_q = one + (1.0 - y2 * one) * per_root  # mean of rho^2/q
     two_q = two + (one - y2 * two) * per_root
     d_two = (one_q - y2 * two_q) * per_root
@@ -136,9 +139,9 @@ def slopes(y, G_1, psi, c, section):
 def slopes_of(y, G_1, psi, c, section, own):
     """:func:`slopes` where what is :class:`Known` is ``own``."""
     area, k, d, _, i = section
-    e, root, q, ends, _ = own
+    e, root, per_root, q, ends, _ = own
     (W_y, W_G, W_p), (one_q, two_q, d_two, w_q, d_w_q) = rising(y, G_1, psi, c, section, own)
-    y2, n, g, per_root = y * y, k * psi * psi, -0.5 * root * e, (1.0 + G_1) * root
+    y2, n, g = y * y, k * psi * psi, -0.5 * root * e
     two = 1.0 / ends
     three = q * two * two
     three_q = three + (two - y2 * three) * per_root
