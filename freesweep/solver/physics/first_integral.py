@@ -26,7 +26,7 @@ LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it 
 
 class Level(NamedTuple):
     """What is known of a place: room, the resultant R, how R - T rises with y; G - 1, twist rate; which families are
-    taut, and their multipliers, of a slack one, below 0, what it lacks of being taut.
+    taut, and their multipliers, of a slack one, below 0, what it lacks of being taut; and e W.
     """
 
     room: float
@@ -37,6 +37,7 @@ class Level(NamedTuple):
     kind: float
     a: float
     b: float
+    weighed: float
 
 
 @kernel
@@ -49,7 +50,7 @@ def levelled(y, level, cell, load):
     _, G_1, psi, alpha, beta = place(y, 0.0 * y, R, cell, load)
     going = y > 0.0
     for _ in range(LEVELS):
-        better = under((level, level), given, G_1, psi)
+        better, _ = under((level, level), given, G_1, psi)
         change = abs(better - R)
         R = select(going, better, R)
         going = going & (change > CLOSE * R)
@@ -84,7 +85,7 @@ def level_of_membrane(y, level, cell, load):
     R = max((level + area * w - m * psi) / s, NO_ROOM)
     L_y = 2.0 * p * y * s + 0.5 * R * G_y / s - area * w_y + m * psi_y
     alpha, beta = membrane.multipliers(y, R / s, cell, load)
-    return Level(min(G, p * y * y + load.f), R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, alpha, beta)
+    return Level(min(G, p * y * y + load.f), R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, alpha, beta, area * w)
 
 
 @kernel
@@ -107,7 +108,7 @@ def level_of_wall(y, level, cell, load, near):
         return Level(
             select(taut, at.room, slack.room), select(taut, at.R, slack.R), select(taut, at.rise, slack.rise),
             select(taut, at.G_1, slack.G_1), select(taut, at.psi, slack.psi), select(taut, at.kind, slack.kind),
-            select(taut, at.a, slack.a), select(taut, at.b, slack.b),
+            select(taut, at.a, slack.a), select(taut, at.b, slack.b), select(taut, at.weighed, slack.weighed),
         )  # fmt: skip
     return level_where_slack(y, level, cell, load, near)
 
@@ -124,7 +125,7 @@ def level_if_taut(y, level, cell, load):
     ta, tb = H + D + psi, H - D + psi
     L_y = 2.0 * load.p * y * s - W_y - 2.0 * y * (a * ta * ta + b * tb * tb)
     room = room_of(y, 1.0 + G_1, load)
-    return Level(room, R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, a, b)
+    return Level(room, R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, a, b, W)
 
 
 @kernel
@@ -139,7 +140,7 @@ def level_where_slack(y, level, cell, load, near):
     """:func:`at_level` where families may be slack."""
     H, D, gg, wall, still = cell[0], cell[1], load.gamma * load.gamma, load.wall, 0.0 * y
     given = given_at(y, still, cell, load)
-    known, kind, G_1, psi, dG, dpsi, W, R = beside(given, (level, level), near)
+    known, kind, G_1, psi, dG, dpsi, W, R, weighed = beside(given, (level, level), near)
     alpha, beta = is_taut(kind)
     lost = isnt(known)
     if some(lost):
@@ -147,13 +148,15 @@ def level_where_slack(y, level, cell, load, near):
         R, G_1, psi = select(lost, other, R), select(lost, wide, G_1), select(lost, twist, psi)
         dG, dpsi = select(lost, still, dG), select(lost, still, dpsi)
         alpha, beta = (lost & with_alpha) | (known & alpha), (lost & with_beta) | (known & beta)
-        V = slopes_at(given, G_1, psi)
+        V, whole = slopes_at(given, G_1, psi), stored(y, G_1, psi, given.area, given.rubber, given.wall)
+        weighed = select(lost, whole, weighed)
         W = (
             select(lost, V[0], W[0]), select(lost, V[1], W[1]), select(lost, V[2], W[2]), select(lost, V[3], W[3]),
             select(lost, V[4], W[4]), select(lost, V[5], W[5]), select(lost, V[6], W[6]), select(lost, V[7], W[7]),
             select(lost, V[8], W[8]),
         )  # fmt: skip
-    W_y, W_G, W_p, _, W_yG, W_yp, W_GG, W_Gp, _ = W
+    W_y, W_G, W_p, _, W_yG, W_yp, W_GG, W_Gp, W_pp = W
+    weighed = weighed + (W_G + 0.5 * W_GG * dG + W_Gp * dpsi) * dG + (W_p + 0.5 * W_pp * dpsi) * dpsi
     s = sqrt(max(1.0 + G_1, NO_ROOM))
     i = 1.0 / s
     a, b = multipliers(y, s, psi, (alpha, beta), cell, R, load.m, W_G, W_p)
@@ -170,7 +173,7 @@ def level_where_slack(y, level, cell, load, near):
     a = select(alpha, a + select(both, 0.0, more), -max(lack_a, 0.0))
     b = select(beta, b + select(both, 0.0, more), -max(lack_b, 0.0))
     G = 1.0 + G_1
-    return Level(room_of(y, G, load), R, -L_y / s, G_1, psi, kind_of(alpha, beta), a, b)
+    return Level(room_of(y, G, load), R, -L_y / s, G_1, psi, kind_of(alpha, beta), a, b, weighed)
 
 
 @kernel
@@ -204,5 +207,8 @@ def energy_of(y, G_1, psi, cell, load, wall):
 @kernel
 def summed(at, y, cosine, cell, load):
     """``(s, y^2 s, psi, W)`` of a place, whose meridian has that cosine."""
-    s = sqrt(max(1.0 + at.G_1, NO_ROOM)) * cosine
-    return s, y * y * s, at.psi, energy_of(y, at.G_1, at.psi, cell, load, load.wall)
+    s, counts = sqrt(max(1.0 + at.G_1, NO_ROOM)) * cosine, load.e > 0.0
+    W = at.weighed / select(counts, load.e, 1.0)
+    if some(isnt(counts)):
+        W = select(counts, W, energy_of(y, at.G_1, at.psi, cell, load, load.wall))
+    return s, y * y * s, at.psi, W

@@ -98,7 +98,7 @@ def place_beside(y, v, T, cell, load, near):
         return room, G_1, psi, zero, zero, alpha, beta, slopes_at(given, G_1, psi)
     low, widest, _, _ = spread_of(given)
     room = min(widest - low, T)
-    known, kind, G_1, psi, dG, dpsi, W, _ = beside(given, (max(T, NO_ROOM),), near)
+    known, kind, G_1, psi, dG, dpsi, W, _, _ = beside(given, (max(T, NO_ROOM),), near)
     alpha, beta = is_taut(kind)
     if some(isnt(known)):
         other, width, twist, with_alpha, with_beta = place(y, v, T, cell, load)

@@ -187,14 +187,14 @@ def settle(given, T):
 
 @kernel
 def under(pull, given, G_1, psi):
-    """The resultant that is meant by ``pull``: (T,), that one; (level, level), the one under which the density of a uniform
-    tube, ``T sqrt(G) - W + m psi``, has that level. Of all G and psi it is least at those that the fibers take under it:
-    what they are off counts by its square.
+    """``(the resultant that is meant by pull, W)``: (T,), that one, without W; (level, level), the one under which the density
+    of a uniform tube, ``T sqrt(G) - W + m psi``, has that level. Of all G and psi it is least at those that the fibers take
+    under it: what they are off counts by its square.
     """
     if len(pull) == 1:
-        return pull[0]
+        return pull[0], 0.0 * given.y
     W = stored(given.y, G_1, psi, given.area, given.rubber, given.wall)
-    return max((pull[0] + W - given.m * psi) / axial(1.0 + G_1, 0.0 * given.y), NO_ROOM)
+    return max((pull[0] + W - given.m * psi) / axial(1.0 + G_1, 0.0 * given.y), NO_ROOM), W
 
 
 @kernel
@@ -246,8 +246,8 @@ def beside(given, pull, near):
     nothing is known, y, v, psi, psi_y, psi_v, G - 1, G_y, G_v), under a ``pull`` (:func:`under`). A family that would have
     to push goes slack, a slack one that is overreached goes taut; where none does any more, this is the maximum.
 
-    Returns ``(known, which families are taut, G - 1, psi, dG, dpsi, slopes of W, the resultant)``. The last change, which is
-    too small to look once more, is not yet made.
+    Returns ``(known, which families are taut, G - 1, psi, dG, dpsi, slopes of W, the resultant, W of a level)``. The last
+    change, which is too small to look once more, is not yet made.
     """
     y, v, H, D, gg, m, _, _, wall = given
     stretch, low, still = gg - 1.0, max(v * v, narrowest(y, wall)) - 1.0, 0.0 * y
@@ -255,13 +255,14 @@ def beside(given, pull, near):
     kind, both, t, G_1, psi = first_look(given, near)
     known, bonded = y > 0.0, y == y if wall[2] == ONE_BONDED else y < y
     dpsi, dG, going, W = still, still, known, (still, still, still, still, still, still, still, still, still)
-    T = still + pull[0]
+    T, whole = still + pull[0], still
     for _ in range(NEARBY):
         known = known & (isnt(going) | (G_1 > low))
         going = going & known
         if not some(going):
             break
-        W, s, before, T = slopes_at(given, G_1, psi), axial(1.0 + G_1, v), kind, under(pull, given, G_1, psi)
+        W, s, before = slopes_at(given, G_1, psi), axial(1.0 + G_1, v), kind
+        T, whole = under(pull, given, G_1, psi)
         a, b = multipliers(y, s, psi, (both, both), (H, D), T, m, W[1], W[2])
         kind = select(
             both,
@@ -280,4 +281,4 @@ def beside(given, pull, near):
         both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
         to_G_1 = select(both, both_G_1, select(more & none, reach(y, to_psi, t, stretch), to_G_1))
         psi, G_1 = select(going, select(both, both_psi, to_psi), psi), select(going, to_G_1, G_1)
-    return known & isnt(going), kind, G_1, psi, dG, dpsi, W, T
+    return known & isnt(going), kind, G_1, psi, dG, dpsi, W, T, whole
