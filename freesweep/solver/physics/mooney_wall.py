@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from ..either import select
 
 TERMS = 10  # of a Gauss rule, whose mean of 1/(1 + i x) stands for atanh(i)/i: 1e-11 off at i = 1/2, where b = 81 a
 _PLACES, _WEIGHTS = (row[TERMS // 2 :] for row in np.polynomial.legendre.leggauss(TERMS))
@@ -39,9 +38,7 @@ class Section(NamedTuple):
 
 
 class Known(NamedTuple):
-    """``1/G, 1/sqrt(G), sqrt(G)`` (by which d follows from q: none of a membrane), mean of q, product of its ends, mean of
-    1/q.
-    """
+    """``1/G, 1/sqrt(G), sqrt(G)``, mean of q, product of its ends, mean of 1/q."""
 
     e: float
     root: float
@@ -78,8 +75,7 @@ def known(y, G_1, section):
     root = sqrt(e)
     q, half = y * y + section.d * root, section.half * root
     ends = max((q - half) * (q + half), NO_ROOM)
-    per_root = select(half > 0.0, (1.0 + G_1) * root, 0.0)
-    return Known(e, root, per_root, q, ends, mean_reciprocal(q, half, ends))
+    return Known(e, root, (1.0 + G_1) * root, q, ends, mean_reciprocal(q, half, ends))
 
 
 @kernel
@@ -88,7 +84,7 @@ def energy(y, G_1, psi, c, section, own):
     area, k, d, _, reciprocal = section
     e, root, per_root, q, _, one = own
     n, hoop, both = k * psi * psi, (y - 1.0) * (y + 1.0), G_1 * y * y + (y - 1.0) * (y + 1.0)
-    wide = G_1 / ((1.0 + G_1) * root + 1.0)  # 1/root - 1, with all its digits
+    wide = G_1 / (per_root + 1.0)  # 1/root - 1, with all its digits
     bend, away = root * wide, (1.0 - y * y * one) * per_root  # 1 - root; mean of d/q
     # means of q/rho^2 - 1, rho^2/(G q) - 1; of G q/rho^2 - 1, rho^2/q - 1
     first = (hoop + bend) * reciprocal - bend - e * (both * one + wide * away)

@@ -187,9 +187,9 @@ def settle(given, T):
 
 @kernel
 def under(pull, given, G_1, psi):
-    """``(the resultant that is meant by pull, W)``: (T,), that one, without W; (level, level), the one under which the density
-    of a uniform tube, ``T sqrt(G) - W + m psi``, has that level. Of all G and psi it is least at those that the fibers take
-    under it: what they are off counts by its square.
+    """``(the resultant that is meant by pull, W)``: (T,), that one, without W; (level, level), the one under which the
+    density of a uniform tube, ``T sqrt(G) - W + m psi``, has that level. Of all G and psi it is least at those that the
+    fibers take under it: what they are off counts by its square.
     """
     if len(pull) == 1:
         return pull[0], 0.0 * given.y
