@@ -83,3 +83,16 @@ def test_density_of_a_cell_is_its_mean_along_it():
         unit = max(abs(L_yy), abs(L_yv), abs(L_vv), 1.0)
         for found, wanted in ((along_y[1], L_yy), (along_y[2], L_yv), (along_v[1], L_yv), (along_v[2], L_vv)):
             assert found / (2 * e) == pytest.approx(wanted, abs=1e-4 * unit)
+
+
+def test_loose_fibers_that_vary_begin_under_a_torque():
+    """From rest on full steps of Newton's method go to and fro between slack places at any share of these loads."""
+    tube = fs.Actuator(
+        alpha=[(0, -45.9), (0.758, 10.1), (1, -22.88)], beta=-79.9, length=22.399e-3, radius=2.68e-3,
+        wall=[(0, 0.35e-3), (0.827, 0.35e-3), (0.827, 0.185e-3), (1, 0.185e-3)], material=fs.Yeoh(53565, 651, 0),
+        model="physical",
+    )  # fmt: skip
+    state = fs.inflate(tube, 5465.1, torque=-2.1010101156600559e-4, x=0.0)
+    assert (state["status"], state["stable"]) == (OK, 1)
+    # finite elements of degree 4 in another program: the torque that holds it straight
+    assert abs(state["rotation"].item()) < state["rotation_error"].item() < 1e-6

@@ -1,12 +1,13 @@
 """The mesh of a branch, graded by the state that stands on it."""
 
 from ...jit import kernel
-from ..numerics import nested
-from ..numerics.bordered import FOLLOWED, correct
+from ..numerics import nested, newton
+from ..numerics.bordered import CORRECTED, FOLLOWED, correct
 from ..numerics.continuation import make_unit
 from ..numerics.path import load_at, size_of
 from ..numerics.properties_along import fill
 from ..of_tube import of_tube
+from ..physics.wall import may_go_slack
 
 GRADINGS = 3  # of the first mesh
 
@@ -39,12 +40,35 @@ def stand(track, tube, path, mu, sense, gradings, work):
     made = 0
     while True:
         own = fill(course, edges, track.x, n, n, cells)
+        for i in range(len(track.y)):
+            track.next_y[i] = track.y[i]
         status, negative, _, tangent_mu = correct(
             of_tube(), track, track.y, mu, n, own, path, sense, track.tangent, work
         )
+        if (
+            status != FOLLOWED
+            and not path.held.any
+            and may_go_slack(path.origin.wall)
+            and settle(track, tube, path, mu, own, work)
+        ):
+            status, negative, _, tangent_mu = correct(
+                of_tube(), track, track.y, mu, n, own, path, sense, track.tangent, work
+            )
         if status != FOLLOWED or made == gradings or not regrade(track, tube, path, mu, work):
             return status, negative, make_unit(track, n, mu, tangent_mu, path)
         made += 1
+
+
+@kernel
+def settle(track, tube, path, mu, own, work):
+    """Whether shortened steps lead from the shape in ``track.next_y`` to the state at ``mu``, into ``track.y``: full ones
+    may go to and fro between shapes at which other places of loose fibers are slack.
+    """
+    n = len(track.x) - 1
+    for i in range(len(track.y)):
+        track.y[i] = track.next_y[i]
+    on, now = newton.Mesh(track.x, n, tube.half, own), load_at(path, track.y, n, mu)
+    return newton.solve(of_tube().density, track.y, on, now, newton.UNKNOWN, CORRECTED, work)[0] == newton.CONVERGED
 
 
 @kernel
