@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .problem import LENGTH, PROBLEM_SIZE
+from .problem import LENGTH
 
 
 def in_two_halves(problem, cells):
@@ -15,11 +15,11 @@ def in_two_halves(problem, cells):
 def one_by_one(problems, first, tube, by_halves=False):
     """``(problems, rows, first, tube)`` as kernels take them, two slices among them: of all problems together, or of each.
 
-    ``tube`` is their (course, edges, places), without a course where they do not vary; ``by_halves``: the source's are all
-    solved at once then, each up to its plane of symmetry.
+    ``tube`` is their (course, edges, places), without a course where they do not vary; ``by_halves``: all are
+    solved at once then, each up to its plane of symmetry: a whole one may leave its symmetric branch unseen.
     """
     course, edges, _ = tube
-    if len(course) or (by_halves and problems.shape[1] == PROBLEM_SIZE):
+    if len(course) or by_halves:
         yield slice(None), slice(None), first, tube
         return
     for k, (begin, end) in enumerate(zip(first[:-1].tolist(), first[1:].tolist())):

@@ -24,12 +24,14 @@ def pushed(y, cells, load):
 
 
 @kernel
-def unstable_directions(x, y, n, base, tube, load, direction, held_size, work):
+def unstable_directions(x, y, n, base, tube, load, direction, held_size, is_wave, work):
     """Directions, symmetric or not, in which the energy falls while the held integral stays; and by how much the rounding
     of that integral, of size ``held_size`` but for what changes with y, moves its multiplier.
 
     Where half a tube was solved, its symmetric directions move the middle, its antisymmetric ones hold it and leave the
-    integral as it is.
+    integral as it is. Of these ``is_wave`` knows that there are none: y' of a tube that is the same all along is a Jacobi
+    field, and where it vanishes in the middle alone, Sturm's theorem tells what a mesh may not see, as a wave between long
+    uniform parts is moved along by next to nothing.
     """
     course, edges, cells, free, _, _ = tube
     own = fill(course, edges, x, n, base, cells)
@@ -41,7 +43,7 @@ def unstable_directions(x, y, n, base, tube, load, direction, held_size, work):
     negative = newton.factor(d, e, 1, n - 1, inverse)
     last = n if free else n - 1
     if free:
-        negative += newton.factor(d, e, 1, n, inverse)
+        negative = newton.factor(d, e, 1, n, inverse) + (0 if is_wave else negative)
     _, k = held.hold(lagrangian.conjugate, x, y, n, own, load, direction, b)
     newton.substitute(inverse, e, 1, last, b, response)
     whole = 2.0 if free else 1.0

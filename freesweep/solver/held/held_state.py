@@ -11,6 +11,8 @@ nothing held, then what is held changes from what was found. A tube that snaps o
 will hold it, as large as all others, rises as well. Without pressure neither
 way begins; they go to a pressure like the wall's stiffness, which is lowered at the end.
 
+Where loose fibers of that cylinder are slack it may lie on another branch: such tubes always begin from rest.
+
 A tube that is the same all along, or its own mirror image, keeps a symmetric state. Beyond a critical pressure of blocked
 torque an antisymmetric mode makes it unstable, which is no obstacle on the way; somewhat later, with fiber extension, the
 branch turns back, at most designs for good: BEYOND_LIMIT.
@@ -19,6 +21,7 @@ branch turns back, at most designs for good: BEYOND_LIMIT.
 from ...jit import kernel
 from ..load import SPARED
 from ..physics import lagrangian
+from ..physics.wall import may_go_slack
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from . import ways
 from .settle import finish, settle, with_neck
@@ -55,7 +58,8 @@ def find(problem, asked, tube, accuracy, room):
         end = first_way(room, tube, sought)
         came_to = end.status == OK
         found, end = settle(room, tube, end, sought, FROM_REST, accuracy)
-        if not valued(found.status) and not found.sure and found.status != COMPRESSED and not sought.varies:
+        alike = not (sought.varies or may_go_slack(load.wall))
+        if not valued(found.status) and not found.sure and found.status != COMPRESSED and alike:
             necked = with_neck(room, tube, end, sought, accuracy)
             if valued(necked.status):
                 return necked
@@ -85,7 +89,7 @@ def borne(pull, sought):
 def first_way(room, tube, sought):
     """The way from rest, as far as it goes: by a tube that is the same all along from the straight cylinder, if it may."""
     there, unit, natural, wanted = sought.with_pressure, sought.unit, sought.natural, sought.wanted
-    if not sought.varies:
+    if not (sought.varies or may_go_slack(there.wall)):
         end = from_cylinder(room, tube, sought)
         if end.status == OK or end.status == COMPRESSED:
             return end

@@ -110,7 +110,8 @@ def find_on_some_mesh(problem, asked, tube, accuracy, room):
             differed = False
             break
         differed = doubtful and not same
-        ended = abs(again.reached - found.reached) <= ENDED * found.reached and 0.0 < found.reached < 1.0
+        near = abs(again.reached - found.reached) <= ENDED * found.reached and 0.0 < found.reached < 1.0
+        ended = near and again.status == found.status  # for other reasons they end near each other by chance
         found, tube, room = again, finer_tube, finer_room
         settled = found.status == OK or found.status == COMPRESSED or found.sure
         doubtful = valued(found.status) and found.unstable > 0 and not same

@@ -111,10 +111,14 @@ def finish(room, tube, sought, found):
     space, edges, out = room.space, tube.edges, room.space.out
     base = edges[len(edges) - 1]
     size = (2.0 if tube.half else 1.0) * max(abs(sought.wanted), abs(sought.natural))
+    count = base << found.doublings
+    x, y = space.fine[0], space.fine[1, : count + 1]
+    necked, least = not sought.varies and necked_shape.depth_of(y) > 0.0, necked_shape.ROUNDED_OFF
+    is_wave = not sought.varies and abs(y[necked_shape.neck_of(y)] - 1.0) <= least < abs(y[count] - 1.0)
     unstable, rounding = unstable_directions(
-        space.fine[0], space.fine[1], base << found.doublings, base, tube, found.load, sought.unit, size, space.work
-    )
-    if not sought.varies and necked_shape.depth_of(space.y) > 0.0:
+        x, space.fine[1], count, base, tube, found.load, sought.unit, size, is_wave, space.work
+    )  # fmt: skip
+    if necked:
         unstable = max(unstable, 1)  # of which a mesh may know nothing
     out[1, nested.MULTIPLIER] += rounding
     out[0, nested.MULTIPLIER] *= sought.scale
