@@ -9,10 +9,9 @@ from ...jit import kernel
 from ..cells import nothing_yet
 from .meridian import look
 from .rule import COEFFICIENTS, INTEGRALS, LAST, PLACES, missed_within, summed
-from .slack_ends import SURE, pulls
+from .slack_ends import CLOSE, STEPS, SURE, narrowed, pulls, trial
 from .vector import get, isnt, mask_of, put, select, some, spread
 
-STEPS, PATIENT, CLOSE = 40, 10, 1e-9  # of the search for a root, which halves from a step on; its last one
 NEAR, NONE = 1e-5, 1e-300  # of a piece: places beside a root
 
 
@@ -52,23 +51,15 @@ def next_end(pull, taken):
 
 @kernel
 def root(series, left, right, before, behind, going):
-    """Where the polynomial of the ``series`` is none between two shares: the regula falsi of Anderson and Bjorck."""
+    """Where the polynomial of the ``series`` is none between two shares of the piece."""
     t = right
     for i in range(STEPS):
-        new = right - behind * (right - left) / select(going, behind - before, 1.0)
-        halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)
-        new = select((new > left) & (new < right) & isnt(halved), new, 0.5 * (left + right))
-        moved = abs(new - t)
-        t = select(going, new, t)
+        new = trial(i, left, right, before, behind, going)
+        moved, t = abs(new - t), select(going, new, t)
         going = going & (moved > CLOSE)
         if not some(going):
             break
-        pull = evaluate(series, LAST + 1, t)
-        same = pull * behind > 0.0
-        share = 1.0 - pull / select(same, behind, before)
-        share = select(share > 0.0, share, 0.5)
-        before, behind = select(same, before * share, pull), select(same, pull, behind * share)
-        left, right = select(same, left, t), select(same, t, right)
+        left, right, before, behind = narrowed(evaluate(series, LAST + 1, t), t, left, right, before, behind)
     return t
 
 

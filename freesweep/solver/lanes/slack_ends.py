@@ -58,6 +58,28 @@ def passed_over(pull, lengths, last):
 
 
 @kernel
+def trial(i, left, right, before, behind, going):
+    """The next share t of a bracket at whose ends a pull is ``before`` and ``behind``: by the regula falsi, which halves it
+    from some steps on, as where a pull ends without a slope.
+    """
+    new = right - behind * (right - left) / select(going, behind - before, 1.0)
+    halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)
+    return select((new > left) & (new < right) & isnt(halved), new, 0.5 * (left + right))
+
+
+@kernel
+def narrowed(pull, t, left, right, before, behind):
+    """``(left, right, before, behind)`` of a bracket in which the ``pull`` at t is known; an end that stays counts for less
+    (Anderson and Bjorck).
+    """
+    same = pull * behind > 0.0
+    share = 1.0 - pull / select(same, behind, before)
+    share = select(share > 0.0, share, 0.5)
+    before, behind = select(same, before * share, pull), select(same, pull, behind * share)
+    return select(same, left, t), select(same, t, right), before, behind
+
+
+@kernel
 def search(ends, j, going, mid, cell, load, near, scratch):
     """``(t, doubt)``: the share of the depth at which the end j of the lanes that are ``going`` lies, each within its
     bracket, and by how much it may be off.
@@ -66,21 +88,13 @@ def search(ends, j, going, mid, cell, load, near, scratch):
     before, behind, of_alpha = get(ends[BEFORE], j), get(ends[BEHIND], j), get(ends[FAMILY], j) < 0.5
     t = select(going, right + 1.0, 1.0)
     for i in range(STEPS):
-        new = right - behind * (right - left) / select(going, behind - before, 1.0)
-        halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)  # where a pull ends without a slope
-        new = select((new > left) & (new < right) & isnt(halved), new, 0.5 * (left + right))
-        moved = abs(new - t)
-        t = select(going, new, t)
+        new = trial(i, left, right, before, behind, going)
+        moved, t = abs(new - t), select(going, new, t)
         going = going & (moved > CLOSE)
         if not some(going):
             break
         alpha, beta = pulls(look(t, mid, cell, load, near, scratch).at, load)
-        pull = select(of_alpha, alpha, beta)
-        same = pull * behind > 0.0
-        share = 1.0 - pull / select(same, behind, before)
-        share = select(share > 0.0, share, 0.5)
-        before, behind = select(same, before * share, pull), select(same, pull, behind * share)
-        left, right = select(same, left, t), select(same, t, right)
+        left, right, before, behind = narrowed(select(of_alpha, alpha, beta), t, left, right, before, behind)
     return t, select(going, right - left, SURE)
 
 
