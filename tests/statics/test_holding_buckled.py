@@ -140,9 +140,8 @@ def test_fronts_that_no_mesh_follows(design, share, length, torque, neck):
     stations = actuator.length * (1.0 - np.linspace(0.0, 0.7, 400) ** 2)[::-1]
     held = blocked_torque(actuator, share * critical_of(actuator), buckled=True, x=stations)
     assert (held["status"], held["stable"]) == (OK, 1)
-    assert held["deformed_length"].item() / R == pytest.approx(
-        length, rel=8e-10
-    )  # 1e-12 of the pressure is 3e-10 of it
+    # 1e-12 of the pressure is 3e-10 of the length
+    assert held["deformed_length"].item() / R == pytest.approx(length, rel=8e-10)
     assert abs(held["deformed_length"].item() - length * R) < held["deformed_length_error"].item() + 2e-10 * length * R
     assert held["torque"].item() / (np.pi * R**3 * RUBBER) == pytest.approx(torque, rel=1e-9)
     assert held["deformed_radius"].values.min() / R == pytest.approx(neck, rel=2e-4)
