@@ -39,7 +39,7 @@ def test_gauss_points_are_as_many_as_the_wall_asks_for(thickness, fibers):
     assert 2 <= wall.points(inner**2, outer**2 - inner**2) <= 20
 
 
-@pytest.mark.parametrize(("rubber", "digits"), [((0.5,), 2e-10), ((0.0,), 2e-10), ((0.5, 0.1, 0.02), 1e-3)])
+@pytest.mark.parametrize(("rubber", "digits"), [((0.5,), 2e-10), ((0.0,), 2e-10), ((0.5, 0.1, 0.02), 1e-7)])
 def test_a_wall_whose_hole_all_but_closes_keeps_its_energy(rubber, digits):
     """A tube that is pulled and turned is thick where it is thin: r_i falls to a tenth of r_o."""
     for inner, y, G, psi in (

@@ -13,10 +13,9 @@ A membrane is the one layer rho = 1 of the weight a = rho_o^2 - rho_i^2. A thick
 summed exactly (:mod:`mooney_wall`), that of another at Gauss points. Its integrand is a rational function of rho^2 with
 poles at 0, where q vanishes, and at infinity. With p the nearer one of the first two, g^2 = (rho_i^2 - p) (rho_o^2 - p)::
 
-    rho^2 = p + g (1 + t)/(1 - t),    |t| <= (sqrt(rho_o^2 - p) - sqrt(rho_i^2 - p))/(the sum of both)
+    rho^2 = p + g ((1 + t)/(1 - t))^2,    |t| <= (1 - r^2)/(1 + r^2),    r^8 = (rho_i^2 - p)/(rho_o^2 - p)
 
-has poles at 1 and -1 only, far from a wall of any thickness: a rule of n points errs by ``((1 - r)/(1 + r))^(2 n)``, r^4
-the ratio of ``rho_i^2 - p`` and ``rho_o^2 - p``.
+has poles on the unit circle only, far from a wall of any thickness: a rule of n points errs as ``((1 - r)/(1 + r))^(2 n)``.
 
 ``wall`` is (k, inner, threads): ``inner`` = rho_i^2, or 0 for a membrane; ``threads`` says which families of fibers there
 are, and whether they may push (:mod:`relaxed`). In vectors of designs it is (k, inner, threads, layers, mean of 1/rho^2),
@@ -36,9 +35,9 @@ from .mooney_wall import Section, mean_reciprocal
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 20  # Gauss points
-MISSED = 1e-12  # of the energy: what they may leave; forces lose three digits of it
-# a load may leave what is left of the squared inner radius of a wall so much thicker, or so much of its own
-NARROWER, DEEPER = 3.0, 0.05
+MISSED = 1e-14  # of the energy: what they may leave; walls whose holes close lose five digits of it
+# what a load may leave of the ratio of a wall's squared radii: this power of it, or so much of it
+NARROWER, DEEPER = 10, 0.01
 NO_ROOM = 1e-30  # stands for what is left of it where there is none
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
 PLACES, WEIGHTS = (np.concatenate(rows) for rows in zip(*_RULES))  # all rules in a row
@@ -95,8 +94,8 @@ def _bonded(wall):
 @kernel
 def points(inner, area):
     """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs, under any load."""
-    thick = area / (inner + area)
-    r = sqrt(sqrt(max(1.0 - NARROWER * thick, DEEPER * (1.0 - thick))))
+    ratio = inner / (inner + area)
+    r = sqrt(sqrt(sqrt(max(ratio**NARROWER, DEEPER * ratio))))
     rate = (1.0 + r) / (1.0 - r)
     left, n = MISSED * rate * rate, 1
     while left < 1.0 and n < MOST:
@@ -244,12 +243,14 @@ def of_any(y, G_1, psi, area, rubber, wall):
         at = first_place(count)
     p = max(1.0 - y * y * sqrt(1.0 + G_1), 0.0)  # the nearer pole
     near, far = sqrt(max(inner - p, NO_ROOM)), sqrt(max(inner + area - p, NO_ROOM))
-    size, reach = near * far, (far - near) / (far + near)
+    size, both = near * far, sqrt(near) + sqrt(far)
+    reach = area / ((near + far) * both * both)
     for j in range(count):
         if count > 1:
             t = reach * PLACES[at + j]
             i = 1.0 / (1.0 - t)
-            square, one = p + size * (1.0 + t) * i, 2.0 * size * reach * WEIGHTS[at + j] * i * i
+            h = (1.0 + t) * i
+            square, one = p + size * h * h, 4.0 * size * reach * WEIGHTS[at + j] * h * i * i
         w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
         W += one * w
         W_y += one * w_y
