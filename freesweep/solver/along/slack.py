@@ -39,7 +39,7 @@ def look_along(fine, n, base, tube, load, seen, numbers, bounds):
 def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
     if len(wall) == 1:
         return slack_fibers(fine[0], fine[1], n, base, tube, load)
-    flag = see(fine[0], fine[1], n, base, tube, load, seen)
+    flag = see(fine[0], fine[1], n, base, tube, load_of(0, load, fine), seen)
     if len(numbers) > 0:
         sharp = summed(seen, n + 2, load)
         x, y = mesh_of(1, n // 2, fine)

@@ -28,7 +28,7 @@ from math import sqrt
 import numpy as np
 
 from ...jit import kernel
-from ..either import select, some
+from ..either import isnt, select, some
 from ..load import Load
 from . import mooney_wall
 from .membrane import excess, yeoh_slope
@@ -199,10 +199,19 @@ def layer(square, y, G_1, psi, rubber, k):
 
 
 @kernel
+def sums_exactly(rubber, wall):
+    """Whether the rubber is Mooney's and Rivlin's: one of three constants, where it is not in a vector, may be."""
+    if len(wall) > 3:
+        return False
+    return (rubber[1] == 0.0) & (rubber[2] == 0.0)
+
+
+@kernel
 def energy(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)`` of the whole wall; ``G_1`` is G - 1."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)
     own = section(area, wall)
     known = mooney_wall.known(y, G_1, own)
     c = rubber[0]
@@ -213,7 +222,8 @@ def energy(y, G_1, psi, area, rubber, wall):
 def stored(y, G_1, psi, area, rubber, wall):
     """W alone."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)[0]
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)[0]
     return mooney_wall.stored(y, G_1, psi, rubber[0], section(area, wall))
 
 
@@ -221,7 +231,8 @@ def stored(y, G_1, psi, area, rubber, wall):
 def slopes(y, G_1, psi, area, rubber, wall):
     """The derivatives of :func:`energy`, without W."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)[1:]
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)[1:]
     return mooney_wall.slopes(y, G_1, psi, rubber[0], section(area, wall))
 
 
@@ -229,7 +240,8 @@ def slopes(y, G_1, psi, area, rubber, wall):
 def rises(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi)``."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)[:4]
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)[:4]
     return mooney_wall.rises(y, G_1, psi, rubber[0], section(area, wall))
 
 
