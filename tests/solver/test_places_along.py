@@ -61,13 +61,16 @@ def test_what_lies_below_the_least_pull_is_told(load):
     assert other == (1.0, 0.0)
 
 
-def test_two_meshes_tell_the_bound():
+def test_three_meshes_tell_the_bound():
     nothing = (0.0, 0.0)
-    fine = (0.30, 0.01, 0.0, 0.0), (0.7001, 0.0), nothing, (4.0004, 0.0), (9.0006, 0.0)
-    coarse = (0.32, 0.02, 0.0, 0.0), (0.7004, 0.0), nothing, (4.0016, 0.0), (9.0024, 0.0)
-    numbers, bounds = places.together(fine, coarse, LOAD)
+    one = (0.30, 0.01, 0.0, 0.0), (0.7001, 0.0), nothing, (4.0004, 0.0), (9.0006, 0.0)
+    two = (0.32, 0.02, 0.0, 0.0), (0.7004, 0.0), nothing, (4.0016, 0.0), (9.0024, 0.0)
+    three = (0.36, 0.04, 0.0, 0.0), (0.7016, 0.0), nothing, (4.0064, 0.0), (9.0096, 0.0)
+    numbers, bounds = places.together(one, two, three, LOAD)
     assert numbers[:2] == (0.30, 0.0)
     assert bounds[:2] == pytest.approx((0.03, 0.0))
     exact = {places.LEAST_ALPHA: 0.7, places.OUTER: 2.0, places.STRETCH: 3.0}  # errors that fall by four
     for number in exact:
         assert abs(numbers[number] - exact[number]) < bounds[number] < 5e-4
+    by_chance = places.together(one, (two[0], one[1], *two[2:]), three, LOAD)[1]  # alike on two meshes
+    assert by_chance[places.LEAST_ALPHA] > 1e-4

@@ -40,8 +40,12 @@ MISSED = 1e-12  # of the energy: what they may leave; forces lose three digits o
 # a load may leave what is left of the squared inner radius of a wall so much thicker, or so much of its own
 NARROWER, DEEPER = 3.0, 0.05
 NO_ROOM = 1e-30  # stands for what is left of it where there is none
-_RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
+MANY = 64  # Gauss points of a wall that a load has made thicker than that: of one whose r_o^2 is 7000 r_i^2
+_COUNTS = [*range(FEWEST, MOST + 1), MANY]
+_RULES = [np.polynomial.legendre.leggauss(n) for n in _COUNTS]
 PLACES, WEIGHTS = (np.concatenate(rows) for rows in zip(*_RULES))  # all rules in a row
+_RATES = MISSED ** (-0.5 / np.arange(FEWEST, MOST + 1))
+LEAST = np.append([0.0, 0.0], ((_RATES - 1.0) / (_RATES + 1.0)) ** 2)  # r^2 that so many points sum, by their number
 
 
 @kernel
@@ -132,7 +136,14 @@ def section(area, wall):
 @kernel
 def first_place(n):
     """Where the rule of n points begins in PLACES."""
+    n = min(n, MOST + 1)
     return (n * (n - 1) - FEWEST * (FEWEST - 1)) // 2
+
+
+@kernel
+def needs_many(near, far, count):
+    """Where a rule of ``count`` points does not sum a wall between two roots of rho^2 - p."""
+    return near < LEAST[count] * far
 
 
 @kernel
@@ -247,30 +258,33 @@ def rises(y, G_1, psi, area, rubber, wall):
 
 @kernel
 def of_any(y, G_1, psi, area, rubber, wall):
-    """:func:`energy`, layer by layer."""
+    """:func:`energy`, layer by layer: by as many as the wall counts, by MANY where a load has made it that thick."""
     k, inner = wall[0], wall[1]
-    square, one, count, at = 1.0 + 0.0 * area, area, 0, 0
+    square, one, count = 1.0 + 0.0 * area, area, 0
     W = W_y = W_G = W_p = W_yy = W_yG = W_yp = W_GG = W_Gp = W_pp = 0.0 * area
     if some(area > 0.0):  # locked, the wall does not count
         count = layers(area, wall)
-        at = first_place(count)
     p = max(1.0 - y * y * sqrt(1.0 + G_1), 0.0)  # the nearer pole
     near, far = sqrt(max(inner - p, NO_ROOM)), sqrt(max(inner + area - p, NO_ROOM))
-    size, reach = near * far, (far - near) / (far + near)
-    for j in range(count):
-        if count > 1:
-            t = reach * PLACES[at + j]
-            i = 1.0 / (1.0 - t)
-            square, one = p + size * (1.0 + t) * i, 2.0 * size * reach * WEIGHTS[at + j] * i * i
-        w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
-        W += one * w
-        W_y += one * w_y
-        W_G += one * w_G
-        W_p += one * w_p
-        W_yy += one * w_yy
-        W_yG += one * w_yG
-        W_yp += one * w_yp
-        W_GG += one * w_GG
-        W_Gp += one * w_Gp
-        W_pp += one * w_pp
+    size, reach, many = near * far, (far - near) / (far + near), needs_many(near, far, count)
+    for rule in range(2 if some(many) else 1):
+        own, taken = (count, isnt(many)) if rule == 0 else (MANY, many)
+        at = first_place(own)
+        for j in range(own):
+            if count > 1:
+                t = reach * PLACES[at + j]
+                i = 1.0 / (1.0 - t)
+                square, one = p + size * (1.0 + t) * i, 2.0 * size * reach * WEIGHTS[at + j] * i * i
+            one = select(taken, one, 0.0)
+            w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
+            W += one * w
+            W_y += one * w_y
+            W_G += one * w_G
+            W_p += one * w_p
+            W_yy += one * w_yy
+            W_yG += one * w_yG
+            W_yp += one * w_yp
+            W_GG += one * w_GG
+            W_Gp += one * w_Gp
+            W_pp += one * w_pp
     return W, W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp
