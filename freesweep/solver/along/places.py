@@ -41,7 +41,7 @@ def principal_square(y, G_1, psi, rho_square):
     """
     r_square = y * y + (rho_square - 1.0) / sqrt(1.0 + G_1)
     hoop, sheared = r_square / rho_square, r_square * psi * psi
-    both, apart = 1.0 + G_1 + hoop, 1.0 + G_1 - hoop  # of what is stretched alike all ways the root is of next to nothing
+    both, apart = 1.0 + G_1 + hoop, 1.0 + G_1 - hoop  # of what is stretched alike all ways the root is of nothing
     widened = both + sheared + sqrt(apart * apart + sheared * (sheared + 2.0 * both))
     return max(0.5 * widened, 1.0 / ((1.0 + G_1) * hoop))
 
@@ -144,8 +144,8 @@ def lowest(one, two, three, size):
 
 @kernel
 def together(one, two, three, load):
-    """``(numbers, bounds)`` from those of three meshes, the finest first, each ``(alpha, its doubt, beta, its doubt)`` of the
-    shares, then ``(number, missed)`` of the least pulls and of the largest squares.
+    """``(numbers, bounds)`` from those of three meshes, the finest first, each ``(alpha, its doubt, beta, its doubt)`` of
+    the shares, then ``(number, missed)`` of the least pulls and of the largest squares.
     """
     size, share, other = load.p + abs(load.f), one[0], two[0]
     pull_a, bound_a = lowest(one[1], two[1], three[1], size)
