@@ -43,13 +43,17 @@ def walls():
         thickest = np.argmax(both[1] / both[0])
         return counted(*(float(one[thickest]) for one in both))
 
+    def needs_most(near, far, count):
+        """Of all cells, if one of them does."""
+        return bool(np.any(value_of(near) < wall.LEAST[count] * value_of(far)))
+
     def lies_inside(wall):
         """Of each cell: a body's own radius rounds what is no wall inside to next to none, here and there."""
         return (value_of(wall[1]) > 0.0) & (value_of(wall[1]) < 1.0)
 
     changes = twin(body.as_tube), twin(body.of_partials), twin(body.of_integrals)
     narrowest = twin(wall.narrowest, lies_inside=lies_inside, select=select)
-    return twin(wall.energy, points=points), narrowest, twin(physical.place), changes
+    return twin(wall.energy, points=points, needs_most=needs_most), narrowest, twin(physical.place), changes
 
 
 class Settled(NamedTuple):

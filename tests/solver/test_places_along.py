@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from freesweep.solver.along import places
-from freesweep.solver.along.slack import summed
-from freesweep.solver.load import Load
+from freesweep.solver.along.slack import look_along, summed
+from freesweep.solver.load import Load, by
+from freesweep.solver.numerics import finest
+from freesweep.solver.numerics.properties_along import Tube
 
 LOAD = Load(1.0, (0.0,), (1.0, 0.5, 1.0), 1.0, 0.0, 0.0, 1.0)  # of pressure 1 and loose fibers
 BONDED = Load(*LOAD[:2], (1.0, 0.5, 0.0), *LOAD[3:])
@@ -61,13 +63,45 @@ def test_what_lies_below_the_least_pull_is_told(load):
     assert other == (1.0, 0.0)
 
 
-def test_two_meshes_tell_the_bound():
+def test_three_meshes_tell_the_bound():
     nothing = (0.0, 0.0)
-    fine = (0.30, 0.01, 0.0, 0.0), (0.7001, 0.0), nothing, (4.0004, 0.0), (9.0006, 0.0)
-    coarse = (0.32, 0.02, 0.0, 0.0), (0.7004, 0.0), nothing, (4.0016, 0.0), (9.0024, 0.0)
-    numbers, bounds = places.together(fine, coarse, LOAD)
+    one = (0.30, 0.01, 0.0, 0.0), (0.7001, 0.0), nothing, (4.0004, 0.0), (9.0006, 0.0)
+    two = (0.32, 0.02, 0.0, 0.0), (0.7004, 0.0), nothing, (4.0016, 0.0), (9.0024, 0.0)
+    three = (0.36, 0.04, 0.0, 0.0), (0.7016, 0.0), nothing, (4.0064, 0.0), (9.0096, 0.0)
+    numbers, bounds = places.together(one, two, three, LOAD)
     assert numbers[:2] == (0.30, 0.0)
     assert bounds[:2] == pytest.approx((0.03, 0.0))
     exact = {places.LEAST_ALPHA: 0.7, places.OUTER: 2.0, places.STRETCH: 3.0}  # errors that fall by four
     for number in exact:
         assert abs(numbers[number] - exact[number]) < bounds[number] < 5e-4
+    by_chance = places.together(one, (two[0], one[1], *two[2:]), three, LOAD)[1]  # alike on two meshes
+    assert by_chance[places.LEAST_ALPHA] > 1e-4
+
+
+@pytest.mark.parametrize("rho_square", [0.3, 0.7549958919736488, 0.9, 1.7])
+def test_a_wall_that_is_not_stretched_has_the_stretch_1_to_all_digits(rho_square):
+    assert places.principal_square(1.0, 0.0, 0.0, rho_square) == pytest.approx(1.0, abs=1e-15)
+
+
+def test_each_mesh_is_looked_at_under_its_own_torque():
+    """A straight cylinder, whose fibers pull as the torque asks for: meshes have it to second order, and so the pulls."""
+    n, torque, off = 16, 0.3, 1e-3
+    course = np.zeros((1, 1, 3, 4))
+    course[0, 0, :, 0] = 0.4, 1.1, 0.5  # half the sum and difference of both tangents, the wall's section
+    tube = Tube(course, np.array([0, n // 4]), course[0, :, :, 0], True, n // 4, np.array([0.0, 2.0]))
+    load = Load(1.0, (0.0, 0.0, 0.0), (1.0, 0.6, 1.0), 2.0, 0.5, torque, 1.0)
+
+    def seen(errors):
+        """Numbers along, and bounds, where the torques of the three meshes have these errors."""
+        fine, work, numbers, bounds = np.ones((5, 2 * n + 4)), np.zeros((13, n + 3)), np.zeros(6), np.zeros(6)
+        for which in range(finest.MESHES):
+            x, _ = finest.mesh_of(which, n // 2, fine)
+            x[:] = np.linspace(0.0, 2.0, len(x))
+        finest.leave_loads(torque + np.array(errors[::-1]), 2, torque, by(0.0, 0.0, 1.0), 0.0, fine)
+        look_along(fine, n, n // 4, tube, load, work, numbers, bounds)
+        return numbers[[places.LEAST_ALPHA, places.LEAST_BETA]], bounds[[places.LEAST_ALPHA, places.LEAST_BETA]]
+
+    exact, _ = seen((0.0, 0.0, 0.0))
+    pulls, bounds = seen((off, 4.0 * off, 16.0 * off))
+    assert np.all(np.abs(pulls - exact) < 1e-12)
+    assert np.all(bounds > off)

@@ -39,9 +39,11 @@ def test_gauss_points_are_as_many_as_the_wall_asks_for(thickness, fibers):
     assert 2 <= wall.points(inner**2, outer**2 - inner**2) <= 20
 
 
-@pytest.mark.parametrize(("rubber", "digits"), [((0.5,), 2e-10), ((0.0,), 2e-10), ((0.5, 0.1, 0.02), 1e-7)])
-def test_a_wall_whose_hole_all_but_closes_keeps_its_energy(rubber, digits):
-    """A tube that is pulled and turned is thick where it is thin: r_i falls to a tenth of r_o."""
+@pytest.mark.parametrize("rubber", [(0.5,), (0.0,), (0.5, 0.0, 0.0), (0.5, 0.1, 0.02)])
+def test_a_wall_whose_hole_all_but_closes_keeps_its_energy(rubber):
+    """A tube that is pulled and turned is thick where it is thin: r_i falls to a tenth of r_o. Meshes take any rubber by
+    three constants.
+    """
     for inner, y, G, psi in (
         (0.94, 0.3, 25.0, 1.0),
         (0.6, 0.72, 1.55, 2.0),
@@ -50,7 +52,7 @@ def test_a_wall_whose_hole_all_but_closes_keeps_its_energy(rubber, digits):
     ):
         assert y * y + (inner**2 - 1.0) / np.sqrt(G) > 0.0
         W = wall.energy(y, G - 1.0, psi, 1.0 - inner**2, rubber, (1.0, inner**2, 1.0))[0]
-        assert pytest.approx(float(exact(y, G, psi, inner, 1.0, rubber)), rel=digits) == W
+        assert pytest.approx(float(exact(y, G, psi, inner, 1.0, rubber)), rel=2e-10) == W
 
 
 def test_energy_of_a_wall_that_is_hardly_strained_has_all_its_digits():

@@ -40,9 +40,10 @@ def principal_square(y, G_1, psi, rho_square):
     stretched by [[r/rho, r psi], [0, sqrt(G)]], and across it by what keeps the volume.
     """
     r_square = y * y + (rho_square - 1.0) / sqrt(1.0 + G_1)
-    hoop = r_square / rho_square
-    half, area = 0.5 * (1.0 + G_1 + hoop + r_square * psi * psi), (1.0 + G_1) * hoop
-    return max(half + sqrt(max(half * half - area, 0.0 * half)), 1.0 / area)
+    hoop, sheared = r_square / rho_square, r_square * psi * psi
+    both, apart = 1.0 + G_1 + hoop, 1.0 + G_1 - hoop  # of what is stretched alike all ways the root is of nothing
+    widened = both + sheared + sqrt(apart * apart + sheared * (sheared + 2.0 * both))
+    return max(0.5 * widened, 1.0 / ((1.0 + G_1) * hoop))
 
 
 @kernel
@@ -121,34 +122,41 @@ def least(before, here, there, lowest, missed, loose):
 
 
 @kernel
-def root(fine, coarse):
-    """``(value, bound)`` of the root of a largest square, from ``(most, missed)`` of two meshes."""
-    one, other = sqrt(fine[0]), sqrt(coarse[0])
-    return (4.0 * one - other) / 3.0, FALLEN * abs(one - other) + 0.5 * fine[1] / one + ROUNDING * one
-
-
-@kernel
-def lowest(fine, coarse, size):
-    """The same of a least pull, where the load is ``size``."""
-    return (4.0 * fine[0] - coarse[0]) / 3.0, FALLEN * abs(fine[0] - coarse[0]) + fine[1] + ROUNDING * size
-
-
-@kernel
-def together(fine, coarse, load):
-    """``(numbers, bounds)`` from those of two meshes, each ``(alpha, its doubt, beta, its doubt)`` of the shares, then
-    ``(number, missed)`` of the least pulls and of the largest squares.
+def differ(one, two, three):
+    """By what the two finest of three meshes differ; the difference before it, of which errors of second order leave a
+    quarter, guards against its passing through zero.
     """
-    size = load.p + abs(load.f)
-    pull_a, bound_a = lowest(fine[1], coarse[1], size)
-    pull_b, bound_b = lowest(fine[2], coarse[2], size)
-    outer, missed = root(fine[3], coarse[3])
-    stretch, strained = root(fine[4], coarse[4])
-    fine, coarse = fine[0], coarse[0]
+    return max(abs(one - two), 0.25 * abs(two - three))
+
+
+@kernel
+def root(one, two, three):
+    """``(value, bound)`` of the root of a largest square, from ``(most, missed)`` of three meshes, the finest first."""
+    a, b, c = sqrt(one[0]), sqrt(two[0]), sqrt(three[0])
+    return (4.0 * a - b) / 3.0, FALLEN * differ(a, b, c) + 0.5 * one[1] / a + ROUNDING * a
+
+
+@kernel
+def lowest(one, two, three, size):
+    """The same of a least pull, where the load is ``size``."""
+    return (4.0 * one[0] - two[0]) / 3.0, FALLEN * differ(one[0], two[0], three[0]) + one[1] + ROUNDING * size
+
+
+@kernel
+def together(one, two, three, load):
+    """``(numbers, bounds)`` from those of three meshes, the finest first, each ``(alpha, its doubt, beta, its doubt)`` of
+    the shares, then ``(number, missed)`` of the least pulls and of the largest squares.
+    """
+    size, share, other = load.p + abs(load.f), one[0], two[0]
+    pull_a, bound_a = lowest(one[1], two[1], three[1], size)
+    pull_b, bound_b = lowest(one[2], two[2], three[2], size)
+    outer, missed = root(one[3], two[3], three[3])
+    stretch, strained = root(one[4], two[4], three[4])
     return (
-        (fine[0], fine[2], pull_a, pull_b, outer, stretch),
+        (share[0], share[2], pull_a, pull_b, outer, stretch),
         (
-            fine[1] + abs(fine[0] - coarse[0]) + ROUNDING * fine[0],
-            fine[3] + abs(fine[2] - coarse[2]) + ROUNDING * fine[2],
+            share[1] + abs(share[0] - other[0]) + ROUNDING * share[0],
+            share[3] + abs(share[2] - other[2]) + ROUNDING * share[2],
             bound_a, bound_b, missed, strained,
         ),
     )  # fmt: skip

@@ -1,5 +1,5 @@
 """Fibers that would have to push: where a state relies on them, physics does not stand behind it. Of physical tubes also
-the numbers of :mod:`places`, from the two finest meshes of a solved state.
+the numbers of :mod:`places`, from the three finest meshes of a solved state.
 """
 
 from ...jit import kernel
@@ -39,15 +39,22 @@ def look_along(fine, n, base, tube, load, seen, numbers, bounds):
 def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
     if len(wall) == 1:
         return slack_fibers(fine[0], fine[1], n, base, tube, load)
-    flag = see(fine[0], fine[1], n, base, tube, load, seen)
+    flag = see(fine[0], fine[1], n, base, tube, load_of(0, load, fine), seen)
     if len(numbers) > 0:
-        sharp = summed(seen, n + 2, load)
-        x, y = mesh_of(1, n // 2, fine)
-        see(x, y, n // 2, base, tube, load_of(1, load, fine), seen)
-        found, missed = places.together(sharp, summed(seen, n // 2 + 2, load), load)
+        finest = summed(seen, n + 2, load)
+        finer, coarse = again(1, n, base, fine, tube, load, seen), again(2, n, base, fine, tube, load, seen)
+        found, missed = places.together(finest, finer, coarse, load)
         for k in range(len(numbers)):
             numbers[k], bounds[k] = found[k], missed[k]
     return flag
+
+
+@kernel
+def again(which, n, base, fine, tube, load, seen):
+    """What is :func:`summed` on one of the two meshes before that of n cells."""
+    x, y = mesh_of(which, n // 2, fine)
+    see(x, y, len(x) - 1, base, tube, load_of(which, load, fine), seen)
+    return summed(seen, len(x) + 1, load)
 
 
 @kernel

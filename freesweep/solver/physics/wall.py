@@ -27,20 +27,21 @@ from math import sqrt
 import numpy as np
 
 from ...jit import kernel
-from ..either import select, some
+from ..either import isnt, select, some
 from ..load import Load
 from . import mooney_wall
 from .membrane import excess, yeoh_slope
 from .mooney_wall import Section, mean_reciprocal
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
-MEMBRANE, FEWEST, MOST = 1, 2, 20  # Gauss points
+MEMBRANE, FEWEST, MOST = 1, 2, 32  # Gauss points; the most where r_o^2 is up to 70,000 r_i^2
 MISSED = 1e-14  # of the energy: what they may leave; walls whose holes close lose five digits of it
-# what a load may leave of the ratio of a wall's squared radii: this power of it, or so much of it
-NARROWER, DEEPER = 10, 0.01
+NARROWER = 3  # power of the ratio of a wall's squared radii: what most loads leave of it; where less is left, MOST serve
 NO_ROOM = 1e-30  # stands for what is left of it where there is none
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
 PLACES, WEIGHTS = (np.concatenate(rows) for rows in zip(*_RULES))  # all rules in a row
+_RATES = MISSED ** (-0.5 / np.arange(FEWEST, MOST + 1))
+LEAST = np.append([0.0, 0.0], ((_RATES - 1.0) / (_RATES + 1.0)) ** 4)  # r^4 that so many points sum, by their number
 
 
 @kernel
@@ -93,9 +94,9 @@ def _bonded(wall):
 
 @kernel
 def points(inner, area):
-    """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs, under any load."""
+    """How many Gauss points a wall from rho^2 = ``inner`` to ``inner + area`` needs, under most loads."""
     ratio = inner / (inner + area)
-    r = sqrt(sqrt(sqrt(max(ratio**NARROWER, DEEPER * ratio))))
+    r = sqrt(sqrt(sqrt(ratio**NARROWER)))
     rate = (1.0 + r) / (1.0 - r)
     left, n = MISSED * rate * rate, 1
     while left < 1.0 and n < MOST:
@@ -132,6 +133,12 @@ def section(area, wall):
 def first_place(n):
     """Where the rule of n points begins in PLACES."""
     return (n * (n - 1) - FEWEST * (FEWEST - 1)) // 2
+
+
+@kernel
+def needs_most(near, far, count):
+    """Where a rule of ``count`` points does not sum a wall between two roots of rho^2 - p."""
+    return near < LEAST[count] * far
 
 
 @kernel
@@ -198,10 +205,19 @@ def layer(square, y, G_1, psi, rubber, k):
 
 
 @kernel
+def sums_exactly(rubber, wall):
+    """Whether the rubber is Mooney's and Rivlin's: one of three constants, where it is not in a vector, may be."""
+    if len(wall) > 3:
+        return False
+    return (rubber[1] == 0.0) & (rubber[2] == 0.0)
+
+
+@kernel
 def energy(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi, W_yy, W_yG, W_ypsi, W_GG, W_Gpsi, W_psipsi)`` of the whole wall; ``G_1`` is G - 1."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)
     own = section(area, wall)
     known = mooney_wall.known(y, G_1, own)
     c = rubber[0]
@@ -212,7 +228,8 @@ def energy(y, G_1, psi, area, rubber, wall):
 def stored(y, G_1, psi, area, rubber, wall):
     """W alone."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)[0]
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)[0]
     return mooney_wall.stored(y, G_1, psi, rubber[0], section(area, wall))
 
 
@@ -220,7 +237,8 @@ def stored(y, G_1, psi, area, rubber, wall):
 def slopes(y, G_1, psi, area, rubber, wall):
     """The derivatives of :func:`energy`, without W."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)[1:]
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)[1:]
     return mooney_wall.slopes(y, G_1, psi, rubber[0], section(area, wall))
 
 
@@ -228,38 +246,42 @@ def slopes(y, G_1, psi, area, rubber, wall):
 def rises(y, G_1, psi, area, rubber, wall):
     """``(W, W_y, W_G, W_psi)``."""
     if len(rubber) > 1:
-        return of_any(y, G_1, psi, area, rubber, wall)[:4]
+        if isnt(sums_exactly(rubber, wall)):
+            return of_any(y, G_1, psi, area, rubber, wall)[:4]
     return mooney_wall.rises(y, G_1, psi, rubber[0], section(area, wall))
 
 
 @kernel
 def of_any(y, G_1, psi, area, rubber, wall):
-    """:func:`energy`, layer by layer."""
+    """:func:`energy`, layer by layer: by as many as the wall counts, by MOST where a load has made it thick."""
     k, inner = wall[0], wall[1]
-    square, one, count, at = 1.0 + 0.0 * area, area, 0, 0
+    square, one, count = 1.0 + 0.0 * area, area, 0
     W = W_y = W_G = W_p = W_yy = W_yG = W_yp = W_GG = W_Gp = W_pp = 0.0 * area
     if some(area > 0.0):  # locked, the wall does not count
         count = layers(area, wall)
-        at = first_place(count)
     p = max(1.0 - y * y * sqrt(1.0 + G_1), 0.0)  # the nearer pole
     near, far = sqrt(max(inner - p, NO_ROOM)), sqrt(max(inner + area - p, NO_ROOM))
-    size, both = near * far, sqrt(near) + sqrt(far)
+    size, both, many = near * far, sqrt(near) + sqrt(far), needs_most(near, far, count)
     reach = area / ((near + far) * both * both)
-    for j in range(count):
-        if count > 1:
-            t = reach * PLACES[at + j]
-            i = 1.0 / (1.0 - t)
-            h = (1.0 + t) * i
-            square, one = p + size * h * h, 4.0 * size * reach * WEIGHTS[at + j] * h * i * i
-        w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
-        W += one * w
-        W_y += one * w_y
-        W_G += one * w_G
-        W_p += one * w_p
-        W_yy += one * w_yy
-        W_yG += one * w_yG
-        W_yp += one * w_yp
-        W_GG += one * w_GG
-        W_Gp += one * w_Gp
-        W_pp += one * w_pp
+    for rule in range(2 if some(many) else 1):
+        own, taken = (count, isnt(many)) if rule == 0 else (MOST, many)
+        at = first_place(own)
+        for j in range(own):
+            if count > 1:
+                t = reach * PLACES[at + j]
+                i = 1.0 / (1.0 - t)
+                h = (1.0 + t) * i
+                square, one = p + size * h * h, 4.0 * size * reach * WEIGHTS[at + j] * h * i * i
+            one = select(taken, one, 0.0)
+            w, w_y, w_G, w_p, w_yy, w_yG, w_yp, w_GG, w_Gp, w_pp = layer(square, y, G_1, psi, rubber, k)
+            W += one * w
+            W_y += one * w_y
+            W_G += one * w_G
+            W_p += one * w_p
+            W_yy += one * w_yy
+            W_yG += one * w_yG
+            W_yp += one * w_yp
+            W_GG += one * w_GG
+            W_Gp += one * w_Gp
+            W_pp += one * w_pp
     return W, W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp
