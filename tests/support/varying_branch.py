@@ -18,6 +18,9 @@ CELLS = 160  # of each segment
 LARGEST = 0.02  # relative change of y in one step
 LOAD = 0.15  # and of the load
 STRAIGHT = 0.97  # cosine between successive tangents
+PAST = 1.001  # of what is left up to the load that is asked for
+NOTHING = 1e-4  # of the load
+LOST, PUSHED = "lost", "pushed"
 
 
 @cache
@@ -146,7 +149,8 @@ class Branch:
         ds, sense = 0.2 * LARGEST, np.sign(self.tangent[-1])
         while self.fold is None and (far - self.mu) * sense > 0 and not self.lost:
             longest = LARGEST / max(np.max(np.abs(self.tangent[:-1])), abs(self.tangent[-1]))
-            ds = min(ds, longest)
+            to_far = (far - self.mu) / (self.tangent[-1] * self.scale())
+            ds = min(ds, longest, max(PAST * to_far, 1e-6) if to_far > 0 else longest)
             row = self.tangent[:-1] / self.y[1:-1] / len(self.y)
             row_mu = self.tangent[-1] / self.scale()
             if self.correct(row, row_mu, ds):
@@ -156,11 +160,19 @@ class Branch:
                 self.lost = ds < 1e-7
         return self
 
+    @property
+    def pushed(self):
+        """Whether nothing is left that keeps the wall round: a meridian that has to be pushed."""
+        p, f, _, _ = self.load(self.mu)
+        return bool(np.min(p * self.y**2 + f) < NOTHING * (p + abs(f)))
+
 
 def branch(cells, breaks, ratio, energy, pressure, gamma=1.0, f=0.0, m=0.0):
-    """``(state at the pressure or None, fold or None, lost)``: length and rotation [rad] of the whole tube, in radii; what
-    was lost cannot be judged.
+    """``(state at the pressure or None, fold or None, why there is neither)``: length and rotation [rad] of the whole tube,
+    in radii. Where the wall would be PUSHED there is none; what was LOST cannot be judged.
     """
+    if pressure + f <= 0:  # at the clamped ends
+        return None, None, PUSHED
     tube = Tube(cells, breaks, ratio, energy, gamma, f, m)
     loaded = f != 0 or m != 0 or gamma != 1
     first = settled(pressure, f, m, gamma)
@@ -171,10 +183,10 @@ def branch(cells, breaks, ratio, energy, pressure, gamma=1.0, f=0.0, m=0.0):
     start = 1e-3 if loaded else min(1e-3, pressure) / pressure
     here = Branch(tube, proportional, np.ones(len(tube.x)), start)
     if here.tangent is None:
-        return None, None, True
+        return None, None, LOST
     here.follow(1.0)
     if here.fold is not None and here.fold < 1:
-        return None, here.fold * (first if not loaded else np.nan), False
+        return (None, None, PUSHED) if here.pushed else (None, here.fold * (first if not loaded else np.nan), None)
     if loaded and not here.lost and pressure != first:
         near = here.y
 
@@ -183,14 +195,14 @@ def branch(cells, breaks, ratio, energy, pressure, gamma=1.0, f=0.0, m=0.0):
 
         here = Branch(tube, alone, near, first, np.sign(pressure - first))
         if here.tangent is None:
-            return None, None, True
+            return None, None, LOST
         here.follow(pressure)
         if here.fold is not None:
-            return None, here.fold, False
+            return (None, None, PUSHED) if here.pushed else (None, here.fold, None)
         place = pressure
     else:
         place = 1.0
     if here.lost:
-        return None, None, True
+        return None, None, PUSHED if here.pushed else LOST
     states = np.array(sorted(here.states))
-    return np.array([np.interp(place, states[:, 0], states[:, k]) for k in (1, 2)]), None, False
+    return np.array([np.interp(place, states[:, 0], states[:, k]) for k in (1, 2)]), None, None

@@ -36,7 +36,7 @@ from .mooney_wall import Section, mean_reciprocal
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 32  # Gauss points; the most where r_o^2 is up to 70,000 r_i^2
 MISSED = 1e-14  # of the energy: what they may leave; walls whose holes close lose five digits of it
-NARROWER = 3  # power of the ratio of a wall's squared radii: what most loads leave of it; where less is left, MOST serve
+NARROWER = 3  # power of the ratio of a wall's squared radii that most loads leave; where less is left, MOST serve
 NO_ROOM = 1e-30  # stands for what is left of it where there is none
 _RULES = [np.polynomial.legendre.leggauss(n) for n in range(FEWEST, MOST + 1)]
 PLACES, WEIGHTS = (np.concatenate(rows) for rows in zip(*_RULES))  # all rules in a row
