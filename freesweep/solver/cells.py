@@ -7,6 +7,8 @@ behind that what was handed on (5, 8). Which it is stands in the tuple's length,
 
 from ..jit import kernel
 
+MIXED = 4.0  # the kind of a cell in which the kind changes; others are those of :mod:`.physics.fibers`
+
 
 @kernel
 def cell_at(cells, j):

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...jit import kernel
 from ..cells import largest_sizes
-from ..numerics import finest, nested
+from ..numerics import finest, kinks, nested
 from ..numerics.bordered import FOLLOWED, correct
 from ..numerics.continuation import CHANGE
 from ..numerics.path import Track, load_at
@@ -77,7 +77,7 @@ def at_value(space, tube, path, node, value, mu, accuracy):
     Returns ``(whether it was found, share, its bound, doublings, largest scaled bound of outputs, unstable directions)``.
     """
     fine, table, work = space.fine, space.table, space.work
-    n, shares = len(space.x) - 1, np.empty(nested.MAX_DOUBLINGS + 2)
+    n, shares, changes = len(space.x) - 1, np.empty(nested.MAX_DOUBLINGS + 2), np.empty(kinks.MOST)
     course, edges, cells, free, middle, _ = tube
     base = track_on(fine[0], fine[1], space, n, free)
     for i in range(n + 1):
@@ -90,7 +90,7 @@ def at_value(space, tube, path, node, value, mu, accuracy):
         if status != FOLLOWED:
             return False, share, 0.0, level, 0.0, negative
         shares[level], row, now = share, table[level], load_at(path, own.y, count, share)
-        broken = nested.integrate(lagrangian.integrands, own.x, own.y, count, filled, now, row)
+        broken = nested.integrate(lagrangian.integrands, own.x, own.y, count, filled, now, row, changes)
         row[nested.MIDDLE], row[nested.MULTIPLIER] = own.y[middle * count // n], own.y[count + 1]
         if level == 1:
             first_held, first_share = own.y[count + 1], share

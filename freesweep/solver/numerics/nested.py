@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from ..cells import behind, cell_at, largest_sizes, nothing_yet
+from ..cells import MIXED, behind, cell_at, largest_sizes, nothing_yet
 from ..load import loaded
-from . import finest, held, newton
+from . import finest, held, kinks, newton
 from . import mesh as grading
 from .newton import Mesh
 from .properties_along import fill
@@ -25,6 +25,7 @@ from .properties_along import fill
 OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
 MIDDLE, MULTIPLIER = 4, 5
 MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or more finer ones join
+MOVES = 2  # of the base mesh, so that it does not hide where the kind of cell changes
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.3
@@ -48,10 +49,12 @@ class Room(NamedTuple):
 
 
 @kernel
-def integrate(integrands, x, y, n, cells, load, row):
-    """Integrals over the tube on one mesh; whether the kind of cell, in which the density is smooth, changes along it."""
+def integrate(integrands, x, y, n, cells, load, row, changes):
+    """Integrals over the tube on one mesh; whether the kind of cell, in which the density is smooth, changes along it, and
+    where, in shares of the cells.
+    """
     length, volume, twist, energy = 0.0, 0.0, 0.0, 0.0
-    broken, before, near = False, -1.0, nothing_yet(0.0)
+    count, before, near = 0, -1.0, nothing_yet(0.0)
     varying = len(cells) > 1
     cell = cell_at(cells, 0)
     for j in range(n):
@@ -59,14 +62,18 @@ def integrate(integrands, x, y, n, cells, load, row):
             cell = cell_at(cells, j)
         h = x[j + 1] - x[j]
         s, v, t, w, kind, near = integrands(0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h, behind(cell, h, near), load)
-        broken = broken or (kind != before and j > 0)
+        if (kind != before or kind == MIXED) and j > 0:
+            if count < kinks.MOST:
+                changes[count] = j / n
+            count += 1
         before = kind
         length += h * s
         volume += h * v
         twist += h * t
         energy += h * w
     row[0], row[1], row[2], row[3] = length, volume, twist, energy
-    return broken
+    kinks.forget(changes, count)
+    return count > 0
 
 
 @kernel
@@ -208,12 +215,12 @@ def rescue(functional, room, level, guess, mesh, load):
 
 
 @kernel
-def tell(functional, y, mesh, base, center, mu, load, row):
+def tell(functional, y, mesh, base, center, mu, load, row, changes):
     """Write the outputs on one mesh, nested in one of ``base`` cells, to a ``row`` of the table. Returns whether the kind of
-    cell changes along the tube.
+    cell changes along the tube; where is written to ``changes``.
     """
     row[MIDDLE], row[MULTIPLIER] = y[center * mesh.n // base], mu
-    return integrate(functional.integrands, mesh.x, y, mesh.n, mesh.cells, load, row)
+    return integrate(functional.integrands, mesh.x, y, mesh.n, mesh.cells, load, row, changes)
 
 
 @kernel
@@ -268,7 +275,8 @@ def solve(functional, room, tube, load, target, mu, regrades, accuracy):
     course, edges, cells, free, center, _ = tube
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     error, on_base, rate = tolerance, mu, newton.UNKNOWN
-    passes, level, count, shrunk, xs, ys = 0, 1, n, False, room.x, room.y
+    passes, moves, level, count, shrunk, xs, ys = 0, 0, 1, n, False, room.x, room.y
+    changes = np.empty((MAX_DOUBLINGS + 2, kinks.MOST))
     while True:
         own, coarser = Mesh(xs, count, free, fill(course, edges, xs, count, n, cells)), error
         status, unstable, mu, rate, error = on_mesh(functional, ys, own, load, target, mu, rate, tolerance, room.work)
@@ -284,14 +292,19 @@ def solve(functional, room, tube, load, target, mu, regrades, accuracy):
             adapt(functional, room.x, room.y, n, tube, now, room.work)
             passes += 1
             continue
-        broken = tell(functional, ys, own, n, center, mu, now, table[level])
+        broken = tell(functional, ys, own, n, center, mu, now, table[level], changes[level])
         if level >= 3:
-            left = max(error, coarser)
+            left, place = max(error, coarser), kinks.hidden(changes, level, edges)
+            if place > 0.0 and moves < MOVES:
+                kinks.move_on(room.x, room.y, edges, place, level - 3)
+                moves, mu, level, count, xs, ys = moves + 1, on_base, 1, n, room.x, room.y
+                continue
             largest = judge(functional, room, level, own.cells, now, target, left, broken)
-            if largest <= accuracy or level == MAX_DOUBLINGS + 1:
+            met = largest <= accuracy and place == 0.0
+            if met or level == MAX_DOUBLINGS + 1:
                 multiplier = room.out[0, MULTIPLIER]
                 finest.leave_loads(table[:, MULTIPLIER], level, multiplier, target.direction, left, room.fine)
-                return newton.CONVERGED if largest <= accuracy else UNREACHED, unstable, level - 1
+                return newton.CONVERGED if met else UNREACHED, unstable, level - 1
         on_base = mu if level == 1 else on_base
         mu = on_base if level == 0 else mu
         level, count, xs, ys = next_mesh(room, edges, level)

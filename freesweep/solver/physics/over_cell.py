@@ -21,14 +21,13 @@ the cell's middle.
 from typing import NamedTuple
 
 from ...jit import kernel
-from ..cells import point_of
+from ..cells import MIXED, point_of
 from ..either import select, some
 from . import body, in_a_cell, physical
 from .fibers import is_taut, lacking
 from .wall import may_go_slack
 
 GAUSS = 0.28867513459481287  # of a cell: the two points lie so far from its middle
-MIXED = 4.0  # beside the kinds of :mod:`fibers`
 SMALLEST = 1e-300
 
 
