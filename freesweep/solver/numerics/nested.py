@@ -153,6 +153,21 @@ def adapt(functional, x, y, n, tube, load, work):
 
 
 @kernel
+def move_on(density, room, tube, hidden, found, level, load, kept):
+    """Move the base mesh, so that it does not hide where the kind of cell changes, see :mod:`kinks`; its nodes and shape
+    before are ``kept``. Whether all cells have room then; else it is as it was.
+    """
+    x, y, n, edges = room.x, room.y, len(room.x) - 1, tube.edges
+    for i in range(n + 1):
+        kept[0, i], kept[1, i] = x[i], y[i]
+    kinks.move_on(x, y, edges, hidden, found, level - 3)
+    fits = newton.admissible(density, x, y, n, fill(tube.course, edges, x, n, n, tube.cells), load)
+    for i in range(n + 1):
+        x[i], y[i] = (x[i], y[i]) if fits else (kept[0, i], kept[1, i])
+    return fits
+
+
+@kernel
 def split(x, n, edges, factor, out):
     """A finer mesh: each cell of the base mesh in ``factor``, smoothly within each segment."""
     for s in range(len(edges) - 1):
@@ -276,7 +291,7 @@ def solve(functional, room, tube, load, target, mu, regrades, accuracy):
     tolerance = max(STEP_SHARE * accuracy, SMALLEST_TOLERANCE)
     error, on_base, rate = tolerance, mu, newton.UNKNOWN
     passes, moves, level, count, shrunk, xs, ys = 0, 0, 1, n, False, room.x, room.y
-    changes = np.empty((MAX_DOUBLINGS + 2, kinks.MOST))
+    changes, hidden, kept = np.empty((MAX_DOUBLINGS + 2, kinks.MOST)), np.empty((2, kinks.MOST)), np.empty((2, n + 1))
     while True:
         own, coarser = Mesh(xs, count, free, fill(course, edges, xs, count, n, cells)), error
         status, unstable, mu, rate, error = on_mesh(functional, ys, own, load, target, mu, rate, tolerance, room.work)
@@ -286,7 +301,12 @@ def solve(functional, room, tube, load, target, mu, regrades, accuracy):
             if rescue(functional, room, level, ys, own, now):
                 continue
         if status != newton.CONVERGED:
-            return status, unstable, max(level - 1, 0)
+            if not 0 < moves <= MOVES:
+                return status, unstable, max(level - 1, 0)
+            for i in range(n + 1):  # the mesh before it was moved had the state
+                room.x[i], room.y[i] = kept[0, i], kept[1, i]
+            moves, mu, shrunk, level, count, xs, ys = MOVES + 1, on_base, False, 1, n, room.x, room.y
+            continue
         shrunk = False
         if level == 1 and passes < regrades:
             adapt(functional, room.x, room.y, n, tube, now, room.work)
@@ -294,13 +314,12 @@ def solve(functional, room, tube, load, target, mu, regrades, accuracy):
             continue
         broken = tell(functional, ys, own, n, center, mu, now, table[level], changes[level])
         if level >= 3:
-            left, place = max(error, coarser), kinks.hidden(changes, level, edges)
-            if place > 0.0 and moves < MOVES:
-                kinks.move_on(room.x, room.y, edges, place, level - 3)
+            left, found = max(error, coarser), kinks.find(changes, level, edges, hidden)
+            if found > 0 and moves < MOVES and move_on(functional.density, room, tube, hidden, found, level, now, kept):
                 moves, mu, level, count, xs, ys = moves + 1, on_base, 1, n, room.x, room.y
                 continue
             largest = judge(functional, room, level, own.cells, now, target, left, broken)
-            met = largest <= accuracy and place == 0.0
+            met = largest <= accuracy and found == 0
             if met or level == MAX_DOUBLINGS + 1:
                 multiplier = room.out[0, MULTIPLIER]
                 finest.leave_loads(table[:, MULTIPLIER], level, multiplier, target.direction, left, room.fine)
