@@ -1,8 +1,9 @@
 """Nested meshes: every output extrapolated, with an error bound, refined until the bound meets the accuracy asked for.
 
 A midpoint cell errs by even powers of its size, so results A on meshes of n/2, n, 2n, 4n cells extrapolate to fourth
-order, ``E = (4 A_2n - A_n)/3``. The difference of two successive E, divided by the 15 that the order allows, estimates the
-error of the second; the difference before it, divided by 225, guards against its passing through zero. So does the
+order, ``E = (4 A_2n - A_n)/3``. The difference of two successive E, divided by the 15 that the order allows, or by less
+where it has fallen by less (cells longer than a layer), estimates the error of the second; the difference before it,
+divided by 225, guards against its passing through zero. So does the
 largest share that such an estimate has in the last change of any output, A_2n - A_n: no other has a smaller one. The bound
 is ``SAFETY`` times the estimate, plus a floor for rounding and for what Newton's last steps left.
 
@@ -29,6 +30,7 @@ MOVES = 2  # of the base mesh, so that it does not hide where the kind of cell c
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
 SAFETY = 3.3
+SLOWEST = 0.75  # share of a difference that the next one is taken to be at most
 FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
 TINY = 1e-300
 
@@ -82,8 +84,11 @@ def fourth_order(a, b, c, d, broken):
     holds a change of smoothness: it errs now by more, now by less, and no difference is divided by what an order allows.
     """
     first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-    order, before = (1.0, 4.0) if broken else (15.0, 225.0)
-    return third, max(abs(third - second) / order, abs(second - first) / before)
+    last, before = abs(third - second), abs(second - first)
+    if broken:
+        return third, max(last, 0.25 * before)
+    fallen = min(last / (before + TINY), SLOWEST)
+    return third, max(last * max(fallen / (1.0 - fallen), 1.0 / 15.0), before / 225.0)
 
 
 @kernel
