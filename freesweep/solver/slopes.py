@@ -70,7 +70,7 @@ def answers(problems, pressures, middles, limp, pieces):
     from .lanes.responses import differentiate_lanes
     from .lanes.told import TOLD
 
-    told = np.empty((2, len(problems), OUTPUTS, TOLD))
+    told = np.zeros((2, len(problems), OUTPUTS, TOLD))
     order = np.lexsort((middles, limp))  # what shares a vector should need much the same work
     for _, _, (constants, layers), some in kinds_of(problems):
         absent = (second.SECOND, second.THIRD) if constants == MOONEY_RIVLIN else ()
