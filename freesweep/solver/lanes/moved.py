@@ -55,7 +55,7 @@ OF_Y, OF_LEVEL, OF_RISE, OF_BEND, OF_LOADS = range(5)
 MIDDLE = OF_LOADS + LOADS
 # shares of R, and of what it is the difference of, up to which R - T changes by rounding: from there on that is
 # as much as the mean slope misses
-DIGITS = 1e-9
+DIGITS = 1e-11
 ASIDE = 1e-4  # of the stretch in the middle: as far from there the bend of R - T is looked at
 TINY = 1e-140
 
@@ -87,7 +87,27 @@ def move_middle(mid, here, at, cell, load, half, own):
     drive = -here.K_y - pull * s  # what the level falls by with the stretch
     dG, dp = here.G_y + here.G_R * pull, here.p_y + here.p_R * pull
     slope = rise_along(here, spread(1.0), pull, load)
-    fall = max(slope, here.T / (half * half * s * s))
+    dy = (mid.y - 1.0) * 2.0 * mid.q * (1.0 + mid.q) * mid.whole / (1.0 - mid.q)
+    put(own.middle[DEPTH], OF_RISE, slope * dy)
+    W = here.W_y * dy + here.W_G * dG * dy + here.W_p * dp * dy
+    enter_middle(own.middle[DEPTH], dy, -drive * dy, dG * dy, dp * dy, W, here)
+    to = own.middle[OWN]
+    put(to, OF_LOADS, s)
+    put(to, OF_LOADS + 1, here.yy * s)
+    put(to, OF_LOADS + 2, here.psi)
+    put(to, OF_LOADS + 3, here.W)
+    move_by_numbers(here, at, cell, load, max(slope, here.T / (half * half * s * s)), slope, own)
+    bend_middle(mid, cell, load, own)
+    return slope
+
+
+@kernel
+def move_by_numbers(here, at, cell, load, fall, slope, own):
+    """Write what the middle changes by with each number: its stretch by what the number does to the drive toward it, over
+    by how much that would ``fall`` with the stretch.
+    """
+    y, s, pull = here.y, here.s, 2.0 * load.p * here.y
+    drive = -here.K_y - pull * s
     by_numbers(here, at, cell, load, own.rows)
     for k in range(len(own.used)):
         j = own.used[k]
@@ -98,17 +118,6 @@ def move_middle(mid, here, at, cell, load, half, own):
         G, psi, W = settled_by(row, here, dy, dT + pull * dy)
         put(to, OF_RISE, rise + slope * dy)
         enter_middle(to, dy, s * dT + get(row, BY_K) - drive * dy, G, psi, W, here)
-    dy = (mid.y - 1.0) * 2.0 * mid.q * (1.0 + mid.q) * mid.whole / (1.0 - mid.q)
-    put(own.middle[DEPTH], OF_RISE, slope * dy)
-    W = here.W_y * dy + here.W_G * dG * dy + here.W_p * dp * dy
-    enter_middle(own.middle[DEPTH], dy, -drive * dy, dG * dy, dp * dy, W, here)
-    bend_middle(mid, cell, load, own)
-    to = own.middle[OWN]
-    put(to, OF_LOADS, s)
-    put(to, OF_LOADS + 1, here.yy * s)
-    put(to, OF_LOADS + 2, here.psi)
-    put(to, OF_LOADS + 3, here.W)
-    return slope
 
 
 @kernel
@@ -193,7 +202,7 @@ class Way(NamedTuple):
 
 
 @kernel
-def way_of(k, within, depth, z, at, per_share, here, load, mid):
+def way_of(k, within, depth, z, per_share, here, load, mid):
     """The :class:`Way` of place k of a part, in the lanes that have it; ``z`` is exp(-``depth``)."""
     q, i = mid.q, 1.0 / (1.0 - mid.q)
     near = here.beyond <= DIGITS * (here.R + abs(mid.level) + abs(load.m * here.psi))
@@ -204,18 +213,17 @@ def way_of(k, within, depth, z, at, per_share, here, load, mid):
     dx = select(within, per_share, 0.0)
     phi = (z - q) * (z - q) * i * i / z
     on = (1.0 - mid.y) * phi
-    rise = 2.0 / 3.0 * mid.rise + at.rise / 3.0
-    per_rise = 1.0 / select(near, rise + mid.bend * on / 6.0, 1.0)
+    per_rise = 1.0 / select(near, mid.rise + 0.5 * mid.bend * on, 1.0)
     return Way(
         phi, 2.0 * inner + share + root, inner + outer + share + root + 1.0 / mid.depth, 1.0 / (1.0 - mid.y), k, dx, near,
-        on, (rise + mid.bend * on / 3.0) * per_rise, per_rise, 1.0 / select(near, 1.0, here.beyond),
+        on, (mid.rise + mid.bend * on) * per_rise, per_rise, 1.0 / select(near, 1.0, here.beyond),
         1.0 / (here.beyond + 2.0 * here.T), 1.0 / here.T, 1.0 / here.R,
     )  # fmt: skip
 
 
 @kernel
-def move_place(way, here, at, cell, load, mid, whole, own):
-    """Add a place to all that is ``summed``; if not the ``whole``, to the length and how it grows with the depth only."""
+def move_place(way, here, at, cell, load, mid, own):
+    """Add a place to all that is ``summed``."""
     to, s, pull = own.summed[OWN], here.s, 2.0 * load.p * here.y
     s_c = s * here.T * way.per_R
     apart = (
@@ -232,10 +240,8 @@ def move_place(way, here, at, cell, load, mid, whole, own):
     W = here.W_y * dy + here.W_G * G + here.W_p * psi
     near = spread(0.0)
     if some(way.near):
-        near = near_middle(of, way, way.by_depth, rise_along(here, dy, dR, load))
-    add_move(own.summed[DEPTH], of, way, way.longer, near, dy, pull * dy, dR, (G, psi, W), apart, here, whole)
-    if not whole:
-        return
+        near = near_middle(of, way, way.by_depth)
+    add_move(own.summed[DEPTH], of, way, way.longer, near, dy, pull * dy, dR, (G, psi, W), apart, here)
     for n in range(LOADS):
         add(to, way.place, 1 + n, way.dx * apart[n])
     by_numbers(here, at, cell, load, own.rows)
@@ -246,21 +252,21 @@ def move_place(way, here, at, cell, load, mid, whole, own):
         dT, dR = get(row, BY_T) + pull * dy, (get(of, OF_LEVEL) - here.K_y * dy - get(row, BY_K)) * here.per_s
         G, psi, W = settled_by(row, here, dy, dR)
         if some(way.near):
-            near = near_middle(of, way, spread(0.0), rise_by(j, row, here, dy, dR, G, psi, load))
-        add_move(own.summed[j], of, way, spread(0.0), near, dy, dT, dR, (G, psi, W), apart, here, True)
+            near = near_middle(of, way, spread(0.0))
+        add_move(own.summed[j], of, way, spread(0.0), near, dy, dT, dR, (G, psi, W), apart, here)
 
 
 @kernel
-def near_middle(of, way, along, rise):
+def near_middle(of, way, along):
     """By what share R - T grows where it has no digits: it is the stretch from the middle, which grows by ``along`` but for
-    that of the middle's reach, times the mean of its slope, that changes by ``rise`` here.
+    that of the middle's reach, times the mean of its slope, which the middle tells.
     """
-    mean = 2.0 / 3.0 * get(of, OF_RISE) + rise / 3.0 + get(of, OF_BEND) * way.on / 6.0
+    mean = get(of, OF_RISE) + 0.5 * get(of, OF_BEND) * way.on
     return (along - get(of, OF_Y) * way.reach) * way.lift + mean * way.per_rise
 
 
 @kernel
-def add_move(to, of, way, longer, near, dy, dT, dR, settled, apart, here, whole):
+def add_move(to, of, way, longer, near, dy, dT, dR, settled, apart, here):
     """Add what one change moves at a place: ``longer`` is what it does to the stretch's way along the depth, ``near`` the
     share by which R - T grows where it has no digits, but for that of the middle's reach; ``settled`` what G, psi and W
     change by; what is ``apart`` from the middle is summed.
@@ -272,8 +278,6 @@ def add_move(to, of, way, longer, near, dy, dT, dR, settled, apart, here, whole)
     sine = (here.R * share + dT) * way.per_sum - bare
     dx = way.dx * (longer - reach - wider - sine)
     add(to, way.place, 0, dx)
-    if not whole:
-        return
     s = here.s * here.T * way.per_R
     on = s * (wider + dT * way.per_T - bare)
     moved = on, here.yy * on + 2.0 * here.y * dy * s, psi, W

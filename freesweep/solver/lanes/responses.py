@@ -24,14 +24,15 @@ from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import look_along
 from .second import place_at
 from .sums import NARROW, find_ends, make_room
-from .told import OUTPUTS, TOLD, tell
+from .told import LEFT, OUTPUTS, TOLD, tell
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 PASSES = 6  # to a middle whose half has its length
-ALMOST = 1e-5  # of the depth: a step that the next one need not mend
+# of what hangs on the depth of the middle: a share that may be wrong, and one that need not be mended
+ALMOST, ENOUGH = 1e-5, 1e-9
 SWOLLEN = 0.1  # by which a swelling makes the layer's beginning slower
 # of a depth, what a step leaves at least; deeper than anything is told apart; by how much it has to be less than the deepest
-LEFT, LONGEST, SURELY = 0.5, 30.0, 1.0
+LEAST, LONGEST, SURELY = 0.5, 30.0, 1.0
 
 
 @kernel
@@ -62,9 +63,9 @@ def down(share, left, width, mid):
 
 
 @kernel
-def over_parts(parts, pieces, edges, mid, cell, load, whole, own, scratch):
-    """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`; if not the
-    ``whole``, the length only. Returns the lanes in which each part is of one kind.
+def over_parts(parts, pieces, edges, mid, cell, load, own, scratch):
+    """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`.
+    Returns the lanes in which each part is of one kind.
     """
     valid, near = mask_of(-1), nothing_yet(spread(0.0))
     clear(own)
@@ -83,26 +84,27 @@ def over_parts(parts, pieces, edges, mid, cell, load, whole, own, scratch):
                     kind = at.kind
                 valid = valid & (((at.room > 0.0) & (at.kind == kind)) | isnt(within))
                 place = place_at(here.y, here.beyond, at, cell, load)
-                way = way_of(k, within, depth, here.z, at, here.per_share, place, load, mid)
-                move_place(way, place, at, cell, load, mid, whole, own)
+                way = way_of(k, within, depth, here.z, here.per_share, place, load, mid)
+                move_place(way, place, at, cell, load, mid, own)
             close(own)
     return valid
 
 
 @kernel
 def met_by(mid, far, slope, place, load, half, own, scratch):
-    """``(stretch of the middle, share of the depth that is missed)`` of which half a tube is as long as it is, about: the
-    uniform stretch beside it stays. The middle of a long tube is that, which may be missed by a share of the strain.
+    """``(stretch of the middle, share that is missed)`` of which half a tube is as long as it is, about: the uniform stretch
+    beside it stays. The share is one of all that hangs on the depth of the middle; that of a long tube is uniform, and may
+    be missed by a share of the strain.
     """
     rest = half - get(own.summed[OWN], SUM)
     rise = -place.K_y * place.per_s - 2.0 * load.p * place.y
     step = select(far, rest * mid.rate, rest / select(far, 1.0, get(own.summed[DEPTH], SUM)))
-    depth = min(max(mid.depth + step, LEFT * mid.depth), LONGEST)
+    depth = min(max(mid.depth + step, LEAST * mid.depth), LONGEST)
     q, u = fallen(depth, scratch), select(far, mid.y - rise / slope, mid.u)
     on = (1.0 - u) * 2.0 * (q / (1.0 + q * q) - mid.q * mid.whole)
     short = far & (mid.depth + step < DEEPEST - SURELY)
     y = select(far, select(short, u + on, u), mid.y + on)
-    off = select(far, abs(u - mid.y) / abs(1.0 - mid.y), abs(step) / mid.depth)
+    off = select(far, abs(u - mid.y) / abs(1.0 - mid.y), abs(step) / mid.depth * min(LEFT * mid.depth * mid.q, 1.0))
     return y, select(short, 1.0, off)
 
 
@@ -141,8 +143,8 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
         searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)
         cell, _, load = loads(columns, constants, PHYSICAL, layers)
         y, half = get(start, 0), get(columns, LENGTH)
-        active, settled, met = mask_of((1 << seats) - 1), mask_of(0), mask_of(0)
-        searched, whole = searched and may_go_slack(load.wall), False
+        active, met = mask_of((1 << seats) - 1), mask_of(0)
+        searched = searched and may_go_slack(load.wall)
         for step in range(PASSES):
             (mid, far), parts, unsure = seated(y, cell, load, half, scratch), 1, spread(0.0)
             put(edges, 0, 0.0)
@@ -155,14 +157,13 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
             at = lagrangian.at_level(mid.y, mid.level, cell, load, nothing_yet(spread(0.0)))
             place = place_at(mid.y, spread(0.0), at, cell, load)
             slope = move_middle(mid, place, at, cell, load, half, own)
-            active = active & over_parts(parts, pieces, edges, mid, cell, load, whole, own, scratch)
+            active = active & over_parts(parts, pieces, edges, mid, cell, load, own, scratch)
             better, off = met_by(mid, far, slope, place, load, half, own, scratch)
-            if whole:
+            met = active & (off < ALMOST)
+            if step + 1 == PASSES or not some(active & (off > ENOUGH)):
                 tell(mid, far, off, unsure > 0.0, half, own, out)
-                met = active & (off < ALMOST)
                 break
-            y, settled = select(settled, y, better), settled | (off < ALMOST)  # once more
-            whole = step + 2 == PASSES or not some(active & isnt(settled))
+            y = select(off > ENOUGH, better, y)
         for lane in range(seats):
             row = order[group + lane]
             for i in range(OUTPUTS):

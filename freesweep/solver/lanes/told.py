@@ -20,7 +20,7 @@ from .vector import get, put, select
 
 OUTPUTS = LOADS + 1
 TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
-SAFETY = 10.0  # times what rules miss, and what is wrong
+SAFETY, LEFT = 10.0, 4.0  # times what rules miss, and what is wrong
 BEHIND = 2.0 * DEEPEST * exp(-DEEPEST)  # of a layer, in the middle of a long tube
 ENDS, ROUNDING = 3e-9, 1e-11  # of where ends of slack lie, of numbers
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
@@ -29,12 +29,12 @@ CLOSE = 1e-10  # of the strain in the middle, that may be wrong
 @kernel
 def tell(mid, far, off, loose, half, own, out):
     """Write what is told: ``out`` (2, OUTPUTS TOLD, WIDTH), values and what they may miss. Where it is ``far`` to the middle
-    it is uniform; else ``off`` is by what share of the depth half a tube is not as long as it is. Where ``loose``, a family
+    it is uniform; ``off`` is by what share what hangs on the depth of the middle is wrong. Where ``loose``, a family
     goes slack along the tube.
     """
     depth = own.summed[DEPTH]
     per = 1.0 / select(far, 1.0, get(depth, SUM))
-    unsure = SAFETY * abs(off) + select(loose, ENDS, 0.0) + select(far, BEHIND, 0.0) + ROUNDING
+    unsure = SAFETY * off + select(loose, ENDS, 0.0) + select(far, BEHIND, 0.0) + ROUNDING
     for n in range(LOADS):
         tell_load(n, far, per, unsure, half, own, out)
     first = TOLD * LOADS
@@ -85,4 +85,4 @@ def tell_load(n, far, per, unsure, half, own, out):
     on = select(far, 0.0, grown * per)
     put(out[0], at + TOLD - 1, here + on)
     missed = (of_grown + abs(grown) * of_depth) * abs(per)
-    put(out[1], at + TOLD - 1, select(far, size, missed + unsure * size * abs(per)) + unsure * abs(here))
+    put(out[1], at + TOLD - 1, select(far, 0.0, missed + unsure * size * abs(per)) + unsure * abs(here))
