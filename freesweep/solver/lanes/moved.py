@@ -46,9 +46,10 @@ _AT, _WEIGHTS = np.polynomial.legendre.leggauss(COUNT)
 PLACES, WEIGHTS = 0.5 + 0.5 * _AT, 0.5 * _WEIGHTS
 _COEFFICIENTS = (2.0 * np.arange(COUNT) + 1.0)[:, None] * (np.polynomial.legendre.legvander(_AT, COUNT - 1).T * WEIGHTS)
 TAILS = np.ascontiguousarray(_COEFFICIENTS[-2 * LAST_ONES :])
+LATE = TAILS[-1] - TAILS[-2]  # signs alternate of what is hardly smooth where the layer begins
 LOADS = 4  # sums: of s, y^2 s, psi and W, less what these are in the middle, behind the length
 DEPTH, OWN = NUMBERS, NUMBERS + 1  # rows behind those of the numbers: by the depth of the middle; the sums themselves
-SUM, TAIL, OTHER_TAIL, MISSED, SMOOTH = range(0, 5 * (LOADS + 1), LOADS + 1)  # rows of each: LOADS + 1; the last are 4
+SUM, TAIL, MISSED, SMOOTH = range(0, 4 * (LOADS + 1), LOADS + 1)  # rows of each: LOADS + 1; the last are 4
 SUMS = SMOOTH + 2 * LAST_ONES
 # rows of the middle: its stretch, level, rise of R - T and how that bends; what is summed
 OF_Y, OF_LEVEL, OF_RISE, OF_BEND, OF_LOADS = range(5)
@@ -230,9 +231,10 @@ def move_place(way, here, at, cell, load, mid, own):
         s_c - get(own.middle[OWN], OF_LOADS), here.yy * s_c - get(own.middle[OWN], OF_LOADS + 1),
         here.psi - get(own.middle[OWN], OF_LOADS + 2), here.W - get(own.middle[OWN], OF_LOADS + 3),
     )  # fmt: skip
-    add(to, way.place, 0, way.dx)
+    dx = way.dx
+    add(to, way.place, dx, (dx * apart[0], dx * apart[1], dx * apart[2], dx * apart[3]))
     for i in range(2 * LAST_ONES):
-        put(to, SMOOTH + i, get(to, SMOOTH + i) + TAILS[i, way.place] * way.dx * way.phi)
+        put(to, SMOOTH + i, get(to, SMOOTH + i) + TAILS[i, way.place] * dx * way.phi)
     of = own.middle[DEPTH]
     dy = get(of, OF_Y) * (1.0 - way.phi) + (1.0 - mid.y) * way.phi * way.by_depth
     dR = (get(of, OF_LEVEL) - here.K_y * dy) * here.per_s
@@ -242,8 +244,6 @@ def move_place(way, here, at, cell, load, mid, own):
     if some(way.near):
         near = near_middle(of, way, way.by_depth)
     add_move(own.summed[DEPTH], of, way, way.longer, near, dy, pull * dy, dR, (G, psi, W), apart, here)
-    for n in range(LOADS):
-        add(to, way.place, 1 + n, way.dx * apart[n])
     by_numbers(here, at, cell, load, own.rows)
     for k in range(len(own.used)):
         j = own.used[k]
@@ -277,26 +277,34 @@ def add_move(to, of, way, longer, near, dy, dT, dR, settled, apart, here):
     bare, wider = dR * way.per_R, 0.5 * G * here.per_s * here.per_s
     sine = (here.R * share + dT) * way.per_sum - bare
     dx = way.dx * (longer - reach - wider - sine)
-    add(to, way.place, 0, dx)
     s = here.s * here.T * way.per_R
-    on = s * (wider + dT * way.per_T - bare)
-    moved = on, here.yy * on + 2.0 * here.y * dy * s, psi, W
-    for n in range(LOADS):
-        add(to, way.place, 1 + n, way.dx * (moved[n] - get(of, OF_LOADS + n)) + dx * apart[n])
+    on, own = s * (wider + dT * way.per_T - bare), way.dx
+    add(
+        to, way.place, dx,
+        (
+            own * (on - get(of, OF_LOADS)) + dx * apart[0],
+            own * (here.yy * on + 2.0 * here.y * dy * s - get(of, OF_LOADS + 1)) + dx * apart[1],
+            own * (psi - get(of, OF_LOADS + 2)) + dx * apart[2], own * (W - get(of, OF_LOADS + 3)) + dx * apart[3],
+        ),
+    )  # fmt: skip
 
 
 @kernel
-def add(to, k, n, value):
-    """Add place k to sum n of a row, and to what tells how smooth it is."""
-    put(to, SUM + n, get(to, SUM + n) + WEIGHTS[k] * value)
-    put(to, TAIL + n, get(to, TAIL + n) + TAILS[2, k] * value)
-    put(to, OTHER_TAIL + n, get(to, OTHER_TAIL + n) + TAILS[3, k] * value)
+def add(to, k, length, others):
+    """Add place k to all sums of a row, and to what tells how smooth they are."""
+    weight, late = WEIGHTS[k], LATE[k]
+    add_one(to, 0, weight, late, length)
+    add_one(to, 1, weight, late, others[0])
+    add_one(to, 2, weight, late, others[1])
+    add_one(to, 3, weight, late, others[2])
+    add_one(to, 4, weight, late, others[3])
 
 
 @kernel
-def late(to, n):
-    """The largest of Legendre's last coefficients of sum n."""
-    return max(abs(get(to, TAIL + n)), abs(get(to, OTHER_TAIL + n)))
+def add_one(to, n, weight, late, value):
+    """:func:`add` one of them."""
+    put(to, SUM + n, get(to, SUM + n) + weight * value)
+    put(to, TAIL + n, get(to, TAIL + n) + late * value)
 
 
 @kernel
@@ -331,9 +339,8 @@ def close(own):
 def close_row(to, share):
     """:func:`close` one row."""
     for n in range(LOADS + 1):
-        put(to, MISSED + n, get(to, MISSED + n) + share * late(to, n))
+        put(to, MISSED + n, get(to, MISSED + n) + share * abs(get(to, TAIL + n)))
         put(to, TAIL + n, 0.0)
-        put(to, OTHER_TAIL + n, 0.0)
     for i in range(2 * LAST_ONES):
         put(to, SMOOTH + i, 0.0)
 

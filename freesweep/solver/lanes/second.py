@@ -123,13 +123,13 @@ def place_at(y, beyond, at, cell, load):
     s, (taut_alpha, taut_beta) = sqrt(1.0 + G_1), is_taut(at.kind)
     alpha = family(taut_alpha, cell[0] + cell[1], at.a, psi, yy)
     beta = family(taut_beta, cell[0] - cell[1], at.b, psi, yy)
-    T, i, a, b, zero = load.p * yy + load.f, 1.0 / s, alpha.pull, beta.pull, spread(0.0)
+    T, i, a, b = load.p * yy + load.f, 1.0 / s, alpha.pull, beta.pull
     R = T + beyond
     turned, squared = a * alpha.on + b * beta.on, a * alpha.on * alpha.on + b * beta.on * beta.on
     K_GG, K_Gp, K_pp = -0.25 * R * i * i * i - e * W_GG, -e * W_Gp, -e * W_pp - 2.0 * yy * (a + b)
     K_yG, K_yp = -e * W_yG, -e * W_yp - 4.0 * y * turned
     settled = inverse(alpha, beta, K_GG, K_Gp, K_pp)
-    G_R, p_R = answer(settled, 0.5 * i, zero, zero, zero)
+    G_R, p_R = -0.5 * i * settled[0], -0.5 * i * settled[1]
     G_y, p_y = answer(settled, K_yG, K_yp, 2.0 * y * alpha.on * alpha.on, 2.0 * y * beta.on * beta.on)
     return Place(
         y, yy, T, R, beyond, s, i, psi, W, W_y, W_G, W_p, -e * W_y - 2.0 * y * squared, -e * W_yy - 2.0 * squared,
@@ -148,46 +148,46 @@ def turned(here, by_y, by_G, by_p, dG, dp, dR):
 
 
 @kernel
-def enter(row, changed, constraints, dT, dW, here):
-    """Write what a number changes: K and K's derivatives ``changed`` (K, K_y, K_G, K_psi), both ``constraints``, T and the
-    wall's energy.
+def enter(row, changed, settled, dW):
+    """Write what a number changes: K and K's derivatives ``changed`` (K, K_y, K_G, K_psi), as which G and psi have
+    ``settled``, and the wall's energy. T it leaves.
     """
     K, K_y, K_G, K_p = changed
-    dG, dp = answer(here.inverse, K_G, K_p, constraints[0], constraints[1])
     put(row, BY_K, K)
-    put(row, BY_T, dT)
     put(row, BY_KY, K_y)
     put(row, BY_KG, K_G)
     put(row, BY_KP, K_p)
-    put(row, BY_G, dG)
-    put(row, BY_PSI, dp)
+    put(row, BY_G, settled[0])
+    put(row, BY_PSI, settled[1])
     put(row, BY_W, dW)
 
 
 @kernel
 def by_numbers(here, at, cell, load, rows):
     """Write to ``rows`` (NUMBERS, ROWS, WIDTH) what all numbers change at a place."""
-    zero, one, none = spread(0.0), spread(1.0), (spread(0.0), spread(0.0))
+    zero, one = spread(0.0), spread(1.0)
     by_fibers(load.gamma, here, rows)
     by_walls(at, cell, load, here, rows)
-    enter(rows[FORCE], (zero, zero, zero, zero), none, one, zero, here)
-    enter(rows[PRESSURE], (zero, zero, zero, zero), none, here.yy, zero, here)
-    enter(rows[TORQUE], (here.psi, zero, zero, one), none, zero, zero, here)
+    put(rows[FORCE], BY_T, one)  # all else of both is 0, as rows begin
+    put(rows[PRESSURE], BY_T, here.yy)
+    _, Gp, pp, _, _, _, _ = here.inverse
+    enter(rows[TORQUE], (here.psi, zero, zero, one), (-Gp, -pp), zero)
 
 
 @kernel
 def by_fibers(gamma, here, rows):
     """:func:`enter` tan(angle) of both families, and their extension."""
     y, alpha, beta, gg, zero = here.y, here.alpha, here.beta, gamma * gamma, spread(0.0)
+    _, Gp, pp, G_a, p_a, G_b, p_b = here.inverse
     c = alpha.turn - 2.0 * gg * alpha.t
     K = -alpha.pull * c, -4.0 * y * alpha.pull * alpha.on, zero, -2.0 * here.yy * alpha.pull
-    enter(rows[T_ALPHA], K, (c, zero), zero, zero, here)
+    enter(rows[T_ALPHA], K, (-(Gp * K[3] + G_a * c), -(pp * K[3] + p_a * c)), zero)
     c = beta.turn - 2.0 * gg * beta.t
     K = -beta.pull * c, -4.0 * y * beta.pull * beta.on, zero, -2.0 * here.yy * beta.pull
-    enter(rows[T_BETA], K, (zero, c), zero, zero, here)
+    enter(rows[T_BETA], K, (-(Gp * K[3] + G_b * c), -(pp * K[3] + p_b * c)), zero)
     longer = -2.0 * gamma * (1.0 + alpha.t * alpha.t), -2.0 * gamma * (1.0 + beta.t * beta.t)
     K = -(alpha.pull * longer[0] + beta.pull * longer[1]), zero, zero, zero
-    enter(rows[GAMMA], K, longer, zero, zero, here)
+    enter(rows[GAMMA], K, (-(G_a * longer[0] + G_b * longer[1]), -(p_a * longer[0] + p_b * longer[1])), zero)
 
 
 @kernel
@@ -208,8 +208,8 @@ def by_walls(at, cell, load, here, rows):
 def by_wall(row, changed, e, here):
     """:func:`enter` a number on which only the wall's energy depends, and its slopes, as ``changed`` tells."""
     W, W_y, W_G, W_p = changed
-    zero = spread(0.0)
-    enter(row, (-e * W, -e * W_y, -e * W_G, -e * W_p), (zero, zero), zero, W, here)
+    GG, Gp, pp, _, _, _, _ = here.inverse
+    enter(row, (-e * W, -e * W_y, -e * W_G, -e * W_p), (e * (GG * W_G + Gp * W_p), e * (Gp * W_G + pp * W_p)), W)
 
 
 @kernel
