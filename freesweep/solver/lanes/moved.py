@@ -98,7 +98,7 @@ def move_middle(mid, here, at, cell, load, half, own):
     put(to, OF_LOADS + 2, here.psi)
     put(to, OF_LOADS + 3, here.W)
     move_by_numbers(here, at, cell, load, max(slope, here.T / (half * half * s * s)), slope, own)
-    bend_middle(mid, cell, load, own)
+    bend_middle(mid, at, cell, load, own)
     return slope
 
 
@@ -122,27 +122,38 @@ def move_by_numbers(here, at, cell, load, fall, slope, own):
 
 
 @kernel
-def bend_middle(mid, cell, load, own):
-    """Write by how much the bend of R - T in the middle changes: what its rise does a little to both sides of it."""
+def bend_middle(mid, at, cell, load, own):
+    """Write by how much the bend of R - T in the middle, ``at`` its level, changes: what its rise does a little to both
+    sides of it, or to the one on which the same families pull.
+    """
+    aside, none = ASIDE * mid.y, nothing_yet(0.0 * mid.y)
+    below = lagrangian.at_level(mid.y - aside, mid.level, cell, load, none)
+    above = lagrangian.at_level(mid.y + aside, mid.level, cell, load, none)
+    alike, alike_above, zero = below.kind == at.kind, above.kind == at.kind, 0.0 * mid.y
+    share = select(alike & alike_above, 0.5, 1.0) / aside
+    before, behind = select(alike, -share, zero), select(alike_above, share, zero)
     for j in range(OWN):
-        put(own.middle[j], OF_BEND, 0.0)
-    for side in range(2):
-        aside = (2.0 * side - 1.0) * ASIDE * mid.y
-        y, per = mid.y + aside, 0.5 / aside
-        at = lagrangian.at_level(y, mid.level, cell, load, nothing_yet(0.0 * y))
-        here = place_at(y, at.R - load.p * y * y - load.f, at, cell, load)
-        by_numbers(here, at, cell, load, own.rows)
-        for k in range(len(own.used)):
-            j = own.used[k]
-            row, of = own.rows[j], own.middle[j]
-            dy = get(of, OF_Y)
-            dR = (get(of, OF_LEVEL) - here.K_y * dy - get(row, BY_K)) * here.per_s
-            G, psi, _ = settled_by(row, here, dy, dR)
-            put(of, OF_BEND, get(of, OF_BEND) + per * rise_by(j, row, here, dy, dR, G, psi, load))
-        of = own.middle[DEPTH]
+        put(own.middle[j], OF_BEND, -(before + behind) * get(own.middle[j], OF_RISE))
+    bend_by(before, mid.y - aside, below, cell, load, own)
+    bend_by(behind, mid.y + aside, above, cell, load, own)
+
+
+@kernel
+def bend_by(share, y, at, cell, load, own):
+    """Add a ``share`` of how the rise of R - T changes at a stretch that is as far from that of the middle as ever."""
+    here = place_at(y, at.R - load.p * y * y - load.f, at, cell, load)
+    by_numbers(here, at, cell, load, own.rows)
+    for k in range(len(own.used)):
+        j = own.used[k]
+        row, of = own.rows[j], own.middle[j]
         dy = get(of, OF_Y)
-        dR = (get(of, OF_LEVEL) - here.K_y * dy) * here.per_s
-        put(of, OF_BEND, get(of, OF_BEND) + per * rise_along(here, dy, dR, load))
+        dR = (get(of, OF_LEVEL) - here.K_y * dy - get(row, BY_K)) * here.per_s
+        G, psi, _ = settled_by(row, here, dy, dR)
+        put(of, OF_BEND, get(of, OF_BEND) + share * rise_by(j, row, here, dy, dR, G, psi, load))
+    of = own.middle[DEPTH]
+    dy = get(of, OF_Y)
+    dR = (get(of, OF_LEVEL) - here.K_y * dy) * here.per_s
+    put(of, OF_BEND, get(of, OF_BEND) + share * rise_along(here, dy, dR, load))
 
 
 @kernel
@@ -210,7 +221,7 @@ def way_of(k, within, depth, z, per_share, here, load, mid):
     share = depth / mid.depth
     # what z and q change by
     dz, dq = -z * share, -q
-    inner, outer, root = (dz - dq) / (z - q), (dz + dq) / (z + q), 2.0 * dq * i
+    inner, outer, root = (dz - dq) / select(within, z - q, 1.0), (dz + dq) / (z + q), 2.0 * dq * i
     dx = select(within, per_share, 0.0)
     phi = (z - q) * (z - q) * i * i / z
     on = (1.0 - mid.y) * phi
@@ -327,8 +338,7 @@ def close(own):
     base, depth = own.summed[OWN], own.summed[DEPTH]
     share = fallen(base)
     share = share * share
-    share = share * share
-    share = share * share
+    share = share * share * share
     close_row(base, share)
     close_row(depth, share)
     for k in range(len(own.used)):

@@ -29,7 +29,7 @@ from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 PASSES = 6  # to a middle whose half has its length
 # of what hangs on the depth of the middle: a share that may be wrong, and one that need not be mended
-ALMOST, ENOUGH = 1e-5, 1e-9
+ALMOST, ENOUGH = 1e-5, 3e-10
 SWOLLEN = 0.1  # by which a swelling makes the layer's beginning slower
 # of a depth, what a step leaves at least; deeper than anything is told apart; by how much it has to be less than the deepest
 LEAST, LONGEST, SURELY = 0.5, 30.0, 1.0

@@ -20,7 +20,7 @@ from .vector import get, put, select
 
 OUTPUTS = LOADS + 1
 TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
-SAFETY, LEFT = 10.0, 4.0  # times what rules miss, and what is wrong
+SAFETY, WRONG, LEFT = 4.0, 20.0, 4.0  # times what rules miss, and what is wrong
 BEHIND = 2.0 * DEEPEST * exp(-DEEPEST)  # of a layer, in the middle of a long tube
 ENDS, ROUNDING = 3e-9, 1e-11  # of where ends of slack lie, of numbers
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
@@ -34,16 +34,18 @@ def tell(mid, far, off, loose, half, own, out):
     """
     depth = own.summed[DEPTH]
     per = 1.0 / select(far, 1.0, get(depth, SUM))
-    unsure = SAFETY * off + select(loose, ENDS, 0.0) + select(far, BEHIND, 0.0) + ROUNDING
+    missed = SAFETY * get(own.summed[OWN], MISSED) * abs(per)  # of the depth, as the length is
+    off = off + select(far, 0.0, missed / mid.depth * min(LEFT * mid.depth * mid.q, 1.0))
+    unsure, ends = WRONG * off + select(far, BEHIND, 0.0) + ROUNDING, select(loose, ENDS, 0.0)
     for n in range(LOADS):
-        tell_load(n, far, per, unsure, half, own, out)
+        tell_load(n, far, per, unsure, ends, half, own, out)
     first = TOLD * LOADS
     put(out[0], first, mid.y)
-    put(out[1], first, CLOSE * abs(1.0 - mid.y) + ROUNDING)
     deeper, of_depth = get(own.middle[DEPTH], OF_Y), SAFETY * get(depth, MISSED) * abs(per)
+    put(out[1], first, CLOSE * abs(1.0 - mid.y) + ROUNDING + select(far, 0.0, missed * abs(deeper)))
     for k in range(len(own.used)):
         j = own.used[k]
-        moved, missed = depth_by(j, far, per, own)
+        moved, missed = depth_by(j, far, per, ends, own)
         still, on = get(own.middle[j], OF_Y), moved * deeper
         put(out[0], first + 1 + j, still + on)
         put(out[1], first + 1 + j, missed * abs(deeper) + unsure * (abs(still) + abs(on)))
@@ -53,16 +55,16 @@ def tell(mid, far, off, loose, half, own, out):
 
 
 @kernel
-def depth_by(j, far, per, own):
+def depth_by(j, far, per, ends, own):
     """How the depth of the middle moves with a number, and what that may miss."""
     depth, one = own.summed[DEPTH], own.summed[j]
     moved = -get(one, SUM) * per
-    missed = SAFETY * (get(one, MISSED) + abs(moved) * get(depth, MISSED)) * abs(per)
+    missed = SAFETY * (get(one, MISSED) + abs(moved) * get(depth, MISSED)) * abs(per) + 2.0 * ends * abs(moved)
     return select(far, 0.0, moved), select(far, 0.0, missed)
 
 
 @kernel
-def tell_load(n, far, per, unsure, half, own, out):
+def tell_load(n, far, per, unsure, ends, half, own, out):
     """Write what load n is conjugate to, and its derivatives."""
     depth, base = own.summed[DEPTH], own.summed[OWN]
     here = get(own.middle[OWN], OF_LOADS + n)
@@ -74,13 +76,14 @@ def tell_load(n, far, per, unsure, half, own, out):
     size = half * abs(deep) + abs(get(depth, SUM + 1 + n))
     of_grown = SAFETY * get(depth, MISSED + 1 + n)
     of_depth = SAFETY * get(depth, MISSED) * abs(per)
-    put(out[1], at, missed + unsure * (half * abs(here) + abs(get(base, SUM + 1 + n))))
+    put(out[1], at, missed + unsure * (half * abs(here)) + (unsure + ends) * abs(get(base, SUM + 1 + n)))
     for k in range(len(own.used)):
         j = own.used[k]
-        moved, unknown = depth_by(j, far, per, own)
+        moved, unknown = depth_by(j, far, per, ends, own)
         still, bent = half * get(own.middle[j], OF_LOADS + n), get(own.summed[j], SUM + 1 + n)
         put(out[0], at + 1 + j, still + bent + moved * grown)
         missed = SAFETY * get(own.summed[j], MISSED + 1 + n) + abs(moved) * of_grown + unknown * abs(grown)
+        missed = missed + ends * (abs(bent) + abs(moved * get(depth, SUM + 1 + n)))
         put(out[1], at + 1 + j, missed + unsure * (abs(still) + abs(bent) + abs(moved) * size))
     on = select(far, 0.0, grown * per)
     put(out[0], at + TOLD - 1, here + on)
