@@ -338,7 +338,8 @@ def close(own):
     base, depth = own.summed[OWN], own.summed[DEPTH]
     share = fallen(base)
     share = share * share
-    share = share * share * share
+    share = share * share
+    share = share * share
     close_row(base, share)
     close_row(depth, share)
     for k in range(len(own.used)):

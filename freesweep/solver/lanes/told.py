@@ -20,9 +20,9 @@ from .vector import get, put, select
 
 OUTPUTS = LOADS + 1
 TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
-SAFETY, WRONG, LEFT = 4.0, 20.0, 4.0  # times what rules miss, and what is wrong
+SAFETY, WRONG, LEFT = 10.0, 20.0, 4.0  # times what rules miss, and what is wrong
 BEHIND = 2.0 * DEEPEST * exp(-DEEPEST)  # of a layer, in the middle of a long tube
-ENDS, ROUNDING = 3e-9, 1e-11  # of where ends of slack lie, of numbers
+ENDS, ROUNDING, NOISE = 1e-8, 1e-11, 1e-9  # of where ends of slack lie, of numbers, of how R - T moves near the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
 
 
@@ -36,7 +36,7 @@ def tell(mid, far, off, loose, half, own, out):
     per = 1.0 / select(far, 1.0, get(depth, SUM))
     missed = SAFETY * get(own.summed[OWN], MISSED) * abs(per)  # of the depth, as the length is
     off = off + select(far, 0.0, missed / mid.depth * min(LEFT * mid.depth * mid.q, 1.0))
-    unsure, ends = WRONG * off + select(far, BEHIND, 0.0) + ROUNDING, select(loose, ENDS, 0.0)
+    unsure, ends = WRONG * off + select(far, BEHIND, 0.0) + NOISE, select(loose, ENDS, 0.0)
     for n in range(LOADS):
         tell_load(n, far, per, unsure, ends, half, own, out)
     first = TOLD * LOADS
@@ -76,7 +76,8 @@ def tell_load(n, far, per, unsure, ends, half, own, out):
     size = half * abs(deep) + abs(get(depth, SUM + 1 + n))
     of_grown = SAFETY * get(depth, MISSED + 1 + n)
     of_depth = SAFETY * get(depth, MISSED) * abs(per)
-    put(out[1], at, missed + unsure * (half * abs(here)) + (unsure + ends) * abs(get(base, SUM + 1 + n)))
+    unsure_here = unsure - NOISE + ROUNDING
+    put(out[1], at, missed + unsure_here * half * abs(here) + (unsure_here + ends) * abs(get(base, SUM + 1 + n)))
     for k in range(len(own.used)):
         j = own.used[k]
         moved, unknown = depth_by(j, far, per, ends, own)
