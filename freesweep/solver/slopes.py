@@ -6,7 +6,7 @@ from numba import config
 from .batch import OUTPUTS, kinds_of, walk_by_vectors
 from .problem import FORCE, MOONEY_RIVLIN, SOURCE, TORQUE, wall_columns
 
-FINENESS, SHARP = (1, 2, 4, 8), 1e-5  # pieces of parts; a bound that is taken where no more pieces are tried
+FINENESS, SHARP = (1, 2, 4, 8, 16, 32), 1e-5  # pieces of parts; a bound that is taken where no more pieces are tried
 MENDED = 0.5  # of a bound: what twice as many pieces leave more of is no pieces' fault
 SURE = 1e-8  # accuracy of states that are not known
 

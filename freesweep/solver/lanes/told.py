@@ -22,7 +22,7 @@ OUTPUTS = LOADS + 1
 TOLD = NUMBERS + 2  # of each: itself, its derivatives by the numbers, and by the length
 SAFETY, WRONG, LEFT = 10.0, 20.0, 4.0  # times what rules miss, and what is wrong
 BEHIND = 2.0 * DEEPEST * exp(-DEEPEST)  # of a layer, in the middle of a long tube
-ENDS, ROUNDING, NOISE = 1e-8, 1e-11, 3e-10  # of where ends of slack lie, of numbers, of how R - T moves near the middle
+ENDS, ROUNDING, NOISE = 4e-9, 1e-11, 3e-10  # of where ends of slack lie, of numbers, of how R - T moves near the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
 
 
@@ -51,7 +51,8 @@ def tell(mid, far, off, loose, half, own, out):
         put(out[1], first + 1 + j, missed * abs(deeper) + unsure * (abs(still) + abs(on)))
     on = select(far, 0.0, deeper * per)
     put(out[0], first + TOLD - 1, on)
-    put(out[1], first + TOLD - 1, abs(on) * (of_depth + unsure) + select(far, abs(deeper), 0.0))
+    behind = select(far, BEHIND * abs(1.0 - mid.y) * mid.rate, 0.0)
+    put(out[1], first + TOLD - 1, abs(on) * (of_depth + unsure) + behind)
 
 
 @kernel
