@@ -10,7 +10,12 @@ import freesweep as fs
 
 C10 = 0.11e6
 LOADS = ("pressure", "force", "torque", "deformed_length", "rotation")
-SEEN, HALVED, FARTHEST, CLOSEST = 9, 40, 1.0, 6.0  # loads looked at; halvings; decades of a state's distance from a change
+SEEN, HALVED, FARTHEST, CLOSEST = (
+    9,
+    40,
+    0.5,
+    4.0,
+)  # loads looked at; halvings; decades of a state's distance from a change
 AT_NODE = 1e-9  # of the length
 
 
@@ -105,7 +110,9 @@ def at_change(way, state, load, unit, rng):
         if int(found["status"]) != 0:
             return None
         shares = [found[name].item() for name in ("slack_alpha", "slack_beta") if name in found]
-        return tuple(k for share in shares for k in (share > 0.0, share < 1.0, np.sign(np.round((share - 0.5) / AT_NODE))))
+        return tuple(
+            k for share in shares for k in (share > 0.0, share < 1.0, np.sign(np.round((share - 0.5) / AT_NODE)))
+        )
 
     amounts = np.linspace(-0.6, 1.2, SEEN) + rng.uniform(-0.1, 0.1)
     seen = [kind_at(amount) for amount in amounts]
@@ -133,7 +140,9 @@ def solved(way, state, **more):
 def parameters_of(way, state):
     """Names of all that derivatives are asked by: of numbers, loads and what is held."""
     loads = {"lock": (), "inflate": LOADS[:3], "blocked_force": ("pressure", "torque", "deformed_length")}
-    own = [name for name, value in state.items() if name not in (*LOADS, "buckled") and not isinstance(value, str | None)]
+    own = [
+        name for name, value in state.items() if name not in (*LOADS, "buckled") and not isinstance(value, str | None)
+    ]
     return sorted({*own, "fiber_extension", *loads.get(way, ("pressure", "force", "rotation"))})
 
 
