@@ -88,7 +88,7 @@ class Asked:
         still = np.all([np.abs(row - natural[name]) <= UNSTRAINED * units[name] for name, row in rows], axis=0)
         found = np.full((2, len(self.outputs), 1 + len(self.parameters), n), np.nan)
         some = np.flatnonzero(still & np.any([loads[name] != 0.0 for name in loads], axis=0))
-        if self.is_physical or not self.is_alike or len(some) == 0:
+        if self.tube.threads != 0.0 or not self.is_alike or len(some) == 0:  # others swell or slacken
             return found
         loads = {name: value[some] for name, value in loads.items()}
 

@@ -18,7 +18,8 @@ FINER = 2  # times that the places of a shape are asked four times as densely
 SAFETY = 3.3  # as in the solver's bounds
 FAINT = 0.02  # likewise
 ROUNDING = 1e-11  # of a derivative's own unit: what nearly cancels in it
-ROUNDS, CAUTION = 6, 2.0  # of placing nodes where kinds of cells change; times what is left of their way
+ROUNDS, CAUTION = 8, 2.0  # of placing nodes where kinds of cells change; times what is left of their way
+FINER_FOR_PLACES, NEXT_TO_NONE = 2, 1e-12  # doublings of meshes that miss such a place by too much; a way of a node
 SHRINKINGS, SHRUNK = 60, 0.85
 
 
@@ -94,25 +95,31 @@ def solve(known, wanted, shape, free, segments, hold, finish, accuracy) -> Found
     unit of each number.
 
     Where the kind of cell changes (:mod:`physical`) a node is put: on either side everything is smooth then. What is left of
-    its distance from there enters the bounds, as the results moved when it was moved before.
+    its distance from there, and by how much meshes miss that place, enters the bounds, as the results moved when it was
+    first moved; where meshes miss it by too much, finer ones are taken.
     """
     known, x, y, hold, least = on_first(known, shape, free, segments, hold)
     task = Task(known, wanted, free, segments, finish, accuracy)
-    kinks, before, shift = known.kinks(segments), None, None
+    kinks, before, slope, finest = known.kinks(segments), None, None, least + FINER_FOR_PLACES
     for made in range(ROUNDS):
         ends = np.union1d(segments, kinks)
-        found, units, seen = on_nested(task, x, y, ends, hold, least)
+        found, units, (seen, unsure) = on_nested(task, x, y, ends, hold, least)
         if len(kinks) == 0 and len(seen) == 0:
             return found
         if len(seen) == len(kinks):
             left = np.max(np.abs(seen - kinks))
             if before is not None:
-                doubt = np.abs(found.values - before.values) * (CAUTION * left / shift if shift > 0.0 else 0.0)
-                if np.max(doubt / units) <= accuracy or made == ROUNDS - 1:
-                    return Found(found.values, found.bounds + doubt)
-            before, shift = found, left
+                values, shift = before
+                if slope is None:
+                    slope = np.abs(found.values - values) / max(shift, NEXT_TO_NONE)
+                doubt, missed = CAUTION * left * slope, np.max(unsure) * slope
+                if made == ROUNDS - 1 or np.max(doubt / units) <= accuracy:
+                    if made == ROUNDS - 1 or least == finest or np.max(missed / units) <= accuracy:
+                        return Found(found.values, found.bounds + doubt + missed)
+                    least += 1
+            before = found.values, left
         else:
-            before, shift = None, None
+            before = slope = None
         kinks = seen
     raise NotFound
 
@@ -142,8 +149,8 @@ def on_first(known, shape, free, segments, hold):
 
 
 def on_nested(task, x, y, ends, hold, least):
-    """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change; the coarsest,
-    doubled ``least`` times, is a finer one where that has no state.
+    """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change, and how unsure that is;
+    the coarsest, doubled ``least`` times, is a finer one where that has no state.
     """
     known, wanted, free, segments, finish, accuracy = task
     shape = Shape(known, x, y, ends)
@@ -175,8 +182,20 @@ def on_nested(task, x, y, ends, hold, least):
         last = meshes.nodes(len(levels) - 1)
         levels = [levels[-1] + 1]
         meshes, y, own = stand(physics, levels, Shape(physics, meshes.x[last], y[last], ends), own)
-    last, one = seen[-1], seen[-2]
-    return Found(values, bounds), units, (4.0 * last - one) / 3.0 if len(last) == len(one) else last
+    return Found(values, bounds), units, places_of(seen[-3:])
+
+
+def places_of(seen):
+    """Where kinds of cells change, from what the last three meshes told, and what that may miss; endless where these do not
+    tell as many places.
+    """
+    two, one, last = seen
+    if len(last) != len(one):
+        return last, np.full(len(last), np.inf)
+    found = (4.0 * last - one) / 3.0
+    if len(two) != len(one):
+        return found, np.abs(last - one)
+    return found, SAFETY / 15.0 * np.abs(found - (4.0 * one - two) / 3.0)
 
 
 def extrapolate(table, units):

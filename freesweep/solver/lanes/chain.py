@@ -17,7 +17,7 @@ def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
     directions, OUTPUTS) along directions: ``changes`` (n, directions, columns + 1) of the problem's columns and the
     pressure. ``missed`` (n,): the largest bound, scaled as outputs are, or by what it belongs to.
     """
-    by, size, last = np.zeros(TOLD), np.zeros(OUTPUTS), problems.shape[1]
+    by, size, last, there = np.zeros(TOLD), np.zeros(OUTPUTS), problems.shape[1], np.zeros(TOLD, np.int64)
     for row in range(len(problems)):
         one, largest = problems[row], 0.0
         pressure = 1.0 if pressures[row] == np.inf else pressures[row]
@@ -40,12 +40,17 @@ def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
                     own[TORQUE],
                 )
                 by[TOLD - 1] = 0.5 * own[LENGTH]
+            count = 0
+            for j in range(TOLD):
+                if by[j] != 0.0:
+                    there[count] = j
+                    count += 1
             for i in range(OUTPUTS):
                 value, bound = 0.0, NONE * size[i]
-                for j in range(TOLD):
-                    if by[j] != 0.0:
-                        value += by[j] * told[row, i, j]
-                        bound += abs(by[j]) * doubts[row, i, j]
+                for n in range(count):
+                    j = there[n]
+                    value += by[j] * told[row, i, j]
+                    bound += abs(by[j]) * doubts[row, i, j]
                 values[row, k, i], bounds[row, k, i] = value, bound
                 part = bound / max(size[i], abs(value))
                 largest = part if not part <= largest else largest

@@ -70,7 +70,8 @@ class Uniform(NamedTuple):
 
 class Place(NamedTuple):
     """Stretch and :class:`..physics.first_integral.Level` of a place, cosine of the meridian's angle there, how x grows
-    with the share t of the depth, and by what share R falls short of T: none in the middle, less before it.
+    with the share t of the depth, and by what share R falls short of T: none in the middle, less before it; R - T, and
+    exp(-depth).
     """
 
     y: float
@@ -78,6 +79,8 @@ class Place(NamedTuple):
     cosine: float
     per_share: float
     short: float
+    beyond: float
+    z: float
 
 
 @kernel
@@ -235,7 +238,7 @@ def look_down(depth, per_share, mid, cell, load, near, scratch):
     turned = inside & (sine > 0.0)
     rise = abs(1.0 - mid.u) * over * (z + mid.q)  # of y by the depth
     per_depth = select(turned, rise / (sqrt(1.0 + at.G_1) * select(turned, sine, 1.0)), mid.per_depth)
-    return Place(y, at, T / (T + beyond), per_depth * per_share, short)
+    return Place(y, at, T / (T + beyond), per_depth * per_share, short, beyond, z)
 
 
 @kernel

@@ -1,10 +1,9 @@
 """Derivatives of free states of tubes that are the same all along, a vector of states at a time.
 
-A state that is known is one number, the stretch in the middle: it tells every place of half the tube (:mod:`meridian`), part
-by part between the places where families go slack. There the density's second derivatives (:mod:`second`) are summed to
-those of the functional (:mod:`element`), by which all that loads are conjugate to, the outputs, change with any number. How
-they change with the length of the half is known in the middle alone: there the functional grows by L, and the middle by what
-it answers with to a push.
+A state that is known is one number, the stretch in the middle: it tells every place of half the tube (:mod:`meridian`),
+part by part between the places where families go slack. How each place answers to numbers (:mod:`second`) is summed along
+the depth as the state is (:mod:`moved`); one number more, the depth of the middle, moves by what leaves half a tube as long
+as it is, and with it all outputs (:mod:`told`).
 
 Where hardly anything is left of the layer in the middle, the middle is the uniform tube, and answers as that does.
 """
@@ -15,51 +14,42 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from ..cells import nothing_yet
+from ..physics import lagrangian
 from ..physics.wall import may_go_slack
 from ..problem import PHYSICAL
 from . import slack_ends
-from .element import (
-    COUNT,
-    OF_STATE,
-    PIVOT,
-    PLACES,
-    WEIGHTS,
-    assemble,
-    clear,
-    derive,
-    eliminate,
-    gather,
-    make_variation,
-    roughness,
-    weigh,
-)
 from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
+from .moved import COUNT, DEPTH, OWN, PLACES, SUM, clear, close, make_sums, move_middle, move_place, way_of
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import look_along
-from .second import LOADS, bends
+from .second import place_at
 from .sums import NARROW, find_ends, make_room
-from .told import CLOSE, OUTPUTS, TOLD, finish
-from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
+from .told import LEFT, OUTPUTS, TOLD, tell
+from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
-PASSES = 4  # to a middle whose half has its length
+PASSES = 6  # to a middle whose half has its length
+# of what hangs on the depth of the middle: a share that may be wrong, and one that need not be mended
+ALMOST, ENOUGH = 1e-5, 3e-10
 SWOLLEN = 0.1  # by which a swelling makes the layer's beginning slower
+# of a depth, what a step leaves at least; deeper than anything is told apart; by how much it has to be less than the deepest
+LEAST, LONGEST, SURELY = 0.5, 30.0, 1.0
 
 
 @kernel
 def seated(y, cell, load, half, scratch):
-    """The :class:`.meridian.Middle` of a tube whose middle has the stretch ``y``; where no drive is left it is the uniform
-    tube.
+    """The :class:`.meridian.Middle` of a tube whose middle has the stretch ``y``, and where it is far: where no drive is
+    left it is the uniform tube, toward which the layer falls without end.
     """
     mid, driven, _ = middle_at(y, cell, load, half, scratch)
-    far = ~driven | (mid.depth >= DEEPEST)
+    far = isnt(driven) | (mid.depth >= DEEPEST)
     rate = select(far, mid.s * sqrt(max(mid.bend, 1.0 / (half * half)) / (load.p * y * y + load.f)), mid.rate)
     depth = select(far, min(rate * half, DEEPEST), mid.depth)
-    q = fallen(depth, scratch)
+    q = select(far, 0.0, fallen(depth, scratch))
     return Middle(
         select(far, y, mid.u), rate, depth, q, 1.0 / (1.0 + q * q), y, mid.level,
         select(far, 1.0 / rate, mid.per_depth), select(far, 0.0, mid.rise), mid.bend, mid.s, mid.psi, mid.energy,
         mid.uniform,
-    )  # fmt: skip
+    ), far  # fmt: skip
 
 
 @kernel
@@ -73,21 +63,11 @@ def down(share, left, width, mid):
 
 
 @kernel
-def slope_at(y, per_share, steep, mid):
-    """Slope of a place whose depth grows by ``steep`` with a share, and x by ``per_share``: no cosine tells it near the
-    middle.
-    """
-    fall = sqrt(max((y - mid.y) * ((y - mid.u) + (mid.y - mid.u)), 0.0))
-    return select(mid.u > 1.0, fall, -fall) * steep / per_share
-
-
-@kernel
 def over_parts(parts, pieces, edges, mid, cell, load, own, scratch):
-    """Sum all parts between the ``edges``, each in so many ``pieces``, to a :class:`.element.Variation` of our ``own``.
-    Returns the lanes in which each part is of one kind, and the length.
+    """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`.
+    Returns the lanes in which each part is of one kind.
     """
-    valid, near, fixed, length = mask_of(-1), nothing_yet(spread(0.0)), mask_of(-1), spread(0.0)
-    used, fields, rows = own.used, own.fields, own.rows
+    valid, near = mask_of(-1), nothing_yet(spread(0.0))
     clear(own)
     for j in range(parts):
         first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
@@ -98,32 +78,34 @@ def over_parts(parts, pieces, edges, mid, cell, load, own, scratch):
             for k in range(COUNT):
                 depth, steep = down(PLACES[k], first + i * width, width, mid)
                 here = look_down(depth, steep, mid, cell, load, near, scratch)
-                near = handed_on(here.y, here.at, near, load.wall)
+                at = here.at
+                near = handed_on(here.y, at, near, load.wall)
                 if k == 0:
-                    kind = here.at.kind
-                valid = valid & (((here.at.room > 0.0) & (here.at.kind == kind)) | ~within)
-                bends(here.y, slope_at(here.y, here.per_share, steep, mid), here.cosine, here.at, cell, load, rows[0])
-                weight = WEIGHTS[k] * here.per_share
-                weigh(k, weight, 1.0 / here.per_share, rows[0], rows[1], used, fields)
-                weight = select(within, weight, 0.0)
-                gather(weight, rows[0], used, own.sums[0])
-                length = length + weight
-            add_part(within, fixed, own)
-            fixed = fixed & ~within
-    return valid, length
+                    kind = at.kind
+                valid = valid & (((at.room > 0.0) & (at.kind == kind)) | isnt(within))
+                place = place_at(here.y, here.beyond, at, cell, load)
+                way = way_of(k, within, depth, here.z, here.per_share, place, load, mid)
+                move_place(way, place, at, cell, load, mid, own)
+            close(own)
+    return valid
 
 
 @kernel
-def add_part(where, fixed, own):
-    """Add what the fields of a part tell, in the lanes that have it: how rough they are, and what it answers with."""
-    used, fields, matrix = own.used, own.fields, own.matrix
-    for n in range(LOADS):
-        missed, most = roughness(fields[OF_STATE + 2 * len(used) + n])
-        put(own.rough[0], n, get(own.rough[0], n) + select(where, missed, 0.0))
-        put(own.rough[1], n, get(own.rough[1], n) + select(where, most, 0.0))
-    assemble(fields, len(used), matrix[0], own.pushed, own.halves)
-    eliminate(where, fixed, used, matrix[0], own.pushed, matrix[1], matrix[2], own.carried, own.known)
-    derive(where, used, own.pushed, matrix[2], own.halves[0], own.sums[1])
+def met_by(mid, far, slope, place, load, half, own, scratch):
+    """``(stretch of the middle, share that is missed)`` of which half a tube is as long as it is, about: the uniform stretch
+    beside it stays. The share is one of all that hangs on the depth of the middle; that of a long tube is uniform, and may
+    be missed by a share of the strain.
+    """
+    rest = half - get(own.summed[OWN], SUM)
+    rise = -place.K_y * place.per_s - 2.0 * load.p * place.y
+    step = select(far, rest * mid.rate, rest / select(far, 1.0, get(own.summed[DEPTH], SUM)))
+    depth = min(max(mid.depth + step, LEAST * mid.depth), LONGEST)
+    q, u = fallen(depth, scratch), select(far, mid.y - rise / slope, mid.u)
+    on = (1.0 - u) * 2.0 * (q / (1.0 + q * q) - mid.q * mid.whole)
+    short = far & (mid.depth + step < DEEPEST - SURELY)
+    y = select(far, select(short, u + on, u), mid.y + on)
+    off = select(far, abs(u - mid.y) / abs(1.0 - mid.y), abs(step) / mid.depth * min(LEFT * mid.depth * mid.q, 1.0))
+    return y, select(short, 1.0, off)
 
 
 @kernel
@@ -151,43 +133,41 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
     vectors cannot.
 
     Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
-    where some family goes slack along a part of it. ``used`` are the numbers that there are, all LOADS among them.
+    where some family goes slack along a part of it. ``used`` are the numbers that there are; others are told nothing.
     Other arguments as of :func:`.free.solve_physical`.
     """
-    room, own, small, out = make_room(), make_variation(used), aligned(2, COLUMNS), aligned(2, OUTPUTS * TOLD)
+    room, own, small, out = make_room(), make_sums(used), aligned(2, COLUMNS), aligned(2, OUTPUTS * TOLD)
     columns, start, scratch, edges = small[0], small[1], room.scratch, room.edges
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
         searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)
         cell, _, load = loads(columns, constants, PHYSICAL, layers)
         y, half = get(start, 0), get(columns, LENGTH)
-        active, wrong, loose = mask_of((1 << seats) - 1), mask_of(0), mask_of(0)
+        active, met = mask_of((1 << seats) - 1), mask_of(0)
         searched = searched and may_go_slack(load.wall)
-        for _ in range(PASSES):
-            mid, parts = seated(y, cell, load, half, scratch), 1
+        for step in range(PASSES):
+            (mid, far), parts, unsure = seated(y, cell, load, half, scratch), 1, spread(0.0)
             put(edges, 0, 0.0)
             put(edges, 1, 1.0)
             if searched:
                 _, seen, valid = look_along(pieces, mid, cell, load, room)
                 active = active & valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
                 parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, edges, scratch)
-                active, loose = active & (unsure < slack_ends.ENOUGH), unsure > 0.0
-            still, flat = spread(0.0), spread(1.0)
-            here = look_down(mid.depth, flat, mid, cell, load, nothing_yet(still), scratch)
-            bends(mid.y, still, flat, here.at, cell, load, own.rows[1])
-            valid, length = over_parts(parts, pieces, edges, mid, cell, load, own, scratch)
-            rest = half - length
-            grown = finish(mid, rest, loose, load, half, own, out) * rest
-            active = active & valid & (get(own.carried[0], PIVOT) > 0.0)  # of others bounds say nothing
-            wrong = active & (abs(grown) > CLOSE * abs(1.0 - y))
-            y = select(wrong, y + grown, y)
-            if not some(wrong):
+                active = active & (unsure < slack_ends.ENOUGH)
+            at = lagrangian.at_level(mid.y, mid.level, cell, load, nothing_yet(spread(0.0)))
+            place = place_at(mid.y, spread(0.0), at, cell, load)
+            slope = move_middle(mid, place, at, cell, load, half, own)
+            active = active & over_parts(parts, pieces, edges, mid, cell, load, own, scratch)
+            better, off = met_by(mid, far, slope, place, load, half, own, scratch)
+            met = active & (off < ALMOST)
+            if step + 1 == PASSES or not some(active & (off > ENOUGH)):
+                tell(mid, far, off, unsure > 0.0, half, own, out)
                 break
-        met = bits(active & ~wrong)
+            y = select(off > ENOUGH, better, y)
         for lane in range(seats):
             row = order[group + lane]
             for i in range(OUTPUTS):
                 for j in range(TOLD):
                     k = TOLD * i + j
-                    told[0, row, i, j] = out[0, k, lane] if (met >> lane) & 1 else np.nan
+                    told[0, row, i, j] = out[0, k, lane] if (bits(met) >> lane) & 1 else np.nan
                     told[1, row, i, j] = out[1, k, lane]

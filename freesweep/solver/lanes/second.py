@@ -1,14 +1,19 @@
-"""How the density of a physical tube bends at one place, along all that it depends on, for a vector of designs.
+"""How a place of known stretch and resultant answers to all numbers, for a vector of designs.
 
-With the multipliers a, b of the families that are taut the density is what ``M = T s - e W + m psi - a g_a - b g_b`` is at
-the G and psi that fibers and wall settle at (:mod:`..physics.physical`). Where a number changes these answer so that the
-constraints stay met and M stationary, a linear system of which the inverse is known in closed form for each kind of state::
+Along a tube the level of its first integral is the same (:mod:`..physics.first_integral`). With the multipliers a, b of the
+families that are taut it is, at the G and psi that fibers and wall settle at, ::
 
-    (dG, dpsi) = -inverse (M_G, M_psi by the number; g_a, g_b by it)
-    L_ij = M_ij + M_iG G_j + M_ipsi psi_j + G_i (M_jG + M_GG G_j + M_Gpsi psi_j) + psi_i (...)
+    level = K = R sqrt(G) - e W + m psi - a g_a - b g_b,    K_G = K_psi = 0,    g = 0 of taut families
 
-Loads stand in L by what they are conjugate to: by f, p, m and e it is s, y^2 s, psi and -W. Walls change by a layer at
-either surface. By the tangents t_a and t_b of the angles each family changes by itself.
+so a change of the level, of the stretch or of a number moves the resultant by what K's own derivatives tell,
+
+    sqrt(G) dR = dlevel - K_y dy - K_number
+
+and G and psi by a linear system of which the inverse is known in closed form for each kind of state::
+
+    (dG, dpsi) = -inverse (K_G, K_psi by the change; g_a, g_b by it)
+
+Walls change by a layer at either surface. By the tangents t_a and t_b of the angles each family changes by itself.
 """
 
 from math import sqrt
@@ -17,20 +22,15 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..either import isnt, select
 from ..physics.fibers import is_taut
-from ..physics.wall import layer, rises, slopes, stored
-from .vector import put, spread
+from ..physics.wall import energy, layer, rises
+from .vector import get, put, spread
 
-NUMBERS = 12
-FAR = 1e8  # from a rubber's constant: what does not hang on it is rounding there
-# what a place answers to, beside its stretch and slope; the loads last
-T_ALPHA, T_BETA, GAMMA, AREA, INNER, RATIO, SECOND, THIRD, FORCE, PRESSURE, TORQUE, WEIGHT = range(NUMBERS)
-LOADS = 4  # the last of them
-BY_Y, BY_V = 0, NUMBERS  # rows of the bends of L along y and v, of each number
-YY, YV, VV = range(2 * NUMBERS, 2 * NUMBERS + 3)
-OF_LOADS = (
-    VV + 1
-)  # rows of the bends along a load, of each number that is no load, and of f, p and m; then L by each load
-ROWS = OF_LOADS + LOADS * NUMBERS + LOADS
+NUMBERS = 11
+FAR = 2.0**27  # from a rubber's constant: what does not hang on it is rounding there
+# what a place answers to, beside its stretch and level; the loads last
+T_ALPHA, T_BETA, GAMMA, AREA, INNER, RATIO, SECOND, THIRD, FORCE, PRESSURE, TORQUE = range(NUMBERS)
+# rows of each: what K, T = p y^2 + f, K_y, K_G, K_psi change by; G and psi at a fixed resultant; the wall's energy
+BY_K, BY_T, BY_KY, BY_KG, BY_KP, BY_G, BY_PSI, BY_W, ROWS = range(9)
 
 
 class Family(NamedTuple):
@@ -46,23 +46,36 @@ class Family(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Derivatives of M at one place, and of the G and psi that it settles at by y; 1/s, y^2; slopes of W by G and psi; and
-    the :func:`inverse`.
+    """A place: stretch y, y^2, T, resultant R and R - T; sqrt(G) and 1/sqrt(G); twist rate; W and its slopes; derivatives
+    of K; what G and psi change by with R, and with y; the :func:`inverse`, and both families.
     """
 
-    M_yG: float
-    M_yp: float
-    M_vG: float
-    M_GG: float
-    M_Gp: float
-    M_pp: float
-    G_y: float
-    p_y: float
-    per_s: float
+    y: float
     yy: float
+    T: float
+    R: float
+    beyond: float
+    s: float
+    per_s: float
+    psi: float
+    W: float
+    W_y: float
     W_G: float
     W_p: float
+    K_y: float
+    K_yy: float
+    K_yG: float
+    K_yp: float
+    K_GG: float
+    K_Gp: float
+    K_pp: float
+    G_R: float
+    p_R: float
+    G_y: float
+    p_y: float
     inverse: tuple
+    alpha: Family
+    beta: Family
 
 
 @kernel
@@ -73,19 +86,19 @@ def family(taut, t, multiplier, psi, yy):
 
 
 @kernel
-def inverse(alpha, beta, M_GG, M_Gp, M_pp):
-    """The seven numbers of ``-(dG, dpsi)`` by (M_G, M_psi, g_a, g_b): ``(GG, Gpsi, psipsi, Ga, psia, Gb, psib)``."""
+def inverse(alpha, beta, K_GG, K_Gp, K_pp):
+    """The seven numbers of ``-(dG, dpsi)`` by (K_G, K_psi, g_a, g_b): ``(GG, Gpsi, psipsi, Ga, psia, Gb, psib)``."""
     taut_alpha, taut_beta, turn_a, turn_b = alpha.taut, beta.taut, alpha.turn, beta.turn
     both, none = taut_alpha & taut_beta, isnt(taut_alpha | taut_beta)
-    zero = 0.0 * M_GG
+    zero = 0.0 * K_GG
     apart = 1.0 / (turn_a - turn_b)
     turn = select(taut_alpha, turn_a, turn_b)
-    cross = M_Gp - turn * M_GG
-    bend = 1.0 / select(both, 1.0, turn * (turn * M_GG - 2.0 * M_Gp) + M_pp)
-    det = 1.0 / select(none, M_GG * M_pp - M_Gp * M_Gp, 1.0)
-    GG = select(both, zero, select(none, M_pp * det, turn * turn * bend))
-    Gp = select(both, zero, select(none, -M_Gp * det, -turn * bend))
-    pp = select(both, zero, select(none, M_GG * det, bend))
+    cross = K_Gp - turn * K_GG
+    bend = 1.0 / select(both, 1.0, turn * (turn * K_GG - 2.0 * K_Gp) + K_pp)
+    det = 1.0 / select(none, K_GG * K_pp - K_Gp * K_Gp, 1.0)
+    GG = select(both, zero, select(none, K_pp * det, turn * turn * bend))
+    Gp = select(both, zero, select(none, -K_Gp * det, -turn * bend))
+    pp = select(both, zero, select(none, K_GG * det, bend))
     G_one, p_one = 1.0 + turn * cross * bend, -cross * bend
     G_a = select(both, -turn_b * apart, select(taut_alpha, G_one, zero))
     p_a = select(both, apart, select(taut_alpha, p_one, zero))
@@ -95,12 +108,117 @@ def inverse(alpha, beta, M_GG, M_Gp, M_pp):
 
 
 @kernel
-def by_surfaces(y, G_1, psi, cell, load):
+def answer(inverse, K_G, K_p, c_a, c_b):
+    """``(dG, dpsi)`` of a change by which K's slopes by G and psi change by ``K_G``, ``K_p``, the constraints by c."""
+    GG, Gp, pp, G_a, p_a, G_b, p_b = inverse
+    return -(GG * K_G + Gp * K_p + G_a * c_a + G_b * c_b), -(Gp * K_G + pp * K_p + p_a * c_a + p_b * c_b)
+
+
+@kernel
+def place_at(y, beyond, at, cell, load):
+    """The :class:`Place` of a stretch, of which R - T is ``beyond``, ``at`` its :class:`..physics.first_integral.Level`."""
+    G_1, psi, e, yy = at.G_1, at.psi, load.e, y * y
+    V = energy(y, G_1, psi, cell[2], load.rubber, load.wall)
+    W, W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = V
+    s, (taut_alpha, taut_beta) = sqrt(1.0 + G_1), is_taut(at.kind)
+    alpha = family(taut_alpha, cell[0] + cell[1], at.a, psi, yy)
+    beta = family(taut_beta, cell[0] - cell[1], at.b, psi, yy)
+    T, i, a, b = load.p * yy + load.f, 1.0 / s, alpha.pull, beta.pull
+    R = T + beyond
+    turned, squared = a * alpha.on + b * beta.on, a * alpha.on * alpha.on + b * beta.on * beta.on
+    K_GG, K_Gp, K_pp = -0.25 * R * i * i * i - e * W_GG, -e * W_Gp, -e * W_pp - 2.0 * yy * (a + b)
+    K_yG, K_yp = -e * W_yG, -e * W_yp - 4.0 * y * turned
+    settled = inverse(alpha, beta, K_GG, K_Gp, K_pp)
+    G_R, p_R = -0.5 * i * settled[0], -0.5 * i * settled[1]
+    G_y, p_y = answer(settled, K_yG, K_yp, 2.0 * y * alpha.on * alpha.on, 2.0 * y * beta.on * beta.on)
+    return Place(
+        y, yy, T, R, beyond, s, i, psi, W, W_y, W_G, W_p, -e * W_y - 2.0 * y * squared, -e * W_yy - 2.0 * squared,
+        K_yG, K_yp, K_GG, K_Gp, K_pp, G_R, p_R, G_y, p_y, settled, alpha, beta,
+    )  # fmt: skip
+
+
+@kernel
+def turned(here, by_y, by_G, by_p, dG, dp, dR):
+    """What K_y changes by, of a change of its own derivatives by y, G and psi, as these answer with dG and dpsi, and the
+    resultant with dR.
+    """
+    pull_G = by_G + here.K_GG * dG + here.K_Gp * dp + 0.5 * here.per_s * dR
+    pull_p = by_p + here.K_Gp * dG + here.K_pp * dp
+    return by_y + here.K_yG * dG + here.K_yp * dp + here.G_y * pull_G + here.p_y * pull_p
+
+
+@kernel
+def enter(row, changed, settled, dW):
+    """Write what a number changes: K and K's derivatives ``changed`` (K, K_y, K_G, K_psi), as which G and psi have
+    ``settled``, and the wall's energy. T it leaves.
+    """
+    K, K_y, K_G, K_p = changed
+    put(row, BY_K, K)
+    put(row, BY_KY, K_y)
+    put(row, BY_KG, K_G)
+    put(row, BY_KP, K_p)
+    put(row, BY_G, settled[0])
+    put(row, BY_PSI, settled[1])
+    put(row, BY_W, dW)
+
+
+@kernel
+def by_numbers(here, at, cell, load, rows):
+    """Write to ``rows`` (NUMBERS, ROWS, WIDTH) what all numbers change at a place."""
+    zero, one = spread(0.0), spread(1.0)
+    by_fibers(load.gamma, here, rows)
+    by_walls(at, cell, load, here, rows)
+    put(rows[FORCE], BY_T, one)  # all else of both is 0, as rows begin
+    put(rows[PRESSURE], BY_T, here.yy)
+    _, Gp, pp, _, _, _, _ = here.inverse
+    enter(rows[TORQUE], (here.psi, zero, zero, one), (-Gp, -pp), zero)
+
+
+@kernel
+def by_fibers(gamma, here, rows):
+    """:func:`enter` tan(angle) of both families, and their extension."""
+    y, alpha, beta, gg, zero = here.y, here.alpha, here.beta, gamma * gamma, spread(0.0)
+    _, Gp, pp, G_a, p_a, G_b, p_b = here.inverse
+    c = alpha.turn - 2.0 * gg * alpha.t
+    K = -alpha.pull * c, -4.0 * y * alpha.pull * alpha.on, zero, -2.0 * here.yy * alpha.pull
+    enter(rows[T_ALPHA], K, (-(Gp * K[3] + G_a * c), -(pp * K[3] + p_a * c)), zero)
+    c = beta.turn - 2.0 * gg * beta.t
+    K = -beta.pull * c, -4.0 * y * beta.pull * beta.on, zero, -2.0 * here.yy * beta.pull
+    enter(rows[T_BETA], K, (-(Gp * K[3] + G_b * c), -(pp * K[3] + p_b * c)), zero)
+    longer = -2.0 * gamma * (1.0 + alpha.t * alpha.t), -2.0 * gamma * (1.0 + beta.t * beta.t)
+    K = -(alpha.pull * longer[0] + beta.pull * longer[1]), zero, zero, zero
+    enter(rows[GAMMA], K, (-(G_a * longer[0] + G_b * longer[1]), -(p_a * longer[0] + p_b * longer[1])), zero)
+
+
+@kernel
+def by_walls(at, cell, load, here, rows):
+    """:func:`enter` the surfaces and the rubber's constants of a wall."""
+    by_area, by_inner = by_surfaces(here, at, cell, load)
+    by_wall(rows[AREA], by_area, load.e, here)
+    if load.wall[3] > 1:
+        by_wall(rows[INNER], by_inner, load.e, here)
+    by_c, by_2, by_3 = by_rubber(here, at, cell[2], load.rubber, load.wall)
+    by_wall(rows[RATIO], by_c, load.e, here)
+    if len(load.rubber) > 1:
+        by_wall(rows[SECOND], by_2, load.e, here)
+        by_wall(rows[THIRD], by_3, load.e, here)
+
+
+@kernel
+def by_wall(row, changed, e, here):
+    """:func:`enter` a number on which only the wall's energy depends, and its slopes, as ``changed`` tells."""
+    W, W_y, W_G, W_p = changed
+    GG, Gp, pp, _, _, _, _ = here.inverse
+    enter(row, (-e * W, -e * W_y, -e * W_G, -e * W_p), (e * (GG * W_G + Gp * W_p), e * (Gp * W_G + pp * W_p)), W)
+
+
+@kernel
+def by_surfaces(here, at, cell, load):
     """Derivatives ``(W, W_y, W_G, W_psi)`` of the wall's energy by its area, and by the square of its inner radius."""
+    y, G_1, psi = here.y, at.G_1, at.psi
     if load.wall[3] == 1:
-        w, w_y, w_G, w_p, _, _, _, _, _, _ = layer(1.0 + 0.0 * y, y, G_1, psi, load.rubber, load.wall[0])
-        zero = 0.0 * y
-        return (w, w_y, w_G, w_p), (zero, zero, zero, zero)
+        zero, share = 0.0 * y, 1.0 / cell[2]
+        return (here.W * share, here.W_y * share, here.W_G * share, here.W_p * share), (zero, zero, zero, zero)
     inside, outside = load.wall[1], load.wall[1] + cell[2]
     w, w_y, w_G, w_p, _, _, _, _, _, _ = layer(outside, y, G_1, psi, load.rubber, load.wall[0])
     i, i_y, i_G, i_p, _, _, _, _, _, _ = layer(inside, y, G_1, psi, load.rubber, load.wall[0])
@@ -108,156 +226,30 @@ def by_surfaces(y, G_1, psi, cell, load):
 
 
 @kernel
-def by_rubber(y, G_1, psi, area, rubber, wall, W, V):
-    """Derivatives ``(W, W_y, W_G, W_psi)`` by each of three constants, 0 of those that the rubber does not have, of a wall
-    of the energy W, whose slopes are V.
-    """
-    far, zero = spread(FAR), spread(0.0)
+def by_rubber(here, at, area, rubber, wall):
+    """Derivatives ``(W, W_y, W_G, W_psi)`` by each of three constants, 0 of those that the rubber does not have."""
+    y, G_1, psi, far, zero = here.y, at.G_1, at.psi, spread(FAR), spread(0.0)
     none = zero, zero, zero, zero
-    own = by_constant(rises(y, G_1, psi, area, (rubber[0] + far, *rubber[1:]), wall), W, V)
+    own = by_constant(rises(y, G_1, psi, area, (rubber[0] + far, *rubber[1:]), wall), here)
     if len(rubber) == 1:
         return own, none, none
     return (
         own,
-        by_constant(rises(y, G_1, psi, area, (rubber[0], rubber[1] + far, rubber[2]), wall), W, V),
-        by_constant(rises(y, G_1, psi, area, (rubber[0], rubber[1], rubber[2] + far), wall), W, V),
+        by_constant(rises(y, G_1, psi, area, (rubber[0], rubber[1] + far, rubber[2]), wall), here),
+        by_constant(rises(y, G_1, psi, area, (rubber[0], rubber[1], rubber[2] + far), wall), here),
     )
 
 
 @kernel
-def by_constant(there, W, V):
+def by_constant(there, here):
     """Derivatives by a constant, in which energies are linear, from what they are FAR from here."""
-    return (there[0] - W) / FAR, (there[1] - V[0]) / FAR, (there[2] - V[1]) / FAR, (there[3] - V[2]) / FAR
+    W, W_y, W_G, W_p = there
+    return (W - here.W) / FAR, (W_y - here.W_y) / FAR, (W_G - here.W_G) / FAR, (W_p - here.W_p) / FAR
 
 
 @kernel
-def answer(inverse, M_G, M_p, c_a, c_b):
-    """``(dG, dpsi)`` of a number along which M's slopes by G and psi change by ``M_G``, ``M_p``, the constraints by c."""
-    GG, Gp, pp, G_a, p_a, G_b, p_b = inverse
-    return -(GG * M_G + Gp * M_p + G_a * c_a + G_b * c_b), -(Gp * M_G + pp * M_p + p_a * c_a + p_b * c_b)
-
-
-@kernel
-def enter(k, dG, dp, M_y, M_G, M_p, W_by, here, rows):
-    """Write what number k, no load, changes: slopes of L along y and v, and what loads are conjugate to."""
-    M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, per_s, yy, W_G, W_p, _ = here
-    half = 0.5 * per_s * dG
-    pull_G, pull_p = M_G + M_GG * dG + M_Gp * dp, M_p + M_Gp * dG + M_pp * dp
-    put(rows, BY_Y + k, M_y + M_yG * dG + M_yp * dp + G_y * pull_G + p_y * pull_p)
-    put(rows, BY_V + k, M_vG * dG)
-    put(rows, OF_LOADS + k, half)
-    put(rows, OF_LOADS + NUMBERS + k, yy * half)
-    put(rows, OF_LOADS + 2 * NUMBERS + k, dp)
-    put(rows, OF_LOADS + 3 * NUMBERS + k, -(W_by + W_G * dG + W_p * dp))
-
-
-@kernel
-def bends(y, v, cosine, at, cell, load, rows):
-    """Write all second derivatives of the density at one place, and its first ones by the loads, to ``rows`` (ROWS,
-    WIDTH); ``at`` is the :class:`..physics.first_integral.Level` there.
-    """
-    G_1, psi = at.G_1, at.psi
-    W, V = stored(y, G_1, psi, cell[2], load.rubber, load.wall), slopes(y, G_1, psi, cell[2], load.rubber, load.wall)
-    s, (taut_alpha, taut_beta) = sqrt(1.0 + G_1) * cosine, is_taut(at.kind)
-    alpha = family(taut_alpha, cell[0] + cell[1], at.a, psi, y * y)
-    beta = family(taut_beta, cell[0] - cell[1], at.b, psi, y * y)
-    here = by_shape(y, v, s, 1.0 + G_1, alpha, beta, load, V, rows)
-    by_fibers(y, load.gamma, alpha, beta, here, rows)
-    by_walls(y, at, cell, load, W, V, here, rows)
-    by_loads(here, rows)
-    put(rows, ROWS - 4, s)
-    put(rows, ROWS - 3, here.yy * s)
-    put(rows, ROWS - 2, psi)
-    put(rows, ROWS - 1, -W)
-
-
-@kernel
-def by_shape(y, v, s, G, alpha, beta, load, V, rows):
-    """Write the derivatives by y and v, of their slopes and of those by the loads; returns the :class:`Place`, of a wall
-    whose slopes are V.
-    """
-    e, yy, zero = load.e, y * y, spread(0.0)
-    W_y, W_G, W_p, W_yy, W_yG, W_yp, W_GG, W_Gp, W_pp = V
-    T, i, a, b = load.p * yy + load.f, 1.0 / s, alpha.pull, beta.pull
-    turned, squared = a * alpha.on + b * beta.on, a * alpha.on * alpha.on + b * beta.on * beta.on
-    M_yy = 2.0 * load.p * s - e * W_yy - 2.0 * squared
-    M_yG, M_yp = load.p * y * i - e * W_yG, -e * W_yp - 4.0 * y * turned
-    flat = -v * i
-    M_vG = -0.5 * T * flat * i * i
-    M_GG, M_Gp, M_pp = -0.25 * T * i * i * i - e * W_GG, -e * W_Gp, -e * W_pp - 2.0 * yy * (a + b)
-    settled = inverse(alpha, beta, M_GG, M_Gp, M_pp)
-    G_y, p_y = answer(settled, M_yG, M_yp, 2.0 * y * alpha.on * alpha.on, 2.0 * y * beta.on * beta.on)
-    G_v, p_v = answer(settled, M_vG, zero, zero, zero)
-    L_yy = M_yy + 2.0 * (M_yG * G_y + M_yp * p_y) + (M_GG * G_y + 2.0 * M_Gp * p_y) * G_y + M_pp * p_y * p_y
-    put(rows, YY, L_yy)
-    put(rows, YV, 2.0 * load.p * y * flat + M_vG * G_y)
-    put(rows, VV, -T * G * i * i * i + M_vG * G_v)
-    s_y, s_v = 0.5 * i * G_y, 0.5 * i * G_v + flat
-    put(rows, BY_Y + FORCE, s_y)
-    put(rows, BY_V + FORCE, s_v)
-    put(rows, BY_Y + PRESSURE, yy * s_y + 2.0 * y * s)
-    put(rows, BY_V + PRESSURE, yy * s_v)
-    put(rows, BY_Y + TORQUE, p_y)
-    put(rows, BY_V + TORQUE, p_v)
-    put(rows, BY_Y + WEIGHT, -(W_y + W_G * G_y + W_p * p_y))
-    put(rows, BY_V + WEIGHT, -(W_G * G_v + W_p * p_v))
-    return Place(M_yG, M_yp, M_vG, M_GG, M_Gp, M_pp, G_y, p_y, i, yy, W_G, W_p, settled)
-
-
-@kernel
-def by_fibers(y, gamma, alpha, beta, here, rows):
-    """:func:`enter` tan(angle) of both families, and their extension."""
-    yy, gg, zero = here.yy, gamma * gamma, spread(0.0)
-    M_p, c = -2.0 * yy * alpha.pull, alpha.turn - 2.0 * gg * alpha.t
-    dG, dp = answer(here.inverse, zero, M_p, c, zero)
-    enter(T_ALPHA, dG, dp, -4.0 * y * alpha.pull * alpha.on, zero, M_p, zero, here, rows)
-    M_p, c = -2.0 * yy * beta.pull, beta.turn - 2.0 * gg * beta.t
-    dG, dp = answer(here.inverse, zero, M_p, zero, c)
-    enter(T_BETA, dG, dp, -4.0 * y * beta.pull * beta.on, zero, M_p, zero, here, rows)
-    longer = -2.0 * gamma * (1.0 + alpha.t * alpha.t), -2.0 * gamma * (1.0 + beta.t * beta.t)
-    dG, dp = answer(here.inverse, zero, zero, longer[0], longer[1])
-    enter(GAMMA, dG, dp, zero, zero, zero, zero, here, rows)
-
-
-@kernel
-def by_walls(y, at, cell, load, W, V, here, rows):
-    """:func:`enter` the surfaces and the rubber's constants of a wall of the energy W, whose slopes are V."""
-    by_c, by_2, by_3 = by_rubber(y, at.G_1, at.psi, cell[2], load.rubber, load.wall, W, V)
-    by_area, by_inner = by_surfaces(y, at.G_1, at.psi, cell, load)
-    by_wall(AREA, by_area, load.e, here, rows)
-    if load.wall[3] > 1:
-        by_wall(INNER, by_inner, load.e, here, rows)
-    by_wall(RATIO, by_c, load.e, here, rows)
-    if len(load.rubber) > 1:
-        by_wall(SECOND, by_2, load.e, here, rows)
-        by_wall(THIRD, by_3, load.e, here, rows)
-
-
-@kernel
-def by_wall(k, changed, e, here, rows):
-    """:func:`enter` a number on which only the wall's energy depends, and its slopes, as ``changed`` tells."""
-    W_by, W_y, W_G, W_p = changed
-    M_G, M_p = -e * W_G, -e * W_p
-    dG, dp = answer(here.inverse, M_G, M_p, 0.0 * M_G, 0.0 * M_G)
-    enter(k, dG, dp, -e * W_y, M_G, M_p, W_by, here, rows)
-
-
-@kernel
-def by_loads(here, rows):
-    """Write what force, pressure and torque change of what loads are conjugate to."""
-    i, yy, zero = here.per_s, here.yy, spread(0.0)
-    dG, dp = answer(here.inverse, 0.5 * i, zero, zero, zero)
-    half = 0.5 * i * dG
-    by_load(FORCE, half, dp, dG, here, rows)
-    by_load(PRESSURE, yy * half, yy * dp, yy * dG, here, rows)
-    dG, dp = answer(here.inverse, zero, spread(1.0), zero, zero)
-    by_load(TORQUE, 0.5 * i * dG, dp, dG, here, rows)
-
-
-@kernel
-def by_load(k, half, dp, dG, here, rows):
-    """Write what load k changes of what loads are conjugate to."""
-    put(rows, OF_LOADS + k, half)
-    put(rows, OF_LOADS + NUMBERS + k, here.yy * half)
-    put(rows, OF_LOADS + 2 * NUMBERS + k, dp)
-    put(rows, OF_LOADS + 3 * NUMBERS + k, -(here.W_G * dG + here.W_p * dp))
+def settled_by(row, here, dy, dR):
+    """``(dG, dpsi, dW)`` of a number, where it moves the stretch by dy and the resultant by dR."""
+    dG = get(row, BY_G) + here.G_R * dR + here.G_y * dy
+    dp = get(row, BY_PSI) + here.p_R * dR + here.p_y * dy
+    return dG, dp, get(row, BY_W) + here.W_y * dy + here.W_G * dG + here.W_p * dp
