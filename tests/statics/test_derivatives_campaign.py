@@ -2,8 +2,8 @@
 
 A difference is taken at steps of several sizes, each of them extrapolated from three; that counts whose two last
 extrapolations, the states' own bounds, and a slope that jumps within it, leave least open. That is what it may err by: where
-it is more than 1e-5 of the derivative (a fold, a family that goes slack within the step), the difference says nothing, and is
-counted as such.
+it is more than 1e-5 of the derivative (a fold, a family that goes slack within the step), the difference says nothing, and
+is counted as such.
 """
 
 import warnings

@@ -35,7 +35,8 @@ def tell(mid, far, off, loose, half, own, out):
     depth = own.summed[DEPTH]
     per = 1.0 / select(far, 1.0, get(depth, SUM))
     missed = SAFETY * get(own.summed[OWN], MISSED) * abs(per)  # of the depth, as the length is
-    off = off + select(far, 0.0, missed / mid.depth * min(LEFT * mid.depth * mid.q, 1.0))
+    hangs = select(far, 1.0, min(LEFT * mid.depth * mid.q, 1.0))
+    off = off + select(far, 0.0, missed / mid.depth * hangs)
     unsure, ends = WRONG * off + select(far, BEHIND, 0.0) + NOISE, select(loose, ENDS, 0.0)
     for n in range(LOADS):
         tell_load(n, far, per, unsure, ends, half, own, out)
@@ -52,7 +53,7 @@ def tell(mid, far, off, loose, half, own, out):
     on = select(far, 0.0, deeper * per)
     put(out[0], first + TOLD - 1, on)
     behind = select(far, BEHIND * abs(1.0 - mid.y) * mid.rate, 0.0)
-    put(out[1], first + TOLD - 1, abs(on) * (of_depth + unsure) + behind)
+    put(out[1], first + TOLD - 1, abs(on) * (of_depth + unsure + WRONG * off * mid.depth / hangs) + behind)
 
 
 @kernel
