@@ -46,6 +46,11 @@ class Asked:
         return self.tube.is_thick or self.tube.threads != 0.0
 
     @property
+    def is_buckled(self):
+        """Whether all of a tube that is the same all along has to be told."""
+        return self.course is None and not self.half
+
+    @property
     def is_alike(self):
         """Whether vectors can do it: a tube that is the same all along, solved by its half."""
         return self.half
