@@ -2,8 +2,8 @@
 
 Where several states are possible, the one given lies on the branch that begins without load: pressure, the load that is
 given and fiber extension - 1 rise in proportion while the undeformed length (no rotation) is held, then what is held changes
-to the value asked for. Where the wall, or loose fibers while the tube is straight, would have to be pushed on that way, or it
-leads nowhere, the loads rise with nothing held, then the length or rotation found is changed to the value asked for:
+to the value asked for. Where the wall, or loose fibers while the tube is straight, would have to be pushed on that way, or
+it leads nowhere, the loads rise with nothing held, then the length or rotation found is changed to the value asked for:
 ``held_path`` says so. A tube that would snap without is pulled, or turned, as its loads rise, and let go to that value.
 """
 
