@@ -8,7 +8,7 @@ import numpy as np
 
 from ...jit import kernel
 from ..load import by
-from ..numerics import held, nested, newton
+from ..numerics import base_mesh, held, nested, newton
 from ..numerics.finest import LEFT, MESHES, NO_MESH, load_of
 from ..numerics.properties_along import fill
 from ..of_tube import of_tube
@@ -49,7 +49,7 @@ def refine(base, doublings, tube, load, accuracy, fine, work):
         value, _ = held.hold(functional.conjugate, fine[0], fine[1], count, own, now, direction, work[8])
     for i in range(count // 2 + 1):
         fine[3, i] = fine[4, i]
-    nested.go_finer(x, base, edges, doublings, fine, work)
+    base_mesh.go_finer(x, base, edges, doublings, fine, work)
     mesh = newton.Mesh(fine[0], 2 * count, free, fill(course, edges, fine[0], 2 * count, base, cells))
     status, _, mu, _, left = nested.on_mesh(
         functional, fine[1], mesh, now, held.Target(direction, value, holds), 0.0, newton.UNKNOWN, tolerance, work

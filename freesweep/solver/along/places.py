@@ -10,7 +10,7 @@ from math import sqrt
 
 from ...jit import kernel
 from ..either import isnt, select
-from ..numerics.nested import TINY
+from ..numerics.error_bounds import TINY
 from ..numerics.properties_along import at_point
 from ..physics import body, lagrangian, over_cell
 

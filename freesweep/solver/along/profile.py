@@ -12,8 +12,8 @@ import numpy as np
 from ...jit import kernel
 from ..cells import cell_at, of_length
 from ..load import Load, under
+from ..numerics.error_bounds import SAFETY, TINY
 from ..numerics.finest import LEFT, MESHES, load_of, mesh_of
-from ..numerics.nested import SAFETY, TINY
 from ..numerics.properties_along import at_point, fill
 from ..physics import lagrangian
 from ..physics.lagrangian import LAST_STEP, ROUNDING
@@ -237,7 +237,7 @@ def at_stations(stations, base, doublings, tube, load, fine, nodes, profile):
     radian, angles by a radian, multipliers by the largest along the tube.
     """
     course, edges, n, x = tube.course, tube.edges, base << (doublings - 1), nodes[0]
-    order = 1.0 if extrapolate_nodes(base, n, tube, load, fine, nodes) else 15.0  # as in nested.extrapolate
+    order = 1.0 if extrapolate_nodes(base, n, tube, load, fine, nodes) else 15.0  # as in error_bounds.extrapolate
     known = Nodes(nodes, n, order, units(nodes, n), ROUNDING + LAST_STEP * max(fine[3, LEFT], 0.0))
     loads = loads_of(known, course, load, fine)
     told = Told(np.empty(STENCIL), np.empty(STENCIL), np.empty(5), np.empty(5), np.empty(5))

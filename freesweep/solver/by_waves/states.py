@@ -10,7 +10,7 @@ from ..by_middle.many import PIECES
 from ..lanes import waves
 from ..lanes.meridian import DEEPEST
 from ..lanes.outputs import FLOOR
-from ..numerics.nested import TINY
+from ..numerics.error_bounds import TINY
 from ..physics.membrane import ROUNDING
 from ..problem import FORCE, LENGTH
 from ..problem import TORQUE as OWN_TORQUE

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from ..numerics import held, nested
+from ..numerics import error_bounds, held
 from ..physics import lagrangian
 from . import meridian, quadrature
 
@@ -171,7 +171,7 @@ def misses(asked, now, free, nodes, traced, out):
     x += 2.0 * part(cell, loaded, now[NECK], now[NECK_FOLDS], nodes // 4, curve[:, body + 1 :], other)
     for k in range(4):
         row[k] += 2.0 * other[k]
-    row[nested.MULTIPLIER] = now[MU]
+    row[error_bounds.MULTIPLIER] = now[MU]
     _, pull, at_middle = lagrangian.uniform_tube(now[MIDDLE], cell, loaded)
     out[0] = x / half - 1.0
     out[1] = (row[0] * direction.f + row[2] * direction.m - target) / (half * max(abs(direction.f), abs(direction.m)))

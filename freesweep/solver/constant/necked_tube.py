@@ -4,7 +4,7 @@ import numpy as np
 
 from ...jit import kernel
 from ..load import loaded
-from ..numerics import finest, nested
+from ..numerics import error_bounds, finest, nested
 from ..numerics.dense import eliminate
 from ..physics import lagrangian
 from ..status import INACCURATE, NOT_CONVERGED, OK
@@ -130,18 +130,18 @@ def solve(room, tube, cell, path, t, scale, accuracy):
         if k >= quadrature.ROWS - finest.MESHES:
             lay(space.curve, count, half, *finest.mesh_of(quadrature.ROWS - 1 - k, nodes // 2, space.fine))
     there, last = loaded(end, direction, now[MU]), table[quadrature.ROWS - 1]
-    nested.measure(lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE), direction, True, out)
+    error_bounds.measure(lagrangian.scales(last, cell, there, half, nested.SMALLEST_TOLERANCE), direction, True, out)
     largest = quadrature.finish(table, out)
     finest.leave_loads(
-        table[:, nested.MULTIPLIER],
+        table[:, error_bounds.MULTIPLIER],
         quadrature.ROWS - 1,
-        out[0, nested.MULTIPLIER],
+        out[0, error_bounds.MULTIPLIER],
         direction,
         finest.NO_MESH,
         space.fine,
     )
-    out[0, nested.MULTIPLIER] *= scale
-    out[1, nested.MULTIPLIER] *= scale
+    out[0, error_bounds.MULTIPLIER] *= scale
+    out[1, error_bounds.MULTIPLIER] *= scale
     return (OK if largest <= accuracy else INACCURATE), doublings, there
 
 

@@ -5,7 +5,7 @@
 from math import exp
 
 from ...jit import kernel
-from ..numerics import nested
+from ..numerics import error_bounds
 from ..physics import lagrangian
 
 ROWS = 4  # quadratures, each with twice the nodes of the one before
@@ -29,13 +29,13 @@ def integrate(cell, load, u, rate, half, total, nodes, curve, row):
     s, v, t, w, _ = lagrangian.integrands(u, 0.0, cell, load)
     rest = half - total
     row[0], row[1], row[2], row[3] = length + rest * s, volume + rest * v, twist + rest * t, energy + rest * w
-    row[nested.MIDDLE], row[nested.MULTIPLIER] = u + (curve[1, nodes] - u) * exp(-rate * rest), 0.0
+    row[error_bounds.MIDDLE], row[error_bounds.MULTIPLIER] = u + (curve[1, nodes] - u) * exp(-rate * rest), 0.0
 
 
 @kernel
 def finish(table, out):
     """Values and bounds from the quadratures; the largest scaled bound."""
-    largest = CAUTION * nested.extrapolate(table, ROWS - 1, out[2], out[3], False, out[0], out[1])
-    for k in range(nested.OUTPUTS):
+    largest = CAUTION * error_bounds.extrapolate(table, ROWS - 1, out[2], out[3], False, out[0], out[1])
+    for k in range(error_bounds.OUTPUTS):
         out[1, k] = CAUTION * out[1, k] + ROUNDING * out[2, k]
     return largest

@@ -7,7 +7,7 @@ has that edge at a place of its own, before or behind the state that the base me
 import numpy as np
 
 from ...jit import kernel
-from ..numerics import nested
+from ..numerics import base_mesh, error_bounds
 from ..numerics.bordered import FOLLOWED, correct
 from ..numerics.continuation import CHANGE, FIRST_STEP, advance, is_flat, is_stable, last_alike, make_unit
 from ..numerics.path import Track, load_at, size_of
@@ -90,7 +90,7 @@ def locate(room, tube, path, here, ahead, sense):
     for i in range(n + 1):
         space.x[i], space.y[i] = track.x[i], track.next_y[i]
     now = load_at(path, track.next_y, n, ahead[0])
-    if not nested.adapt(of_tube(), space.x, space.y, n, tube, now, space.work):
+    if not base_mesh.adapt(of_tube(), space.x, space.y, n, tube, now, space.work):
         for i in range(n + 1):
             space.x[i] = track.x[i]
     loads, doubt = space.table[0], 0.0
@@ -101,7 +101,7 @@ def locate(room, tube, path, here, ahead, sense):
             for i in range(count + 1):
                 own.x[i] = space.x[2 * i]
         else:
-            nested.split(space.x, n, edges, COUNTS[k] // 2, own.x)
+            base_mesh.split(space.x, n, edges, COUNTS[k] // 2, own.x)
         carry(track.x, track.y, own.x, own.y)
         carry(track.x, track.tangent, own.x, own.tangent)
         for i in range(len(track.y) - n - 1):
@@ -113,7 +113,7 @@ def locate(room, tube, path, here, ahead, sense):
     least = SMALL * abs(loads[3])  # where rounding counts, nothing need fall
     falls = changes[1] < FALLING * changes[0] + least and changes[2] < FALLING * changes[1] + least
     broken = may_go_slack(path.origin.wall) or not falls
-    found, estimate = nested.fourth_order(loads[0], loads[1], loads[2], loads[3], broken)
+    found, estimate = error_bounds.fourth_order(loads[0], loads[1], loads[2], loads[3], broken)
     if not estimate < AGREED * abs(found):
         return np.nan, 0.0
-    return found, nested.SAFETY * estimate + ROUNDING * abs(found) + doubt
+    return found, error_bounds.SAFETY * estimate + ROUNDING * abs(found) + doubt

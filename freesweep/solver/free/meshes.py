@@ -1,7 +1,7 @@
 """The mesh of a branch, graded by the state that stands on it."""
 
 from ...jit import kernel
-from ..numerics import nested, newton
+from ..numerics import base_mesh, newton
 from ..numerics.bordered import CORRECTED, FOLLOWED, correct
 from ..numerics.continuation import make_unit
 from ..numerics.path import load_at, size_of
@@ -21,7 +21,7 @@ def regrade(track, tube, path, mu, work):
     for i in range(n + 1):
         track.spare[i], track.other[i] = track.x[i], track.y[i]
     now = load_at(path, track.y, n, mu)
-    if nested.adapt(of_tube(), track.x, track.y, n, tube, now, work):
+    if base_mesh.adapt(of_tube(), track.x, track.y, n, tube, now, work):
         return True
     for i in range(n + 1):
         track.x[i], track.y[i] = track.spare[i], track.other[i]

@@ -12,7 +12,7 @@ from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
 from ..load import by
-from ..numerics import held, nested, newton
+from ..numerics import error_bounds, held, nested, newton
 from ..numerics.held import NOTHING, Target
 from ..numerics.properties_along import fill
 from ..numerics.shapes import differ, extremes
@@ -74,8 +74,8 @@ def near_fold(room, tube, path, pressure, first, limit, accuracy):
         status, doublings = solve(space, tube, path.origin, Target(direction, target, True), REGRADES, accuracy)
         if status == NOT_CONVERGED or differ(guess, extremes(space.y, tube.middle)):
             return NOT_CONVERGED, doublings
-        gap = space.out[0, nested.MULTIPLIER] - 1.0
-        for k in range(nested.OUTPUTS):
+        gap = space.out[0, error_bounds.MULTIPLIER] - 1.0
+        for k in range(error_bounds.OUTPUTS):
             if made > 0 and gap != last:
                 slope[k] = abs((space.out[0, k] - values[k]) / (gap - last))
             values[k] = space.out[0, k]
@@ -88,8 +88,8 @@ def near_fold(room, tube, path, pressure, first, limit, accuracy):
             low, miss_low = target, gap
     if not abs(gap) < np.sqrt(ROOT):
         return NOT_CONVERGED, doublings
-    doubt, largest = abs(gap) + space.out[1, nested.MULTIPLIER], 0.0
-    for k in range(nested.OUTPUTS - 1):
+    doubt, largest = abs(gap) + space.out[1, error_bounds.MULTIPLIER], 0.0
+    for k in range(error_bounds.OUTPUTS - 1):
         space.out[1, k] += slope[k] * doubt
         largest = max(largest, space.out[1, k] / space.out[2, k])
     return (OK if largest <= accuracy else INACCURATE), doublings
@@ -103,7 +103,7 @@ def record(space, tube, load, status, doublings, accuracy, rows, i):
         return
     base = len(space.x) - 1
     for k in range(5):
-        share = 1.0 if k == nested.MIDDLE else 0.5  # of half the tube
+        share = 1.0 if k == error_bounds.MIDDLE else 0.5  # of half the tube
         rows.values[i, k], rows.bounds[i, k] = share * space.out[0, k], share * space.out[1, k]
     rows.slack[i] = look_along(
         space.fine, base << doublings, base, tube, load, space.work, rows.values[i, 5:], rows.bounds[i, 5:]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
-from ..numerics import nested
+from ..numerics import error_bounds, nested
 from ..numerics.path import Track
 from .fold import FINEST
 
@@ -50,8 +50,8 @@ def make_space(base, places):
     """Scratch for a base mesh of ``base`` cells, and uniform stretches at so many ``places``."""
     size = (base << nested.MAX_DOUBLINGS) + 2
     return Space(
-        np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, nested.OUTPUTS)),
-        np.zeros((5, size)), np.zeros((4, nested.OUTPUTS)), np.zeros(base + 1), np.zeros(base + 1),
+        np.zeros((5, size)), np.zeros((13, size)), np.zeros((nested.MAX_DOUBLINGS + 2, error_bounds.OUTPUTS)),
+        np.zeros((5, size)), np.zeros((4, error_bounds.OUTPUTS)), np.zeros(base + 1), np.zeros(base + 1),
         np.zeros(places),
     )  # fmt: skip
 

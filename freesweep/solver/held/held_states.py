@@ -12,7 +12,7 @@ from ..along.drawing import draw
 from ..along.profile import FIELDS
 from ..along.slack import look_along
 from ..free.space import make_room
-from ..numerics import held, nested
+from ..numerics import error_bounds, held, nested
 from ..numerics.properties_along import Tube, make_cells, of_problems, seat, turns, volume
 from ..numerics.shapes import MESH_CHANGE
 from ..physics import lagrangian
@@ -95,7 +95,7 @@ def find_on_some_mesh(problem, asked, tube, accuracy, room):
     if factor > 1:
         tube, room = made_finer(tube, factor), make_room(factor * base, half, True, count)
     found = find(problem, asked, tube, accuracy, room)
-    straight, differed = room.space.out[0, nested.MIDDLE] == 1.0, False
+    straight, differed = room.space.out[0, error_bounds.MIDDLE] == 1.0, False
     doubtful = valued(found.status) and found.unstable > 0 and not straight
     settled = found.status == OK or found.status == COMPRESSED or found.sure
     first_tube = tube
@@ -134,7 +134,7 @@ def as_limit(found):
 def alike(out, other):
     """Whether the outputs of two base meshes are those of one state."""
     same = True
-    for k in range(nested.MULTIPLIER):
+    for k in range(error_bounds.MULTIPLIER):
         same = same and abs(out[0, k] - other[0, k]) <= MESH_CHANGE * out[2, k]
     return same
 

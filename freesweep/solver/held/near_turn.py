@@ -10,7 +10,7 @@ import numpy as np
 
 from ...jit import kernel
 from ..cells import largest_sizes
-from ..numerics import finest, kinks, nested
+from ..numerics import base_mesh, error_bounds, finest, kinks, nested
 from ..numerics.bordered import FOLLOWED, correct
 from ..numerics.continuation import CHANGE
 from ..numerics.path import Track, load_at
@@ -58,15 +58,20 @@ def extrapolate(shares, level, scales, broken, unit, space):
     ``scales`` and floors of these; returns ``(share, its bound, largest scaled bound of the outputs)``.
     """
     out, table = space.out, space.table
-    nested.measure(scales, unit, True, out)
-    largest = nested.extrapolate(table, level, out[2], out[3], broken, out[0], out[1])
+    error_bounds.measure(scales, unit, True, out)
+    largest = error_bounds.extrapolate(table, level, out[2], out[3], broken, out[0], out[1])
     finest.leave_loads(
-        table[:, nested.MULTIPLIER], level, out[0, nested.MULTIPLIER], unit, nested.SMALLEST_TOLERANCE, space.fine
+        table[:, error_bounds.MULTIPLIER],
+        level,
+        out[0, error_bounds.MULTIPLIER],
+        unit,
+        nested.SMALLEST_TOLERANCE,
+        space.fine,
     )
-    share, estimate = nested.fourth_order(
+    share, estimate = error_bounds.fourth_order(
         shares[level - 3], shares[level - 2], shares[level - 1], shares[level], broken
     )
-    return share, nested.SAFETY * estimate + ROUNDING, largest
+    return share, error_bounds.SAFETY * estimate + ROUNDING, largest
 
 
 @kernel
@@ -91,7 +96,7 @@ def at_value(space, tube, path, node, value, mu, accuracy):
             return False, share, 0.0, level, 0.0, negative
         shares[level], row, now = share, table[level], load_at(path, own.y, count, share)
         broken = nested.integrate(lagrangian.integrands, own.x, own.y, count, filled, now, row, changes)
-        row[nested.MIDDLE], row[nested.MULTIPLIER] = own.y[middle * count // n], own.y[count + 1]
+        row[error_bounds.MIDDLE], row[error_bounds.MULTIPLIER] = own.y[middle * count // n], own.y[count + 1]
         if level == 1:
             first_held, first_share = own.y[count + 1], share
             for i in range(n + 1):
@@ -114,7 +119,7 @@ def at_value(space, tube, path, node, value, mu, accuracy):
             fine[1, n + 1] = first_held
         count = n << (level - 1)
         last_held = fine[1, count + 1]
-        nested.go_finer(space.x, n, edges, level - 1, fine, work)
+        base_mesh.go_finer(space.x, n, edges, level - 1, fine, work)
         level, count = level + 1, 2 * count
         fine[1, count + 1] = last_held
         own = track_on(fine[0], fine[1], space, count, free)
@@ -133,7 +138,7 @@ def before(track, space, tube, end, limit, accuracy):
         space.x[i], space.y[i] = track.x[i], track.next_y[i] + part * (track.y[i] - track.next_y[i])
     value, rise = space.y[node], -2.0 * bend * part * from_turn
     guess = 1.0, track.next_y[n + 1] + part * (track.y[n + 1] - track.next_y[n + 1])
-    last, last_share, last_out = value, 1.0, np.zeros(nested.OUTPUTS)
+    last, last_share, last_out = value, 1.0, np.zeros(error_bounds.OUTPUTS)
     for attempt in range(APPROACHES):
         found, share, bound, doublings, largest, unstable = at_value(
             space, tube, end.path, node, value, guess, accuracy
@@ -142,15 +147,15 @@ def before(track, space, tube, end, limit, accuracy):
             break
         out = space.out
         if attempt > 0 and abs(share - 1.0) <= bound:
-            for j in range(nested.OUTPUTS):
+            for j in range(error_bounds.OUTPUTS):
                 slope = abs(out[0, j] - last_out[j]) / max(abs(share - last_share), bound)
                 out[1, j] += slope * (bound + abs(share - 1.0))
                 largest = max(largest, out[1, j] / out[2, j])
             return (OK if largest <= accuracy else INACCURATE), doublings, unstable
         if attempt > 0 and value != last:
             rise = (share - last_share) / (value - last)
-        last, last_share, guess = value, share, (share, out[0, nested.MULTIPLIER])
-        for j in range(nested.OUTPUTS):
+        last, last_share, guess = value, share, (share, out[0, error_bounds.MULTIPLIER])
+        for j in range(error_bounds.OUTPUTS):
             last_out[j] = out[0, j]
         value += min(max((1.0 - share) / rise, -CHANGE * value), CHANGE * value)
     return NOT_CONVERGED, 0, 0

@@ -4,7 +4,7 @@ from ...jit import kernel
 from ..constant import necked_shape, necked_tube
 from ..free.fold import locate
 from ..load import loaded
-from ..numerics import nested, newton
+from ..numerics import error_bounds, nested, newton
 from ..numerics.continuation import is_flat
 from ..numerics.held import Target
 from ..numerics.path import load_at
@@ -71,7 +71,7 @@ def at_turn(room, tube, end, sought, path, accuracy):
     limit, bound = locate(room, tube, end.path, end.here, end.ahead, 1.0)
     if limit > 1.0 + bound and leads_to(end.path, sought):
         again, doublings, unstable = near_turn.before(track, space, tube, end, limit, accuracy)
-        now = loaded(load, end.path.held.unit, space.out[0, nested.MULTIPLIER])
+        now = loaded(load, end.path.held.unit, space.out[0, error_bounds.MULTIPLIER])
         return Found(again if valued(again) else status, unstable, doublings, now, limit, False, path)
     return Found(status, 0, 0, load, limit if limit == limit else end.here[0], limit <= 1.0 + bound, path)
 
@@ -87,7 +87,7 @@ def on_meshes(room, tube, end, sought, path, accuracy):
     status, unstable, doublings = nested.solve(of_tube(), space, tube, load, target, track.y[n + 1], 1, accuracy)
     if status == newton.CONVERGED or status == nested.UNREACHED:
         if not differ(extremes(track.y[: n + 1], tube.middle), extremes(space.y, tube.middle)):
-            now = loaded(load, unit, space.out[0, nested.MULTIPLIER])
+            now = loaded(load, unit, space.out[0, error_bounds.MULTIPLIER])
             return Found(OK if status == newton.CONVERGED else INACCURATE, unstable, doublings, now, 1.0, False, path)
     own = fill(tube.course, tube.edges, track.x, n, n, tube.cells)
     gone = pushed(track.y[: n + 1], own, load_at(end.path, track.y, n, 1.0))
@@ -120,7 +120,7 @@ def finish(room, tube, sought, found):
     )  # fmt: skip
     if necked:
         unstable = max(unstable, 1)  # of which a mesh may know nothing
-    out[1, nested.MULTIPLIER] += rounding
-    out[0, nested.MULTIPLIER] *= sought.scale
-    out[1, nested.MULTIPLIER] *= sought.scale
+    out[1, error_bounds.MULTIPLIER] += rounding
+    out[0, error_bounds.MULTIPLIER] *= sought.scale
+    out[1, error_bounds.MULTIPLIER] *= sought.scale
     return Found(found.status, unstable, found.doublings, found.load, found.reached, found.sure, found.path)

@@ -12,7 +12,7 @@ import numpy as np
 from ...jit import entry_point, kernel
 from ..along.profile import FIELDS, VALUES
 from ..cells import nothing_yet
-from ..numerics.nested import TINY
+from ..numerics.error_bounds import TINY
 from ..physics import lagrangian
 from ..physics.lagrangian import ROUNDING
 from ..problem import PHYSICAL, SOURCE

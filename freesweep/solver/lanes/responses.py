@@ -19,7 +19,8 @@ from ..physics.wall import may_go_slack
 from ..problem import PHYSICAL
 from . import slack_ends
 from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
-from .moved import COUNT, DEPTH, OWN, PLACES, SUM, clear, close, make_sums, move_middle, move_place, way_of
+from .moved import COUNT, PLACES, SUM, clear, close, make_sums, move_place, way_of
+from .moved_middle import DEPTH, OWN, move_middle
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import look_along
 from .second import place_at

@@ -14,7 +14,8 @@ from math import exp
 
 from ...jit import kernel
 from .meridian import DEEPEST
-from .moved import DEPTH, LOADS, MISSED, OF_LOADS, OF_Y, OWN, SUM
+from .moved import MISSED, SUM
+from .moved_middle import DEPTH, LOADS, OF_LOADS, OF_Y, OWN
 from .second import NUMBERS
 from .vector import get, put, select
 

@@ -1,14 +1,7 @@
 """Nested meshes: every output extrapolated, with an error bound, refined until the bound meets the accuracy asked for.
 
-A midpoint cell errs by even powers of its size, so results A on meshes of n/2, n, 2n, 4n cells extrapolate to fourth
-order, ``E = (4 A_2n - A_n)/3``. The difference of two successive E, divided by the 15 that the order allows, or by less
-where it has fallen by less (cells longer than a layer), estimates the error of the second; the difference before it,
-divided by 225, guards against its passing through zero. So does the
-largest share that such an estimate has in the last change of any output, A_2n - A_n: no other has a smaller one. The bound
-is ``SAFETY`` times the estimate, plus a floor for rounding and for what Newton's last steps left.
-
-The rows of ``table`` belong to the meshes, coarsest first; its columns are the outputs: the four integrals, y in the
-middle, and the multiplier of a held integral.
+What results on meshes of n/2, n, 2n, 4n cells tell of their limit, and how exactly, is told by :mod:`error_bounds`; how the
+meshes lie, by :mod:`base_mesh`.
 """
 
 from typing import NamedTuple
@@ -20,19 +13,15 @@ from ..cells import MIXED, behind, cell_at, largest_sizes, nothing_yet
 from ..load import loaded
 from . import finest, held, kinks, newton
 from . import mesh as grading
+from .base_mesh import adapt, go_finer, move_on
+from .error_bounds import MIDDLE, MULTIPLIER, extrapolate, measure
 from .newton import Mesh
 from .properties_along import fill
 
-OUTPUTS = 6  # length, volume, twist, energy, middle stretch, multiplier
-MIDDLE, MULTIPLIER = 4, 5
 MAX_DOUBLINGS = 7  # of the base mesh, which a coarser one (half) and two or more finer ones join
 MOVES = 2  # of the base mesh, so that it does not hide where the kind of cell changes
 STEP_SHARE = 1e-6  # of the accuracy: what Newton's last step may leave
 SMALLEST_TOLERANCE = 1e-14
-SAFETY = 3.3
-SLOWEST = 0.75  # share of a difference that the next one is taken to be at most
-FAINT = 0.02  # of the outputs' mean change: what counts as change of an output that hardly changes
-TINY = 1e-300
 
 UNREACHED = 3  # the accuracy was not met on the finest mesh
 
@@ -79,37 +68,6 @@ def integrate(integrands, x, y, n, cells, load, row, changes):
 
 
 @kernel
-def fourth_order(a, b, c, d, broken):
-    """``(value, estimate of its error)`` from results on meshes of twice the cells each. On ``broken`` ones a cell somewhere
-    holds a change of smoothness: it errs now by more, now by less, and no difference is divided by what an order allows.
-    """
-    first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-    last, before = abs(third - second), abs(second - first)
-    if broken:
-        return third, max(last, 0.25 * before)
-    fallen = min(last / (before + TINY), SLOWEST)
-    return third, max(last * max(fallen / (1.0 - fallen), 1.0 / 15.0), before / 225.0)
-
-
-@kernel
-def extrapolate(table, level, scales, floors, broken, values, bounds):
-    """Fourth-order values and bounds from the last four rows; returns the largest scaled bound."""
-    largest, share, change = 0.0, 0.0, TINY
-    for k in range(OUTPUTS):
-        change += FAINT / OUTPUTS * abs(table[level, k] - table[level - 1, k]) / scales[k]
-    for k in range(OUTPUTS):
-        c, d = table[level - 1, k], table[level, k]
-        values[k], estimate = fourth_order(table[level - 3, k], table[level - 2, k], c, d, broken)
-        bounds[k] = SAFETY * estimate
-        share = max(share, estimate / scales[k] / (abs(d - c) / scales[k] + change))
-    for k in range(OUTPUTS):
-        bounds[k] = max(bounds[k], share * abs(table[level, k] - table[level - 1, k]))
-        largest = max(largest, bounds[k] / scales[k])
-        bounds[k] += floors[k]
-    return largest
-
-
-@kernel
 def make_admissible(density, x, y, n, cells, load):
     """Shrink ``y`` toward 1, where every state is admissible, until each cell has room."""
     for _ in range(60):
@@ -128,87 +86,6 @@ def ease(integrands, x, y, n, guess, mesh, load, work):
     for j in range(mesh.n):
         here[j] = min(cosine[2 * j], cosine[2 * j + 1]) if mesh.n < n else cosine[j // 2]
     grading.ease(integrands, mesh.x, guess, mesh.n, here, mesh.cells, load)
-
-
-@kernel
-def adapt(functional, x, y, n, tube, load, work):
-    """Move the nodes of the base mesh to where the solution bends, and carry the solution over, eased where that leaves a
-    cell no room; returns whether it is admissible there.
-    """
-    course, edges, cells, free, _, _ = tube
-    density, integrands = functional.density, functional.integrands
-    own = fill(course, edges, x, n, n, cells)
-    cosine, rate, nodes, new_x, new_y, least = work[1], work[2], work[3], work[4], work[5], work[7]
-    for s in range(len(edges) - 1):  # each segment keeps its nodes: the jumps between them stay on the mesh
-        a, b = edges[s], edges[s + 1]
-        here = own[a:b] if len(own) > 1 else own
-        symmetric = free and s == len(edges) - 2
-        grading.turning(integrands, x[a : b + 1], y[a : b + 1], b - a, symmetric, here, load, work, rate)
-        grading.node_density(x[a : b + 1], b - a, rate, nodes)
-        grading.regrade(x[a : b + 1], y[a : b + 1], nodes, b - a, b - a, new_x[a : b + 1], new_y[a : b + 1], work[6])
-    own = fill(course, edges, new_x, n, n, cells)
-    fits = newton.admissible(density, new_x, new_y, n, own, load)
-    if free and not fits:
-        grading.least_between(x, cosine, n, new_x, least)
-        grading.ease(integrands, new_x, new_y, n, least, own, load)
-        fits = newton.admissible(density, new_x, new_y, n, own, load)
-    for i in range(n + 1):
-        x[i], y[i] = new_x[i], new_y[i]
-    return fits
-
-
-@kernel
-def move_on(density, room, tube, hidden, found, level, load, kept):
-    """Move the base mesh, so that it does not hide where the kind of cell changes, see :mod:`kinks`; its nodes and shape
-    before are ``kept``. Whether all cells have room then; else it is as it was.
-    """
-    x, y, n, edges = room.x, room.y, len(room.x) - 1, tube.edges
-    for i in range(n + 1):
-        kept[0, i], kept[1, i] = x[i], y[i]
-    kinks.move_on(x, y, edges, hidden, found, level - 3)
-    fits = newton.admissible(density, x, y, n, fill(tube.course, edges, x, n, n, tube.cells), load)
-    for i in range(n + 1):
-        x[i], y[i] = (x[i], y[i]) if fits else (kept[0, i], kept[1, i])
-    return fits
-
-
-@kernel
-def split(x, n, edges, factor, out):
-    """A finer mesh: each cell of the base mesh in ``factor``, smoothly within each segment."""
-    for s in range(len(edges) - 1):
-        a, b = edges[s], edges[s + 1]
-        grading.split(x[a : b + 1], b - a, factor, out[a * factor : b * factor + 1])
-
-
-@kernel
-def foresee(fine, n, work):
-    """First guess in row 1 of ``fine`` on twice as many cells, whose nodes are in row 0: the solution on n cells (rows 2,
-    4), carried on by the change from n/2 cells (row 3), which doubling the cells will repeat at a quarter.
-    """
-    half_x, change, both = work[0], work[1], work[2]
-    for i in range(n // 2 + 1):
-        half_x[i] = fine[2, 2 * i]
-        change[i] = 0.25 * (fine[4, 2 * i] - fine[3, i])
-    grading.prolong(half_x, change, n // 2, fine[2], both)
-    for i in range(n + 1):
-        both[i] += fine[4, i]
-    grading.prolong(fine[2], both, n, fine[0], fine[1])
-
-
-@kernel
-def go_finer(x, n, edges, doublings, fine, work):
-    """Nodes and first guess of the next finer mesh in rows 0, 1 of ``fine``, which hold the solution on this one, after so
-    many ``doublings`` of the base mesh ``x``; row 3 holds that on the coarser one, which becomes the last of three.
-    """
-    count = n << doublings
-    for i in range(count // 2 + 1):
-        fine[2, count + 1 + i], fine[4, count + 1 + i] = fine[0, 2 * i], fine[3, i]
-    for i in range(count + 1):
-        fine[2, i], fine[4, i] = fine[0, i], fine[1, i]
-    split(x, n, edges, 2 << doublings, fine[0])
-    foresee(fine, count, work)
-    for i in range(count + 1):
-        fine[3, i] = fine[4, i]
 
 
 @kernel
@@ -241,17 +118,6 @@ def tell(functional, y, mesh, base, center, mu, load, row, changes):
     """
     row[MIDDLE], row[MULTIPLIER] = y[center * mesh.n // base], mu
     return integrate(functional.integrands, mesh.x, y, mesh.n, mesh.cells, load, row, changes)
-
-
-@kernel
-def measure(scales, direction, held, out):
-    """Write scales and floors of outputs, the pair of ``scales``, to ``out``; of a multiplier in units of its direction."""
-    for k in range(OUTPUTS):
-        out[2, k], out[3, k] = scales[0][k], scales[1][k]
-    if held:
-        unit = max(abs(direction.p), max(abs(direction.f), abs(direction.m)))
-        out[2, MULTIPLIER] /= max(unit, 1.0)
-        out[3, MULTIPLIER] /= unit
 
 
 @kernel
