@@ -36,10 +36,9 @@ def test_derivatives_of_batches_are_what_differences_tell(kind):
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("kind", KINDS)
 def test_derivatives_of_many_batches_are_what_differences_tell(kind, seed):
-    """But for a tube of which a family pulls along less than a ten thousandth of its length only."""
     number, sharp, wrong, states, lost = compared(256, seed, kind)
     print(f"{kind}: {states} states, {lost} without, {number} compared, {sharp} of them to 1e-5, {len(wrong)} wrong")
-    assert len({state for _, _, state, *_ in wrong}) <= (seed == 1 and kind == "loose inside")
+    assert not wrong
     assert lost <= 0.02 * states
 
 

@@ -31,7 +31,7 @@ DEPTH, OWN = NUMBERS, NUMBERS + 1  # rows behind those of the numbers: by the de
 # rows of the middle: its stretch, level, rise of R - T and how that bends; what is summed
 OF_Y, OF_LEVEL, OF_RISE, OF_BEND, OF_LOADS = range(5)
 MIDDLE = OF_LOADS + LOADS
-ASIDE = 1e-4  # of the stretch in the middle: as far from there the bend of R - T is looked at
+ASIDE, LESS = 1e-4, 1e-2  # of the middle's stretch, of its strain: as far from there the bend of R - T is looked at
 
 
 @kernel
@@ -82,7 +82,7 @@ def bend_middle(mid, at, cell, load, own):
     """Write by how much the bend of R - T in the middle, ``at`` its level, changes: what its rise does a little to both
     sides of it, or to the one on which the same families pull.
     """
-    aside, none = ASIDE * mid.y, nothing_yet(0.0 * mid.y)
+    aside, none = min(ASIDE * mid.y, LESS * abs(1.0 - mid.y)), nothing_yet(0.0 * mid.y)
     below = lagrangian.at_level(mid.y - aside, mid.level, cell, load, none)
     above = lagrangian.at_level(mid.y + aside, mid.level, cell, load, none)
     alike, alike_above, zero = below.kind == at.kind, above.kind == at.kind, 0.0 * mid.y
