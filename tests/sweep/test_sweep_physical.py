@@ -168,7 +168,7 @@ def test_exact_answers_of_thick_and_loose_tubes_are_those_of_single_ones():
     tube = Actuator(
         alpha=25, beta=-45, length=0.1, radius=5e-3, wall=1.5e-3, material=MooneyRivlin(0.2e6, 0.1e6), model="physical"
     )
-    point = tube.design() | {"force": 0.5, "torque": 0.0, "pressure": 3e4, "held": 1.0}
+    point = tube.design() | {"force": 0.5, "torque": 0.0, "pressure": 3e4, "held": 1.0, "taper": 0.0, "bulge": 0.0}
     found = solve(LOADED, np.array([[point[name] for name in COLUMNS]]), Tubes("full", MODELS["physical"]), 1e-6)
     alone = inflate(tube, 3e4, force=0.5, x=0.0)
     for name in ("deformed_length", "rotation", "strain_energy"):
