@@ -30,7 +30,7 @@ def same(found, expected):
     return close and NUMBER.sub("#", found) == NUMBER.sub("#", expected)
 
 
-@pytest.mark.parametrize("page", ["model.md", "cookbook.md", "designing.md", "derivatives.md"])
+@pytest.mark.parametrize("page", ["model.md", "cookbook.md", "sweeps.md", "designing.md", "derivatives.md"])
 def test_blocks_of_a_page_run_and_print_what_it_says(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     text = (DOCS / page).read_text(encoding="utf-8")

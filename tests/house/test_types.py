@@ -80,7 +80,7 @@ OWNERS = {
 }  # fmt: skip
 PAGES = [
     "README.md",
-    *(f"docs/{name}.md" for name in ("model", "designing", "derivatives", "threads", "gallery", "export")),
+    *(f"docs/{name}.md" for name in ("model", "sweeps", "designing", "derivatives", "threads", "gallery", "export")),
 ]
 
 
