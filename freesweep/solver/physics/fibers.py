@@ -48,7 +48,7 @@ def slopes_at(given, G_1, psi):
 @kernel
 def taut_twist(y, H, gg):
     """Twist rate of both families taut (Eqs. 2.3, 2.4)."""
-    return H * (gg / (y * y) - 1.0)
+    return H * (gg * (1.0 / (y * y)) - 1.0)
 
 
 @kernel
@@ -60,7 +60,7 @@ def reach(y, psi, t, stretch):
 @kernel
 def both_reach(y, H, D, gg, stretch):
     """G - 1 of both families taut."""
-    return stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * gg / (y * y) - D * D)
+    return stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * gg * (1.0 / (y * y)) - D * D)
 
 
 @kernel
@@ -117,7 +117,7 @@ def pulled(given, T, psi, t, s, W):
     b_p = 2.0 * given.y * given.y
     rest = given.m - W_p + b * W_G
     rest_p = -(W_pp - b * W_Gp) + b_p * W_G + b * (W_Gp - b * W_GG)
-    return s * rest - 0.5 * T * b, -0.5 * b / s * rest + s * rest_p - 0.5 * T * b_p
+    return s * rest - 0.5 * T * b, -0.5 * b * (1.0 / s) * rest + s * rest_p - 0.5 * T * b_p
 
 
 @kernel
@@ -158,8 +158,8 @@ def is_taut(kind):
 @kernel
 def multipliers(y, s, psi, taut, cell, T, m, W_G, W_p):
     """Multipliers of both families, alpha and beta, 0 of one that is not ``taut``."""
-    total = 0.5 * T / s - W_G
-    difference = ((m - W_p) / (2.0 * y * y) - total * (cell[0] + psi)) / cell[1]
+    total = 0.5 * T * (1.0 / s) - W_G
+    difference = (0.5 * (m - W_p) * (1.0 / (y * y)) - total * (cell[0] + psi)) * (1.0 / cell[1])
     both = taut[0] & taut[1]
     return (
         select(both, 0.5 * (total + difference), select(taut[0], total, 0.0)),

@@ -16,10 +16,10 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..either import isnt, select, some
 from . import membrane
-from .fibers import BOTH_TAUT, both_reach, given_at, is_taut, lacking, multipliers, slopes_at, taut_twist
+from .fibers import BOTH_TAUT, axial, both_reach, given_at, is_taut, lacking, multipliers, taut_twist
 from .physical import LEAST, NO_ROOM, kind_of, place, place_beside
-from .relaxed import beside, under
-from .wall import has_two_families, least_square, may_go_slack, rises, stored
+from .relaxed import beside, resultant
+from .wall import energy, has_two_families, least_square, may_go_slack, rises, stored
 
 LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it meets
 
@@ -50,7 +50,9 @@ def levelled(y, level, cell, load):
     _, G_1, psi, alpha, beta = place(y, 0.0 * y, R, cell, load)
     going = y > 0.0
     for _ in range(LEVELS):
-        better, _ = under((level, level), given, G_1, psi)
+        better = resultant(
+            level, given, axial(1.0 + G_1, 0.0), psi, stored(y, G_1, psi, given.area, given.rubber, given.wall)
+        )
         change = abs(better - R)
         R = select(going, better, R)
         going = going & (change > CLOSE * R)
@@ -120,12 +122,13 @@ def level_if_taut(y, level, cell, load):
     psi, G_1 = taut_twist(y, H, gg), max(both_reach(y, H, D, gg, gg - 1.0), LEAST - 1.0)
     W, W_y, W_G, W_p = rises(y, G_1, psi, area, load.rubber, load.wall)
     s = sqrt(1.0 + G_1)
-    R, both = max((level + W - m * psi) / s, NO_ROOM), y == y
+    i = 1.0 / s
+    R, both = max((level + W - m * psi) * i, NO_ROOM), y == y
     a, b = multipliers(y, s, psi, (both, both), cell, R, m, W_G, W_p)
     ta, tb = H + D + psi, H - D + psi
     L_y = 2.0 * load.p * y * s - W_y - 2.0 * y * (a * ta * ta + b * tb * tb)
     room = room_of(y, 1.0 + G_1, load)
-    return Level(room, R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, a, b, W)
+    return Level(room, R, -L_y * i, G_1, psi, BOTH_TAUT + 0.0 * y, a, b, W)
 
 
 @kernel
@@ -148,7 +151,8 @@ def level_where_slack(y, level, cell, load, near):
         R, G_1, psi = select(lost, other, R), select(lost, wide, G_1), select(lost, twist, psi)
         dG, dpsi = select(lost, still, dG), select(lost, still, dpsi)
         alpha, beta = (lost & with_alpha) | (known & alpha), (lost & with_beta) | (known & beta)
-        V, whole = slopes_at(given, G_1, psi), stored(y, G_1, psi, given.area, given.rubber, given.wall)
+        told = energy(y, G_1, psi, given.area, given.rubber, given.wall)
+        whole, V = told[0], told[1:]
         weighed = select(lost, whole, weighed)
         W = (
             select(lost, V[0], W[0]), select(lost, V[1], W[1]), select(lost, V[2], W[2]), select(lost, V[3], W[3]),
@@ -173,7 +177,7 @@ def level_where_slack(y, level, cell, load, near):
     a = select(alpha, a + select(both, 0.0, more), -max(lack_a, 0.0))
     b = select(beta, b + select(both, 0.0, more), -max(lack_b, 0.0))
     G = 1.0 + G_1
-    return Level(room_of(y, G, load), R, -L_y / s, G_1, psi, kind_of(alpha, beta), a, b, weighed)
+    return Level(room_of(y, G, load), R, -L_y * i, G_1, psi, kind_of(alpha, beta), a, b, weighed)
 
 
 @kernel
