@@ -26,7 +26,7 @@ LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it 
 
 class Level(NamedTuple):
     """What is known of a place: room, the resultant R, how R - T rises with y; G - 1, twist rate; which families are
-    taut, and their multipliers, of a slack one, below 0, what it lacks of being taut; and e W.
+    taut, and their multipliers, of a slack one about what it would push by, were it as long as it is wound; and e W.
     """
 
     room: float
@@ -173,11 +173,35 @@ def level_where_slack(y, level, cell, load, near):
     L_y = L_y + (load.p * y * i - W_yG - along * K_GG) * dG + (along * W_Gp - W_yp - 4.0 * y * turned) * dpsi
     more, both = K_GG * dG - W_Gp * dpsi, alpha & beta
     G_1, psi = G_1 + dG, psi + dpsi
-    lack_a, lack_b = lacking(y, G_1, psi, H, D, gg, wall) if may_go_slack(wall) else (still, still)
-    a = select(alpha, a + select(both, 0.0, more), -max(lack_a, 0.0))
-    b = select(beta, b + select(both, 0.0, more), -max(lack_b, 0.0))
+    push_a, push_b = still, still
+    if may_go_slack(wall):
+        lack_a, lack_b = lacking(y, G_1, psi, H, D, gg, wall)
+        bends = K_GG, -W_Gp, -W_pp - 2.0 * y * y * (a + b)
+        push_a, push_b = pushes(y, (max(lack_a, 0.0), max(lack_b, 0.0)), (ta, tb), alpha | beta, t, bends)
+    a = select(alpha, a + select(both, 0.0, more), push_a)
+    b = select(beta, b + select(both, 0.0, more), push_b)
     G = 1.0 + G_1
     return Level(room_of(y, G, load), R, -L_y * i, G_1, psi, kind_of(alpha, beta), a, b, weighed)
+
+
+@kernel
+def pushes(y, lacks, tangents, one, t, bends):
+    """Multipliers of both families, of one that ``lacks`` something of being taut, were it wound by so much more: to first
+    order, so that what it pulls by goes on behind the place where it goes slack. ``one`` where the other one is taut, and
+    ``t`` its tan(angle) as the twist leaves it, those of both the ``tangents``; ``bends`` second derivatives of what is
+    maximized.
+    """
+    K_GG, K_Gp, K_pp = bends
+    square = 2.0 * y * y
+    ca, cb, c = square * tangents[0], square * tangents[1], square * t  # -dG/dpsi of what stays as it is wound
+    along = c * c * K_GG - 2.0 * c * K_Gp + K_pp
+    apart = 1.0 / (ca - cb)
+    stiff_a = stiff_b = along * apart * apart
+    if some(isnt(one)):
+        det = K_GG * K_pp - K_Gp * K_Gp
+        stiff_a = select(one, stiff_a, det / (ca * ca * K_GG - 2.0 * ca * K_Gp + K_pp))
+        stiff_b = select(one, stiff_b, det / (cb * cb * K_GG - 2.0 * cb * K_Gp + K_pp))
+    return lacks[0] * stiff_a, lacks[1] * stiff_b
 
 
 @kernel

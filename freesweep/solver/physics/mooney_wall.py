@@ -7,8 +7,8 @@ sums of ``1/q, 1/q^2, 1/q^3`` make W and all first and second derivatives. Means
     mean of 1/q = 1/(logarithmic mean of a and b),   mean of 1/q^2 = 1/(a b),   mean of 1/q^3 = (a + b)/(2 a^2 b^2)
 
 With the arithmetic mean m and the geometric one g, n = m + g and h = (b - a)/2, the first is ``2/h atanh(h/n)``, and with
-``i = h/(n + sqrt(n^2 - h^2))`` ``atanh(h/n) = 2 atanh(i)``. Roots and divisions are what this costs: there are no more. W is a sum of terms of the size of the strain, each of which is
-known to all digits.
+``i = h/(n + sqrt(n^2 - h^2))`` ``atanh(h/n) = 2 atanh(i)``. Roots and divisions are what this costs: there are no more. W is
+a sum of terms of the size of the strain, each of which is known to all digits.
 """
 
 from math import sqrt
