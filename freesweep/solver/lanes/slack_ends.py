@@ -64,7 +64,7 @@ def trial(i, far, last, of_far, of_last, going):
     """
     new = last - of_last * (last - far) / select(going, of_last - of_far, 1.0)
     halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)
-    return select(((new - far) * (new - last) < 0.0) & isnt(halved), new, 0.5 * (far + last))
+    return select(((new - far) * (new - last) <= 0.0) & isnt(halved), new, 0.5 * (far + last))
 
 
 @kernel

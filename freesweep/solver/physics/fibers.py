@@ -12,6 +12,9 @@ CLOSE = 1e-7  # of the unit of what is sought: the next step of Newton's method 
 SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves; none is longer in the other direction
 LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
+FAINT = (
+    1e-9  # of the resultant: a family that would have to push by less stays taut beside the place where it goes slack
+)
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
 NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
 ENDLESS = 1e300  # longer than anything
@@ -147,6 +150,12 @@ def spread_of(given):
     apart = (psi < -right) | (psi > -left)
     side = select(psi < -right, right, left)
     return low, select(apart, reach(y, best, side, stretch), both_reach(y, H, D, gg, stretch)), psi, best
+
+
+@kernel
+def holds(multiplier, T):
+    """Whether a family pulls, or all but does."""
+    return multiplier >= -FAINT * T
 
 
 @kernel

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..either import isnt, select, some
 from . import membrane
-from .fibers import BOTH_TAUT, axial, both_reach, given_at, is_taut, lacking, multipliers, taut_twist
+from .fibers import BOTH_TAUT, axial, both_reach, given_at, holds, is_taut, lacking, multipliers, taut_twist
 from .physical import LEAST, NO_ROOM, kind_of, place, place_beside
 from .relaxed import beside, resultant
 from .wall import energy, has_two_families, least_square, may_go_slack, rises, stored
@@ -103,7 +103,7 @@ def level_of_wall(y, level, cell, load, near):
         if not some(taut):
             return level_where_slack(y, level, cell, load, near)
         at = level_if_taut(y, level, cell, load)
-        taut = taut & (at.a >= 0.0) & (at.b >= 0.0)
+        taut = taut & holds(at.a, at.R) & holds(at.b, at.R)
         if not some(isnt(taut)):
             return at
         slack = level_where_slack(y, level, cell, load, near)

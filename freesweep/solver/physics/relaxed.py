@@ -39,6 +39,7 @@ from .fibers import (
     axial,
     both_reach,
     free_point,
+    holds,
     most_taut,
     multipliers,
     pulled,
@@ -274,8 +275,8 @@ def beside(given, pull, near):
         a, b = multipliers(y, s, psi, (both, both), (H, D), T, m, W[1], W[2])
         kind = select(
             both,
-            select(a >= 0.0, ALPHA_TAUT, NONE_TAUT) + select(b >= 0.0, BETA_TAUT, NONE_TAUT),
-            select((0.5 * T * (1.0 / s) - W[1] >= 0.0) | bonded, kind, NONE_TAUT),
+            select(holds(a, T), ALPHA_TAUT, NONE_TAUT) + select(holds(b, T), BETA_TAUT, NONE_TAUT),
+            select(holds(0.5 * T * (1.0 / s) - W[1], T) | bonded, kind, NONE_TAUT),
         )
         both, none = kind == BOTH_TAUT, kind == NONE_TAUT
         t = H + select(kind == ALPHA_TAUT, D, -D)
@@ -283,7 +284,7 @@ def beside(given, pull, near):
         known = known & (isnt(going & isnt(both | none)) | (F_p < 0.0))
         to_psi, to_G_1 = psi + dpsi, G_1 + dG
         more, then = overreached(given, kind, to_G_1, to_psi)
-        last = (abs(then - before) < 0.5) & (y * abs(dpsi) < CLOSE) & (abs(dG) < CLOSE * s * s)
+        last = (abs(then - kind) < 0.5) & (y * abs(dpsi) < CLOSE) & (abs(dG) < CLOSE * s * s)
         kind = select(going, then, before)
         going = going & isnt(last)
         both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)
