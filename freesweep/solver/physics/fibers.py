@@ -51,7 +51,7 @@ def slopes_at(given, G_1, psi):
 @kernel
 def taut_twist(y, H, gg):
     """Twist rate of both families taut (Eqs. 2.3, 2.4)."""
-    return H * (gg * (1.0 / (y * y)) - 1.0)
+    return H * (gg / (y * y) - 1.0)
 
 
 @kernel
@@ -63,7 +63,7 @@ def reach(y, psi, t, stretch):
 @kernel
 def both_reach(y, H, D, gg, stretch):
     """G - 1 of both families taut."""
-    return stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * gg * (1.0 / (y * y)) - D * D)
+    return stretch + ((y - 1.0) * (y + 1.0) - stretch) * (H * H * gg / (y * y) - D * D)
 
 
 @kernel
