@@ -280,7 +280,8 @@ def beside(given, pull, near):
         )
         both, none = kind == BOTH_TAUT, kind == NONE_TAUT
         t = H + select(kind == ALPHA_TAUT, D, -D)
-        dG, dpsi, F_p = newton_step(given, T, kind, t, G_1, psi, s, W)
+        wider, further, F_p = newton_step(given, T, kind, t, G_1, psi, s, W)
+        dG, dpsi = select(going, wider, dG), select(going, further, dpsi)
         known = known & (isnt(going & isnt(both | none)) | (F_p < 0.0))
         to_psi, to_G_1 = psi + dpsi, G_1 + dG
         more, then = overreached(given, kind, to_G_1, to_psi)
