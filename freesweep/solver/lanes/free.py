@@ -85,6 +85,7 @@ def carry(walks, kind, told):
     """
     columns, found, seats = aligned(1, COLUMNS)[0], aligned(1, 2)[0], np.zeros((LEADS + 1, WIDTH), np.int64)
     u, t, step, near = spread(1.0), spread(0.0), spread(first_guess.FIRST_STEP), nothing_yet(spread(0.0))
+    at_end = near
     taken, active, started, ended = 0, 0, 0, 0
     for lane in range(WIDTH):
         seats[MEMBER, lane] = -1
@@ -101,7 +102,12 @@ def carry(walks, kind, told):
             return
         new, next_load = mask_of(fresh), mask_of(ended)
         started &= ~fresh
-        u, near = select(new, 1.0, u), first_guess.kept(new, nothing_yet(spread(0.0)), near)
+        nothing = nothing_yet(spread(0.0))
+        u, near, at_end = (
+            select(new, 1.0, u),
+            first_guess.kept(new, nothing, near),
+            first_guess.kept(new, nothing, at_end),
+        )
         t, step = select(next_load, 0.0, t), select(next_load, first_guess.FIRST_STEP, step)
         cell, before, now = loads(columns, kind.constants, kind.walls, kind.layers)
         before, todo = first_leg(before, mask_of(active & ~started)), mask_of(active)
@@ -110,7 +116,9 @@ def carry(walks, kind, told):
         if some(arrived):
             put(columns, BEFORE, select(arrived, now.p, get(columns, BEFORE)))
             put(found, 0, u)
-            put(found, 1, meridian.work_of(u, cell, now, get(columns, HALF)))
+            work, then = meridian.work_of(u, cell, now, get(columns, HALF), near, at_end)
+            put(found, 1, work)
+            at_end = first_guess.kept(arrived, then, at_end)
         ended, started = bits(arrived | todo & (step <= first_guess.SMALLEST_STEP)), started | bits(arrived)
         for lane in range(WIDTH):
             if (bits(arrived) >> lane) & 1:

@@ -8,7 +8,7 @@ from ...jit import kernel
 from ..along.slack import NOTHING, TENSIONLESS
 from ..physics.wall import may_go_slack
 from .meridian import handed_on, look
-from .vector import WIDTH, get, isnt, mask_of, put, select, some, spread
+from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 MOST = 8  # ends in half a tube; more are left to finer parts
 STEPS, CLOSE, SURE = 48, 1e-9, 3e-8  # of the search, its last step [of the depth], and how exactly an end is known
@@ -30,14 +30,17 @@ def bracket(first, width, places, pull, family, last, seen, ends, counts, starts
     """Write where the ``pull`` of a family changes its sign, at the ``places`` 0 to ``last`` of a part of that ``width``, to
     ``ends`` (7, MOST, WIDTH), of which each lane has ``counts`` (WIDTH,); what was ``seen`` (4, ...) before to ``starts``.
     """
-    for lane in range(WIDTH):
-        for k in range(last):
-            here, there = pull[k, lane], pull[k + 1, lane]
-            if (here > 0.0) != (there > 0.0) and counts[lane] < MOST:
-                j = counts[lane]
+    for k in range(last):
+        changes = bits(get(pull, k) > 0.0) ^ bits(get(pull, k + 1) > 0.0)
+        if changes == 0:
+            continue
+        for lane in range(WIDTH):
+            j = counts[lane]
+            if (changes >> lane) & 1 and j < MOST:
                 ends[LEFT, j, lane], ends[RIGHT, j, lane] = first + width * places[k], first + width * places[k + 1]
                 ends[FIRST, j, lane], ends[LAST, j, lane] = ends[LEFT, j, lane], ends[RIGHT, j, lane]
-                ends[BEFORE, j, lane], ends[BEHIND, j, lane], ends[FAMILY, j, lane] = here, there, family
+                ends[BEFORE, j, lane], ends[BEHIND, j, lane] = pull[k, lane], pull[k + 1, lane]
+                ends[FAMILY, j, lane] = family
                 for i in range(4):
                     starts[i, j, lane] = seen[i, k, lane]
                 counts[lane] = j + 1
