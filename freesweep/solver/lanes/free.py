@@ -90,7 +90,7 @@ def carry(walks, kind, told):
     for lane in range(WIDTH):
         seats[MEMBER, lane] = -1
         ended |= 1 << lane
-        enter(lane, walks.problems[0], columns)
+        enter(lane, walks.problems[walks.order[0]], columns)
     while True:
         fresh = 0
         for lane in range(WIDTH):

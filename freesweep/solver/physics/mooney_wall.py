@@ -61,7 +61,7 @@ def polynomial(coefficients, v):
 @kernel
 def mean_reciprocals(middle, half, product):
     """Means of 1/q and 1/q^2 where q goes from ``middle - half`` to ``middle + half``, whose ``product`` is given."""
-    if not some(half > 0.0):
+    if not some(half > 0.0):  # all lanes of a vector are membranes, or none is
         one = 1.0 / middle
         return one, one * one
     both = middle + sqrt(product)
