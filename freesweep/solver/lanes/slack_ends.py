@@ -47,13 +47,21 @@ def bracket(first, width, places, pull, family, last, seen, ends, counts, starts
 
 
 @kernel
-def passed_over(pull, lengths, last):
-    """How long the places are beside which a pull may have ended, and begun again, or the other way round, unseen."""
+def same_sign(before, here, after):
+    """Where three pulls are all positive, or all negative."""
+    return ((before > 0.0) & (here > 0.0) & (after > 0.0)) | ((before < 0.0) & (here < 0.0) & (after < 0.0))
+
+
+@kernel
+def passed_over(pull, other, lengths, last):
+    """How long the places are beside which a pull may have ended, and begun again, or the other way round, unseen. What a
+    slack family would push by jumps where the ``other`` one goes slack.
+    """
     total = spread(0.0)
     for k in range(1, last):
         before, here, after = get(pull, k - 1), get(pull, k), get(pull, k + 1)
         bend, half = before - 2.0 * here + after, 0.5 * (after - before)
-        alike = ((before > 0.0) & (here > 0.0) & (after > 0.0)) | ((before < 0.0) & (here < 0.0) & (after < 0.0))
+        alike = same_sign(before, here, after) & same_sign(get(other, k - 1), get(other, k), get(other, k + 1))
         turns = alike & (abs(here) <= abs(before)) & (abs(here) <= abs(after)) & (bend * here > 0.0)
         vertex = here - half * half / select(turns, 2.0 * bend, 1.0)
         total = total + select(turns & (vertex * here < 0.0), get(lengths, k), 0.0)
@@ -116,7 +124,7 @@ def reopen(shift, moved, mid, cell, load, room):
             break
         t, width, near = get(ends[LEFT], j), WIDER * shift + SURE, start_of(starts, j)
         of_alpha, ended = get(ends[FAMILY], j) < 0.5, get(ends[BEFORE], j) > 0.0
-        left, right = max(t - width, 0.0), min(t + width, 1.0)
+        left, right = max(t - width, 0.0), min(get(ends[RIGHT], j) + width, 1.0)
         for _ in range(2):
             first = pulls(look(left, mid, cell, load, near, scratch).at, load)
             last = pulls(look(right, mid, cell, load, near, scratch).at, load)
