@@ -1,8 +1,8 @@
 """Free states of tubes that are the same all along, a vector of designs at a time.
 
-First each design's uniform tube is carried along its pressures, as far as it rises without a turning point. Then the
-states are solved, in vectors of states that are alike, whichever designs they belong to: each begins as a long tube, so
-none needs another one. No lane's numbers depend on its neighbours.
+First each design's uniform tube is carried along its pressures, as far as it rises without a turning point; none waits
+for others, whose steps may be shorter. Then the states are solved, in vectors of states that are alike, whichever designs
+they belong to: each begins as a long tube, so none needs another one. No lane's numbers depend on its neighbours.
 """
 
 from typing import NamedTuple
