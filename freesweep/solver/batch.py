@@ -116,9 +116,8 @@ def _nothing(problems, states, stations):
 
 def _solve_lanes(problems, first, pressures, asked, accuracy, found, soon, most):
     """Solve the states that are ``asked`` for, on walks along pressures that rise or fall."""
-    # what shares a vector should need much the same work: as many pressures, like angles, and likeness tells the rest
-    steps = np.diff(first)
-    owners, order = np.repeat(np.arange(len(problems)), steps), np.lexsort((problems[:, D], steps))
+    # what shares a vector should need much the same work: like angles, and likeness tells the rest
+    owners, order = np.repeat(np.arange(len(problems)), np.diff(first)), np.argsort(problems[:, D], kind="stable")
     stretches, likeness = np.full(len(pressures), np.nan), np.full(len(pressures), np.nan)
     for carry, solve, kind, some in kinds_of(problems):
         given = problems, first, pressures, order[some[order]], *kind, *found[:3], stretches, likeness

@@ -146,36 +146,43 @@ def rising(u, trial, cell, start, end, low, high, half, asked):
 
 
 @kernel
+def attempt(u, t, step, near, cell, start, end, half, todo):
+    """One step on the way from load ``start`` to ``end``, from its share ``t`` on, in the lanes that are ``todo``; returns
+    ``(u, t, the next step, what the next look may start from)``.
+    """
+    ahead = min(t + step, 1.0)
+    trial, least, most = u, spread(0.0), spread(HUGE)
+    going, arrived = todo, mask_of(0)
+    for _ in range(ITERATIONS):
+        (room, L_y, _, L_yy, _, _), then = lagrangian.density_beside(
+            trial, spread(0.0), cell, between(start, end, ahead), near
+        )
+        near = kept(going, then, near)
+        going = going & (room > 0.0) & (L_yy < 0.0)
+        least, most = select(L_y > 0.0, trial, least), select(L_y > 0.0, most, trial)
+        new = trial - L_y / L_yy
+        new = select((least <= new) & (new <= most), new, 0.5 * (least + most))
+        size = abs(new - trial)
+        trial = select(going, new, trial)
+        going = going & (abs(trial - u) < LARGEST_CHANGE * u)
+        there = going & (size < MET * u)
+        arrived, going = arrived | there, going & isnt(there)
+        if not some(going):
+            break
+    arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived
+    loaded = arrived & (abs(end.f) + abs(end.m) + abs(end.gamma - 1.0) > 0.0)
+    if leaves_choice(end.wall) and has_two_families(end.wall) and some(loaded):
+        arrived = arrived & (isnt(loaded) | reaches(trial, cell, between(start, end, ahead)))
+    return select(arrived, trial, u), select(arrived, ahead, t), select(arrived, 2.0 * step, 0.5 * step), near
+
+
+@kernel
 def follow(u, cell, start, end, half, asked):
     """Carry the uniform stretch ``u`` from load ``start`` to ``end``; returns it and the lanes that arrived."""
-    t, step, zero = spread(0.0), spread(FIRST_STEP), spread(0.0)
-    todo, done, near = asked, mask_of(0), nothing_yet(zero)
+    t, step, near = spread(0.0), spread(FIRST_STEP), nothing_yet(spread(0.0))
+    todo, done = asked, mask_of(0)
     while some(todo):
-        ahead = min(t + step, 1.0)
-        trial, least, most = u, spread(0.0), spread(HUGE)
-        going, arrived = todo, mask_of(0)
-        for _ in range(ITERATIONS):
-            (room, L_y, _, L_yy, _, _), then = lagrangian.density_beside(
-                trial, zero, cell, between(start, end, ahead), near
-            )
-            near = kept(going, then, near)
-            going = going & (room > 0.0) & (L_yy < 0.0)
-            least, most = select(L_y > 0.0, trial, least), select(L_y > 0.0, most, trial)
-            new = trial - L_y / L_yy
-            new = select((least <= new) & (new <= most), new, 0.5 * (least + most))
-            size = abs(new - trial)
-            trial = select(going, new, trial)
-            going = going & (abs(trial - u) < LARGEST_CHANGE * u)
-            there = going & (size < MET * u)
-            arrived, going = arrived | there, going & isnt(there)
-            if not some(going):
-                break
-        arrived = rising(u, trial, cell, start, end, t, ahead, half, arrived) & arrived
-        loaded = arrived & (abs(end.f) + abs(end.m) + abs(end.gamma - 1.0) > 0.0)
-        if leaves_choice(end.wall) and has_two_families(end.wall) and some(loaded):
-            arrived = arrived & (isnt(loaded) | reaches(trial, cell, between(start, end, ahead)))
-        t, u = select(arrived, ahead, t), select(arrived, trial, u)
-        step = select(arrived, 2.0 * step, 0.5 * step)
+        u, t, step, near = attempt(u, t, step, near, cell, start, end, half, todo)
         done = done | (todo & (t >= 1.0))
         todo = todo & (t < 1.0) & (step > SMALLEST_STEP)
     return u, done

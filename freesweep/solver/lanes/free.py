@@ -1,20 +1,38 @@
 """Free states of tubes that are the same all along, a vector of designs at a time.
 
-First each design's uniform tube is carried along its pressures, as far as it rises without a turning point. Then the
-states are solved, in vectors of states that are alike, whichever designs they belong to: each begins as a long tube, so
-none needs another one. No lane's numbers depend on its neighbours.
+First each design's uniform tube is carried along its pressures, as far as it rises without a turning point; none waits
+for others, whose steps may be shorter. Then the states are solved, in vectors of states that are alike, whichever designs
+they belong to: each begins as a long tube, so none needs another one. No lane's numbers depend on its neighbours.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from ...jit import entry_point, kernel
+from ..cells import nothing_yet
 from ..load import Load
 from ..physics import lagrangian
 from ..problem import AREA, GAMMA, PHYSICAL, SOURCE, D, H
 from . import first_guess, meridian, quadrature, sums
 from .pack import BEFORE, COLUMNS, PRESSURE, Asked, Kind, Told, aligned, enter, is_clamped, loads, lock, record, settle
 from .pack import LENGTH as HALF
-from .vector import WIDTH, bits, get, mask_of, put, select, spread
+from .vector import WIDTH, bits, get, mask_of, put, select, some, spread
+
+MEMBER, ROW, CLAMPED, LEADS = range(4)  # who sits in a lane; whether its ends may have a length, whether a way leads on
+
+
+class Walks(NamedTuple):
+    """Problems (n, columns), of which i is asked for the ``pressures`` from ``first[i]`` on, taken in the given ``order``;
+    for each pressure the uniform stretch, and a number from 0 to 1 that tells states that are as much work.
+    """
+
+    problems: np.ndarray
+    first: np.ndarray
+    pressures: np.ndarray
+    order: np.ndarray
+    stretches: np.ndarray
+    likeness: np.ndarray
 
 
 @kernel
@@ -34,54 +52,80 @@ def locked(problem):
 
 
 @kernel
-def carry(problems, first, pressures, order, kind, told, stretches, likeness):
-    """Uniform ``stretches`` (pressures,) of the problems, taken in the given ``order``, WIDTH at a time: NaN from where
-    no quick way leads on; and ``likeness`` (pressures,), numbers from 0 to 1 that tell states that are as much work.
-    What needs no solving at all is ``told``. Problem i is asked for the ``pressures`` from ``first[i]`` on.
+def onward(lane, taken, seats, walks, columns, told):
+    """Put the next load that has to be solved into a lane: of its own problem, or of the next one in the order, of which
+    ``taken`` are in lanes. Returns ``(taken, whether there is one, whether it is another problem's)``.
     """
-    columns, found = aligned(1, COLUMNS)[0], aligned(1, 2)[0]
-    members, rows = np.zeros(WIDTH, np.int64), np.zeros(WIDTH, np.int64)
-    for group in range(0, len(order), WIDTH):
-        count = min(WIDTH, len(order) - group)
-        longest, going = 0, 0
+    k, row, fresh = seats[MEMBER, lane], seats[ROW, lane] + 1, False
+    while True:
+        if k < 0 or row == walks.first[k + 1]:
+            if taken == len(walks.order):
+                return taken, False, fresh
+            k, fresh = walks.order[taken], True
+            row, taken = walks.first[k], taken + 1
+            seats[MEMBER, lane], seats[CLAMPED, lane] = k, 1 if is_clamped(walks.problems[k]) else 0
+            seats[LEADS, lane] = seats[CLAMPED, lane]
+            enter(lane, walks.problems[k], columns)
+            continue
+        p, seats[ROW, lane] = walks.pressures[row], row
+        walks.stretches[row] = np.nan
+        if not settle(p, walks.problems[k], seats[CLAMPED, lane] == 1, row, told):
+            if p == np.inf:
+                walks.stretches[row], walks.likeness[row] = locked(walks.problems[k])
+            elif seats[LEADS, lane] == 1:
+                columns[PRESSURE, lane] = p
+                return taken, True, fresh
+        row += 1
+
+
+@kernel
+def carry(walks, kind, told):
+    """Uniform ``stretches`` of the :class:`Walks`: NaN from where no quick way leads on; and ``likeness``. What needs no
+    solving at all is ``told``. Each lane goes on by itself: the next load is its own, or, at the end, another problem's.
+    """
+    columns, found, seats = aligned(1, COLUMNS)[0], aligned(1, 2)[0], np.zeros((LEADS + 1, WIDTH), np.int64)
+    u, t, step, near = spread(1.0), spread(0.0), spread(first_guess.FIRST_STEP), nothing_yet(spread(0.0))
+    at_end = near
+    taken, active, started, ended = 0, 0, 0, 0
+    for lane in range(WIDTH):
+        seats[MEMBER, lane] = -1
+        ended |= 1 << lane
+        enter(lane, walks.problems[walks.order[0]], columns)
+    while True:
+        fresh = 0
         for lane in range(WIDTH):
-            k = order[group + min(lane, count - 1)]
-            members[lane] = k
-            going |= (1 if is_clamped(problems[k]) else 0) << lane
-            longest = max(longest, first[k + 1] - first[k])
-            enter(lane, problems[k], columns)
-        u, started, valid = spread(1.0), 0, going
-        for step in range(longest):
-            active = 0
-            for lane in range(count):
-                k = members[lane]
-                row = first[k] + step
-                rows[lane] = row
-                if row < first[k + 1]:
-                    p, clamped = pressures[row], (valid >> lane) & 1 == 1
-                    stretches[row] = np.nan
-                    if settle(p, problems[k], clamped, row, told):
-                        continue
-                    if p == np.inf:
-                        stretches[row], likeness[row] = locked(problems[k])
-                    elif (going >> lane) & 1:
-                        columns[PRESSURE, lane] = p
-                        active |= 1 << lane
-            if active == 0:
-                continue
-            cell, before, now = loads(columns, kind.constants, kind.walls, kind.layers)
-            ahead, arrived = first_guess.follow(
-                u, cell, first_leg(before, mask_of(active & ~started)), now, get(columns, HALF), mask_of(active)
-            )
-            u = select(arrived, ahead, u)
+            if (ended >> lane) & 1:
+                taken, there, new = onward(lane, taken, seats, walks, columns, told)
+                active = active | (1 << lane) if there else active & ~(1 << lane)
+                fresh |= (1 if new else 0) << lane
+        if active == 0:
+            return
+        new, next_load = mask_of(fresh), mask_of(ended)
+        started &= ~fresh
+        nothing = nothing_yet(spread(0.0))
+        u, near, at_end = (
+            select(new, 1.0, u),
+            first_guess.kept(new, nothing, near),
+            first_guess.kept(new, nothing, at_end),
+        )
+        t, step = select(next_load, 0.0, t), select(next_load, first_guess.FIRST_STEP, step)
+        cell, before, now = loads(columns, kind.constants, kind.walls, kind.layers)
+        before, todo = first_leg(before, mask_of(active & ~started)), mask_of(active)
+        u, t, step, near = first_guess.attempt(u, t, step, near, cell, before, now, get(columns, HALF), todo)
+        arrived = todo & (t >= 1.0)
+        if some(arrived):
             put(columns, BEFORE, select(arrived, now.p, get(columns, BEFORE)))
-            put(found, 0, ahead)
-            put(found, 1, meridian.work_of(ahead, cell, now, get(columns, HALF)))
-            for lane in range(count):
-                if (bits(arrived) >> lane) & 1:
-                    stretches[rows[lane]], likeness[rows[lane]] = found[0, lane], found[1, lane]
-            started |= bits(arrived)
-            going &= ~(active & ~bits(arrived))
+            put(found, 0, u)
+            work, then = meridian.work_of(u, cell, now, get(columns, HALF), near, at_end)
+            put(found, 1, work)
+            at_end = first_guess.kept(arrived, then, at_end)
+        ended, started = bits(arrived | todo & (step <= first_guess.SMALLEST_STEP)), started | bits(arrived)
+        for lane in range(WIDTH):
+            if (bits(arrived) >> lane) & 1:
+                row = seats[ROW, lane]
+                walks.stretches[row], walks.likeness[row] = found[0, lane], found[1, lane]
+            elif (ended >> lane) & 1:
+                seats[LEADS, lane] = 0
 
 
 @kernel
@@ -127,15 +171,15 @@ def solve(asked, kind, pieces, accuracy, told, middles):
 @entry_point
 def carry_lanes(problems, first, pressures, order, constants, values, bounds, status, stretches, likeness):
     """:func:`carry` the source's tubes."""
-    kind, told = Kind(constants, SOURCE, 1), Told(values, bounds, status, status)
-    carry(problems, first, pressures, order, kind, told, stretches, likeness)
+    walks, kind = Walks(problems, first, pressures, order, stretches, likeness), Kind(constants, SOURCE, 1)
+    carry(walks, kind, Told(values, bounds, status, status))
 
 
 @entry_point
 def carry_physical(problems, first, pressures, order, constants, layers, values, bounds, status, stretches, likeness):
     """:func:`carry` physical tubes."""
-    kind, told = Kind(constants, PHYSICAL, layers), Told(values, bounds, status, status)
-    carry(problems, first, pressures, order, kind, told, stretches, likeness)
+    walks, kind = Walks(problems, first, pressures, order, stretches, likeness), Kind(constants, PHYSICAL, layers)
+    carry(walks, kind, Told(values, bounds, status, status))
 
 
 @entry_point

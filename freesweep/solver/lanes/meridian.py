@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from ...jit import kernel
 from ..cells import nothing_yet
-from ..physics import lagrangian, physical
+from ..physics import lagrangian
 from ..physics.wall import may_go_slack
 from .vector import WIDTH, get, put, select, spread
 
@@ -184,32 +184,25 @@ def logarithm(number, scratch):
 
 
 @kernel
-def work_of(u, cell, load, half):
-    """What tells states that are as much work, from 0 to 1: which families pull at the end, and in the middle; of states
-    that are alike in this, the depth of the middle.
+def work_of(u, cell, load, half, near, at_end):
+    """``(what tells states that are as much work, from 0 to 1, what is handed on of the end)``: which families are taut at
+    the end, and in the middle; of states that are alike in this, the depth of the middle. ``near`` is handed on in the
+    middle, ``at_end`` at the end under another load.
     """
-    return _work_of(u, cell, load, half, load.wall)
+    return _work_of(u, cell, load, half, near, at_end, load.wall)
 
 
 @kernel
-def _work_of(u, cell, load, half, wall):
+def _work_of(u, cell, load, half, near, at_end, wall):
     zero, one = spread(0.0), spread(1.0)
-    (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, nothing_yet(zero))
+    (_, _, _, L_yy, _, L_vv), near = lagrangian.density_beside(u, zero, cell, load, near)
     deep = min(sqrt(L_yy / L_vv) * half / DEEPEST, 1.0)
     if len(wall) == 1:
-        return deep
+        return deep, at_end
     if not may_go_slack(wall):
-        return deep
-    pulls_in_middle = physical.tensions(u, zero, cell, load, near)
-    pulls_at_end = physical.tensions(one, zero, cell, load, nothing_yet(zero))
-    alike = pulls(pulls_at_end, 8.0, 4.0) + pulls(pulls_in_middle, 2.0, 1.0)
-    return (alike + ALMOST * deep) / 16.0
-
-
-@kernel
-def pulls(tensions, alpha, beta):
-    """A number for each family that pulls."""
-    return select(tensions[0] > 0.0, alpha, 0.0 * tensions[0]) + select(tensions[1] > 0.0, beta, 0.0 * tensions[1])
+        return deep, at_end
+    _, at_end = lagrangian.density_beside(one, zero, cell, load, at_end)
+    return (4.0 * at_end[0] + near[0] + ALMOST * deep) / 16.0, at_end
 
 
 @kernel

@@ -52,14 +52,16 @@ def next_end(pull, taken):
 @kernel
 def root(series, left, right, before, behind, going):
     """Where the polynomial of the ``series`` is none between two shares of the piece."""
-    t = right
+    t, far, last, of_far, of_last = right, left, right, before, behind
     for i in range(STEPS):
-        new = trial(i, left, right, before, behind, going)
+        new = trial(i, far, last, of_far, of_last, going)
         moved, t = abs(new - t), select(going, new, t)
         going = going & (moved > CLOSE)
         if not some(going):
             break
-        left, right, before, behind = narrowed(evaluate(series, LAST + 1, t), t, left, right, before, behind)
+        pull = evaluate(series, LAST + 1, t)
+        far, of_far = narrowed(pull, far, last, of_far, of_last)
+        last, of_last = t, pull
     return t
 
 

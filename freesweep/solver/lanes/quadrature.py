@@ -168,17 +168,18 @@ def solve(start, cell, load, half, active, pieces, accuracy, room, out):
     guess = select(start[1] > 0.0, start[1], min(rate_of(uniform) * half, DEEPEST))
     mid, miss, before, slope, seen, active = roughly(uniform, guess, straight, cell, load, half, active, pieces, room)
     ended = mask_of(slack_ends.lanes_with(room.counts, 0))
-    before = select(ended, mid.depth, before[0]), before[1]
-    wrong, moved = active & isnt(ended | straight), active  # one part, of which this was the rule, goes a step further
+    wrong, moved = active & isnt(straight), active
     found, tried, off, left, unsure, between = none, none, spread(0.0), miss, spread(0.0), none
     for fine in range(FITS):
         last = mid.depth
         depth, before, slope = next_depth(wrong, last, miss, before, slope)
-        mid = middle(uniform, depth, cell, load, room.scratch)
+        mid, reopened = middle(uniform, depth, cell, load, room.scratch), wrong & ended
+        held = slack_ends.reopen(abs(depth - last) / depth, reopened, mid, cell, load, room)
+        active = active & (held | isnt(reopened))
         if fine > 0:
             moved = wrong
-            held = slack_ends.reopen(abs(depth - last) / depth, moved & ended, mid, cell, load, room)
-            active = active & (held | isnt(moved & ended))
+        else:
+            before = select(ended, depth, before[0]), before[1]  # the one rule along all parts tells no slope
         valid, pushed, doubt = sum_parts(pieces, mid, cell, load, moved, room)
         active, unsure = active & valid, select(moved, doubt, unsure)
         if not may_go_slack(load.wall):

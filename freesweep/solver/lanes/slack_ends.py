@@ -1,14 +1,14 @@
 """Where along half a tube families of fibers go slack, or would have to push, for a vector of designs.
 
 A family pulls at one place and not at the next: between them its pull is followed to where it ends, by the regula falsi of
-Anderson and Bjorck. What it lacks of being taut goes on behind its pull, by another slope.
+Anderson and Bjorck. What it would push by, were it taut, goes on behind its pull, by the same slope.
 """
 
 from ...jit import kernel
 from ..along.slack import NOTHING, TENSIONLESS
 from ..physics.wall import may_go_slack
-from .meridian import look
-from .vector import WIDTH, get, isnt, mask_of, put, select, some, spread
+from .meridian import handed_on, look
+from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 MOST = 8  # ends in half a tube; more are left to finer parts
 STEPS, CLOSE, SURE = 48, 1e-9, 3e-8  # of the search, its last step [of the depth], and how exactly an end is known
@@ -30,27 +30,38 @@ def bracket(first, width, places, pull, family, last, seen, ends, counts, starts
     """Write where the ``pull`` of a family changes its sign, at the ``places`` 0 to ``last`` of a part of that ``width``, to
     ``ends`` (7, MOST, WIDTH), of which each lane has ``counts`` (WIDTH,); what was ``seen`` (4, ...) before to ``starts``.
     """
-    for lane in range(WIDTH):
-        for k in range(last):
-            here, there = pull[k, lane], pull[k + 1, lane]
-            if (here > 0.0) != (there > 0.0) and counts[lane] < MOST:
-                j = counts[lane]
+    for k in range(last):
+        changes = bits(get(pull, k) > 0.0) ^ bits(get(pull, k + 1) > 0.0)
+        if changes == 0:
+            continue
+        for lane in range(WIDTH):
+            j = counts[lane]
+            if (changes >> lane) & 1 and j < MOST:
                 ends[LEFT, j, lane], ends[RIGHT, j, lane] = first + width * places[k], first + width * places[k + 1]
                 ends[FIRST, j, lane], ends[LAST, j, lane] = ends[LEFT, j, lane], ends[RIGHT, j, lane]
-                ends[BEFORE, j, lane], ends[BEHIND, j, lane], ends[FAMILY, j, lane] = here, there, family
+                ends[BEFORE, j, lane], ends[BEHIND, j, lane] = pull[k, lane], pull[k + 1, lane]
+                ends[FAMILY, j, lane] = family
                 for i in range(4):
                     starts[i, j, lane] = seen[i, k, lane]
                 counts[lane] = j + 1
 
 
 @kernel
-def passed_over(pull, lengths, last):
-    """How long the places are beside which a pull may have ended, and begun again, or the other way round, unseen."""
+def same_sign(before, here, after):
+    """Where three pulls are all positive, or all negative."""
+    return ((before > 0.0) & (here > 0.0) & (after > 0.0)) | ((before < 0.0) & (here < 0.0) & (after < 0.0))
+
+
+@kernel
+def passed_over(pull, other, lengths, last):
+    """How long the places are beside which a pull may have ended, and begun again, or the other way round, unseen. What a
+    slack family would push by jumps where the ``other`` one goes slack.
+    """
     total = spread(0.0)
     for k in range(1, last):
         before, here, after = get(pull, k - 1), get(pull, k), get(pull, k + 1)
         bend, half = before - 2.0 * here + after, 0.5 * (after - before)
-        alike = ((before > 0.0) & (here > 0.0) & (after > 0.0)) | ((before < 0.0) & (here < 0.0) & (after < 0.0))
+        alike = same_sign(before, here, after) & same_sign(get(other, k - 1), get(other, k), get(other, k + 1))
         turns = alike & (abs(here) <= abs(before)) & (abs(here) <= abs(after)) & (bend * here > 0.0)
         vertex = here - half * half / select(turns, 2.0 * bend, 1.0)
         total = total + select(turns & (vertex * here < 0.0), get(lengths, k), 0.0)
@@ -58,25 +69,24 @@ def passed_over(pull, lengths, last):
 
 
 @kernel
-def trial(i, left, right, before, behind, going):
-    """The next share t of a bracket at whose ends a pull is ``before`` and ``behind``: by the regula falsi, which halves it
-    from some steps on, as where a pull ends without a slope.
+def trial(i, far, last, of_far, of_last, going):
+    """The next share t of a bracket at whose ends, the ``last`` trial and a ``far`` one, a pull is known: by the regula
+    falsi, which halves it from some steps on, as where a pull ends without a slope.
     """
-    new = right - behind * (right - left) / select(going, behind - before, 1.0)
+    new = last - of_last * (last - far) / select(going, of_last - of_far, 1.0)
     halved = mask_of(-1 if i > PATIENT and i % 2 == 0 else 0)
-    return select((new > left) & (new < right) & isnt(halved), new, 0.5 * (left + right))
+    return select(((new - far) * (new - last) <= 0.0) & isnt(halved), new, 0.5 * (far + last))
 
 
 @kernel
-def narrowed(pull, t, left, right, before, behind):
-    """``(left, right, before, behind)`` of a bracket in which the ``pull`` at t is known; an end that stays counts for less
-    (Anderson and Bjorck).
+def narrowed(pull, far, last, of_far, of_last):
+    """``(far, of_far)`` of a bracket where the ``pull`` at one more trial is known: an end that stays far once more counts
+    for less (Anderson and Bjorck).
     """
-    same = pull * behind > 0.0
-    share = 1.0 - pull / select(same, behind, before)
+    stays = pull * of_last > 0.0
+    share = 1.0 - pull / select(stays, of_last, 1.0)
     share = select(share > 0.0, share, 0.5)
-    before, behind = select(same, before * share, pull), select(same, pull, behind * share)
-    return select(same, left, t), select(same, t, right), before, behind
+    return select(stays, far, last), select(stays, of_far * share, of_last)
 
 
 @kernel
@@ -84,18 +94,21 @@ def search(ends, j, going, mid, cell, load, near, scratch):
     """``(t, doubt)``: the share of the depth at which the end j of the lanes that are ``going`` lies, each within its
     bracket, and by how much it may be off.
     """
-    left, right = get(ends[LEFT], j), get(ends[RIGHT], j)
-    before, behind, of_alpha = get(ends[BEFORE], j), get(ends[BEHIND], j), get(ends[FAMILY], j) < 0.5
-    t = select(going, right + 1.0, 1.0)
+    far, last, of_alpha = get(ends[LEFT], j), get(ends[RIGHT], j), get(ends[FAMILY], j) < 0.5
+    of_far, of_last = get(ends[BEFORE], j), get(ends[BEHIND], j)
+    t = select(going, last + 1.0, 1.0)
     for i in range(STEPS):
-        new = trial(i, left, right, before, behind, going)
+        new = trial(i, far, last, of_far, of_last, going)
         moved, t = abs(new - t), select(going, new, t)
         going = going & (moved > CLOSE)
         if not some(going):
             break
-        alpha, beta = pulls(look(t, mid, cell, load, near, scratch).at, load)
-        left, right, before, behind = narrowed(select(of_alpha, alpha, beta), t, left, right, before, behind)
-    return t, select(going, right - left, SURE)
+        here = look(t, mid, cell, load, near, scratch)
+        near, (alpha, beta) = handed_on(here.y, here.at, near, load.wall), pulls(here.at, load)
+        pull = select(of_alpha, alpha, beta)
+        far, of_far = narrowed(pull, far, last, of_far, of_last)
+        last, of_last = t, pull
+    return t, select(going, abs(last - far), SURE)
 
 
 @kernel
@@ -111,7 +124,7 @@ def reopen(shift, moved, mid, cell, load, room):
             break
         t, width, near = get(ends[LEFT], j), WIDER * shift + SURE, start_of(starts, j)
         of_alpha, ended = get(ends[FAMILY], j) < 0.5, get(ends[BEFORE], j) > 0.0
-        left, right = max(t - width, 0.0), min(t + width, 1.0)
+        left, right = max(t - width, 0.0), min(get(ends[RIGHT], j) + width, 1.0)
         for _ in range(2):
             first = pulls(look(left, mid, cell, load, near, scratch).at, load)
             last = pulls(look(right, mid, cell, load, near, scratch).at, load)

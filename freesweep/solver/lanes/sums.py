@@ -124,8 +124,8 @@ def scan(pieces, mid, cell, load, rows, ends, counts, starts, scratch):
         limp_a, limp_b = limp_a | limp(rows[ALPHA]), limp_b | limp(rows[BETA])
         if not may_go_slack(load.wall):
             continue
-        doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
-        doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
+        doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[BETA], rows[DX], LAST)
+        doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[ALPHA], rows[DX], LAST)
         for family in range(2):
             slack_ends.bracket(
                 left, right - left, PLACES, rows[ALPHA + family], family, LAST, rows[KIND:], ends, counts, starts
@@ -149,6 +149,7 @@ def find_ends(mid, cell, load, active, ends, counts, starts, edges, scratch):
         own, near = there & active, slack_ends.start_of(starts, j)
         t, doubt = slack_ends.search(ends, j, own, mid, cell, load, near, scratch)
         t = select(own, t, get(ends[slack_ends.LEFT], j))
+        put(ends[slack_ends.RIGHT], j, select(own, t, get(ends[slack_ends.RIGHT], j)))
         put(ends[slack_ends.LEFT], j, t)
         put(edges, j + 1, select(there, t, 1.0))
         unsure = unsure + select(own, doubt, zero)
@@ -210,8 +211,8 @@ def between_ends(parts, pieces, edges, mid, cell, load, rows, numbers, scratch):
                     slack = get(rows[ALPHA + family], LAST // 2) <= 0.0
                     add(numbers, SLACK + family, select(slack, dx, 0.0), select(slack, doubt, 0.0))
             else:
-                doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[DX], LAST)
-                doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[DX], LAST)
+                doubt_a = doubt_a + slack_ends.passed_over(rows[ALPHA], rows[ALPHA], rows[DX], LAST)
+                doubt_b = doubt_b + slack_ends.passed_over(rows[BETA], rows[BETA], rows[DX], LAST)
                 for family in range(2):
                     told = pushed.length(
                         family, rows[ALPHA + family], rows[DX], rows[SERIES:], first, last - first, mid, cell, load, scratch

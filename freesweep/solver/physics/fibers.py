@@ -12,6 +12,9 @@ CLOSE = 1e-7  # of the unit of what is sought: the next step of Newton's method 
 SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves; none is longer in the other direction
 LONG = 1.0  # largest step of y psi
 CRAMPED = 0.2  # share of the largest room below which both-taut is no place to start from
+FAINT = (
+    1e-9  # of the resultant: a family that would have to push by less stays taut beside the place where it goes slack
+)
 NO_ROOM = 1e-30  # stands for G - v^2 where that is negative
 NONE_TAUT, ALPHA_TAUT, BETA_TAUT, BOTH_TAUT = 0.0, 1.0, 2.0, 3.0
 ENDLESS = 1e300  # longer than anything
@@ -117,7 +120,7 @@ def pulled(given, T, psi, t, s, W):
     b_p = 2.0 * given.y * given.y
     rest = given.m - W_p + b * W_G
     rest_p = -(W_pp - b * W_Gp) + b_p * W_G + b * (W_Gp - b * W_GG)
-    return s * rest - 0.5 * T * b, -0.5 * b / s * rest + s * rest_p - 0.5 * T * b_p
+    return s * rest - 0.5 * T * b, -0.5 * b * (1.0 / s) * rest + s * rest_p - 0.5 * T * b_p
 
 
 @kernel
@@ -150,6 +153,12 @@ def spread_of(given):
 
 
 @kernel
+def holds(multiplier, T):
+    """Whether a family pulls, or all but does."""
+    return multiplier >= -FAINT * T
+
+
+@kernel
 def is_taut(kind):
     """Which families are taut, alpha and beta, from one number."""
     return (kind == ALPHA_TAUT) | (kind == BOTH_TAUT), (kind == BETA_TAUT) | (kind == BOTH_TAUT)
@@ -158,8 +167,8 @@ def is_taut(kind):
 @kernel
 def multipliers(y, s, psi, taut, cell, T, m, W_G, W_p):
     """Multipliers of both families, alpha and beta, 0 of one that is not ``taut``."""
-    total = 0.5 * T / s - W_G
-    difference = ((m - W_p) / (2.0 * y * y) - total * (cell[0] + psi)) / cell[1]
+    total = 0.5 * T * (1.0 / s) - W_G
+    difference = (0.5 * (m - W_p) * (1.0 / (y * y)) - total * (cell[0] + psi)) * (1.0 / cell[1])
     both = taut[0] & taut[1]
     return (
         select(both, 0.5 * (total + difference), select(taut[0], total, 0.0)),

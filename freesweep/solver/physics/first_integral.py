@@ -16,17 +16,17 @@ from typing import NamedTuple
 from ...jit import kernel
 from ..either import isnt, select, some
 from . import membrane
-from .fibers import BOTH_TAUT, both_reach, given_at, is_taut, lacking, multipliers, slopes_at, taut_twist
+from .fibers import BOTH_TAUT, axial, both_reach, given_at, holds, is_taut, lacking, multipliers, taut_twist
 from .physical import LEAST, NO_ROOM, kind_of, place, place_beside
-from .relaxed import beside, under
-from .wall import has_two_families, least_square, may_go_slack, rises, stored
+from .relaxed import beside, resultant
+from .wall import energy, has_two_families, least_square, may_go_slack, rises, stored
 
 LEVELS, CLOSE = 12, 1e-13  # of Newton's method for R alone, and how exactly it meets
 
 
 class Level(NamedTuple):
     """What is known of a place: room, the resultant R, how R - T rises with y; G - 1, twist rate; which families are
-    taut, and their multipliers, of a slack one, below 0, what it lacks of being taut; and e W.
+    taut, and their multipliers, of a slack one about what it would push by, were it as long as it is wound; and e W.
     """
 
     room: float
@@ -50,7 +50,9 @@ def levelled(y, level, cell, load):
     _, G_1, psi, alpha, beta = place(y, 0.0 * y, R, cell, load)
     going = y > 0.0
     for _ in range(LEVELS):
-        better, _ = under((level, level), given, G_1, psi)
+        better = resultant(
+            level, given, axial(1.0 + G_1, 0.0), psi, stored(y, G_1, psi, given.area, given.rubber, given.wall)
+        )
         change = abs(better - R)
         R = select(going, better, R)
         going = going & (change > CLOSE * R)
@@ -101,7 +103,7 @@ def level_of_wall(y, level, cell, load, near):
         if not some(taut):
             return level_where_slack(y, level, cell, load, near)
         at = level_if_taut(y, level, cell, load)
-        taut = taut & (at.a >= 0.0) & (at.b >= 0.0)
+        taut = taut & holds(at.a, at.R) & holds(at.b, at.R)
         if not some(isnt(taut)):
             return at
         slack = level_where_slack(y, level, cell, load, near)
@@ -120,12 +122,13 @@ def level_if_taut(y, level, cell, load):
     psi, G_1 = taut_twist(y, H, gg), max(both_reach(y, H, D, gg, gg - 1.0), LEAST - 1.0)
     W, W_y, W_G, W_p = rises(y, G_1, psi, area, load.rubber, load.wall)
     s = sqrt(1.0 + G_1)
-    R, both = max((level + W - m * psi) / s, NO_ROOM), y == y
+    i = 1.0 / s
+    R, both = max((level + W - m * psi) * i, NO_ROOM), y == y
     a, b = multipliers(y, s, psi, (both, both), cell, R, m, W_G, W_p)
     ta, tb = H + D + psi, H - D + psi
     L_y = 2.0 * load.p * y * s - W_y - 2.0 * y * (a * ta * ta + b * tb * tb)
     room = room_of(y, 1.0 + G_1, load)
-    return Level(room, R, -L_y / s, G_1, psi, BOTH_TAUT + 0.0 * y, a, b, W)
+    return Level(room, R, -L_y * i, G_1, psi, BOTH_TAUT + 0.0 * y, a, b, W)
 
 
 @kernel
@@ -148,7 +151,8 @@ def level_where_slack(y, level, cell, load, near):
         R, G_1, psi = select(lost, other, R), select(lost, wide, G_1), select(lost, twist, psi)
         dG, dpsi = select(lost, still, dG), select(lost, still, dpsi)
         alpha, beta = (lost & with_alpha) | (known & alpha), (lost & with_beta) | (known & beta)
-        V, whole = slopes_at(given, G_1, psi), stored(y, G_1, psi, given.area, given.rubber, given.wall)
+        told = energy(y, G_1, psi, given.area, given.rubber, given.wall)
+        whole, V = told[0], told[1:]
         weighed = select(lost, whole, weighed)
         W = (
             select(lost, V[0], W[0]), select(lost, V[1], W[1]), select(lost, V[2], W[2]), select(lost, V[3], W[3]),
@@ -169,11 +173,35 @@ def level_where_slack(y, level, cell, load, near):
     L_y = L_y + (load.p * y * i - W_yG - along * K_GG) * dG + (along * W_Gp - W_yp - 4.0 * y * turned) * dpsi
     more, both = K_GG * dG - W_Gp * dpsi, alpha & beta
     G_1, psi = G_1 + dG, psi + dpsi
-    lack_a, lack_b = lacking(y, G_1, psi, H, D, gg, wall) if may_go_slack(wall) else (still, still)
-    a = select(alpha, a + select(both, 0.0, more), -max(lack_a, 0.0))
-    b = select(beta, b + select(both, 0.0, more), -max(lack_b, 0.0))
+    push_a, push_b = still, still
+    if may_go_slack(wall):
+        lack_a, lack_b = lacking(y, G_1, psi, H, D, gg, wall)
+        bends = K_GG, -W_Gp, -W_pp - 2.0 * y * y * (a + b)
+        push_a, push_b = pushes(y, (max(lack_a, 0.0), max(lack_b, 0.0)), (ta, tb), alpha | beta, t, bends)
+    a = select(alpha, a + select(both, 0.0, more), push_a)
+    b = select(beta, b + select(both, 0.0, more), push_b)
     G = 1.0 + G_1
-    return Level(room_of(y, G, load), R, -L_y / s, G_1, psi, kind_of(alpha, beta), a, b, weighed)
+    return Level(room_of(y, G, load), R, -L_y * i, G_1, psi, kind_of(alpha, beta), a, b, weighed)
+
+
+@kernel
+def pushes(y, lacks, tangents, one, t, bends):
+    """Multipliers of both families, of one that ``lacks`` something of being taut, were it wound by so much more: to first
+    order, so that what it pulls by goes on behind the place where it goes slack. ``one`` where the other one is taut, and
+    ``t`` its tan(angle) as the twist leaves it, those of both the ``tangents``; ``bends`` second derivatives of what is
+    maximized.
+    """
+    K_GG, K_Gp, K_pp = bends
+    square = 2.0 * y * y
+    ca, cb, c = square * tangents[0], square * tangents[1], square * t  # -dG/dpsi of what stays as it is wound
+    along = c * c * K_GG - 2.0 * c * K_Gp + K_pp
+    apart = 1.0 / (ca - cb)
+    stiff_a = stiff_b = along * apart * apart
+    if some(isnt(one)):
+        det = K_GG * K_pp - K_Gp * K_Gp
+        stiff_a = select(one, stiff_a, det / (ca * ca * K_GG - 2.0 * ca * K_Gp + K_pp))
+        stiff_b = select(one, stiff_b, det / (cb * cb * K_GG - 2.0 * cb * K_Gp + K_pp))
+    return lacks[0] * stiff_a, lacks[1] * stiff_b
 
 
 @kernel

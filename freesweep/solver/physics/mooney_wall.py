@@ -6,9 +6,9 @@ sums of ``1/q, 1/q^2, 1/q^3`` make W and all first and second derivatives. Means
 
     mean of 1/q = 1/(logarithmic mean of a and b),   mean of 1/q^2 = 1/(a b),   mean of 1/q^3 = (a + b)/(2 a^2 b^2)
 
-With the arithmetic mean m and the geometric one g, and h = (b - a)/2/(m + g), the first is ``2/(m + g) atanh(h)/h``, and
-with i = h/(1 + sqrt(1 - h^2)) ``atanh(h) = 2 atanh(i)``. W is a sum of terms of the size of the strain, each of which is
-known to all digits.
+With the arithmetic mean m and the geometric one g, n = m + g and h = (b - a)/2, the first is ``2/h atanh(h/n)``, and with
+``i = h/(n + sqrt(n^2 - h^2))`` ``atanh(h/n) = 2 atanh(i)``. Roots and divisions are what this costs: there are no more. W is
+a sum of terms of the size of the strain, each of which is known to all digits.
 """
 
 from math import sqrt
@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import kernel
+from ..either import some
 
 TERMS = 10  # of a Gauss rule, whose mean of 1/(1 + i x) stands for atanh(i)/i: 1e-11 off at i = 1/2, where b = 81 a
 _PLACES, _WEIGHTS = (row[TERMS // 2 :] for row in np.polynomial.legendre.leggauss(TERMS))
@@ -38,14 +39,14 @@ class Section(NamedTuple):
 
 
 class Known(NamedTuple):
-    """``1/G, 1/sqrt(G), sqrt(G)``, mean of q, product of its ends, mean of 1/q."""
+    """``1/G, 1/sqrt(G), sqrt(G)``, means of q, 1/q and 1/q^2."""
 
     e: float
     root: float
     per_root: float
     q: float
-    ends: float
     one: float
+    two: float
 
 
 @kernel
@@ -58,31 +59,35 @@ def polynomial(coefficients, v):
 
 
 @kernel
-def mean_reciprocal(middle, half, product):
-    """Mean of 1/q where q goes from ``middle - half`` to ``middle + half``, whose ``product`` is given."""
-    first = 1.0 / (middle + sqrt(product))
-    h = half * first
-    second = 1.0 / (1.0 + sqrt(1.0 - h * h))
-    v = h * second
+def mean_reciprocals(middle, half, product):
+    """Means of 1/q and 1/q^2 where q goes from ``middle - half`` to ``middle + half``, whose ``product`` is given."""
+    if not some(half > 0.0):  # all lanes of a vector are membranes, or none is
+        one = 1.0 / middle
+        return one, one * one
+    both = middle + sqrt(product)
+    per = 1.0 / (both + sqrt((both - half) * (both + half)))
+    v = half * per
     v = v * v
-    return 4.0 * first * second * (polynomial(ABOVE, v) / polynomial(BELOW, v))
+    below = polynomial(BELOW, v)
+    rest = 1.0 / (below * product)
+    return 4.0 * per * polynomial(ABOVE, v) * (rest * product), rest * below
 
 
 @kernel
 def known(y, G_1, section):
     """What is :class:`Known` of the layers."""
-    e = 1.0 / (1.0 + G_1)
-    root = sqrt(e)
+    per_root = sqrt(1.0 + G_1)
+    root = 1.0 / per_root
     q, half = y * y + section.d * root, section.half * root
-    ends = max((q - half) * (q + half), NO_ROOM)
-    return Known(e, root, (1.0 + G_1) * root, q, ends, mean_reciprocal(q, half, ends))
+    one, two = mean_reciprocals(q, half, max((q - half) * (q + half), NO_ROOM))
+    return Known(root * root, root, per_root, q, one, two)
 
 
 @kernel
 def energy(y, G_1, psi, c, section, own):
     """W where what is :class:`Known` is ``own``."""
     area, k, d, _, reciprocal = section
-    e, root, per_root, q, _, one = own
+    e, root, per_root, q, one, _ = own
     n, hoop, both = k * psi * psi, (y - 1.0) * (y + 1.0), G_1 * y * y + (y - 1.0) * (y + 1.0)
     wide = G_1 / (per_root + 1.0)  # 1/root - 1, with all its digits
     bend, away = root * wide, (1.0 - y * y * one) * per_root  # 1 - root; mean of d/q
@@ -98,8 +103,8 @@ def rising(y, G_1, psi, c, section, own):
     ``d rho^2/q^2``, and d times W_q.
     """
     _, k, d, _, i = section
-    e, root, per_root, q, ends, one = own
-    y2, n, G, two = y * y, k * psi * psi, 1.0 + G_1, 1.0 / ends
+    e, root, per_root, q, one, two = own
+    y2, n, G = y * y, k * psi * psi, 1.0 + G_1
     one_q = one + (1.0 - y2 * one) * per_root  # mean of rho^2/q
     two_q = two + (one - y2 * two) * per_root
     d_two = (one_q - y2 * two_q) * per_root
@@ -135,10 +140,9 @@ def slopes(y, G_1, psi, c, section):
 def slopes_of(y, G_1, psi, c, section, own):
     """:func:`slopes` where what is :class:`Known` is ``own``."""
     area, k, d, _, i = section
-    e, root, per_root, q, ends, _ = own
+    e, root, per_root, q, _, two = own
     (W_y, W_G, W_p), (one_q, two_q, d_two, w_q, d_w_q) = rising(y, G_1, psi, c, section, own)
     y2, n, g = y * y, k * psi * psi, -0.5 * root * e
-    two = 1.0 / ends
     three = q * two * two
     three_q = three + (two - y2 * three) * per_root
     d_three = (two_q - y2 * three_q) * per_root

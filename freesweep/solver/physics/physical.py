@@ -136,8 +136,8 @@ def state(y, v, cell, load, near):
     K_GG = -0.25 * T * i3 - W_GG
     K_Gp = -W_Gp
     K_pp = -W_pp - 2.0 * y * y * (a + b)
-    ratio, both = gg / (y * y), taut_alpha & taut_beta
-    psi_y, G_y = -2.0 * H * ratio / y, -2.0 * D * D * y + 2.0 * gg * H * H * ratio / y
+    ratio, both = gg * (1.0 / (y * y)) / y, taut_alpha & taut_beta
+    psi_y, G_y = -2.0 * H * ratio, -2.0 * D * D * y + 2.0 * gg * H * H * ratio
     psi_v = G_v = 0.0 * y
     if some(isnt(both)):
         t = select(taut_alpha, ta, tb)

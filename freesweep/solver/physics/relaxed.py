@@ -39,6 +39,7 @@ from .fibers import (
     axial,
     both_reach,
     free_point,
+    holds,
     most_taut,
     multipliers,
     pulled,
@@ -48,7 +49,7 @@ from .fibers import (
     spread_of,
     taut_twist,
 )
-from .wall import NONE, ONE_BONDED, has_two_families, narrowest, stored
+from .wall import NONE, ONE_BONDED, energy, has_two_families, narrowest
 
 NEARBY = 8  # looks from a neighbour's place; two do nearly always, four where a family goes slack
 
@@ -186,15 +187,22 @@ def settle(given, T):
 
 
 @kernel
-def under(pull, given, G_1, psi):
-    """``(the resultant that is meant by pull, W)``: (T,), that one, without W; (level, level), the one under which the
-    density of a uniform tube, ``T sqrt(G) - W + m psi``, has that level. Of all G and psi it is least at those that the
-    fibers take under it: what they are off counts by its square.
+def resultant(level, given, s, psi, W):
+    """The resultant T under which the density of a uniform tube, ``T sqrt(G) - W + m psi``, has that level. Of all G and
+    psi it is least at those that the fibers take under it: what they are off counts by its square.
+    """
+    return max((level + W - given.m * psi) * (1.0 / s), NO_ROOM)
+
+
+@kernel
+def under(pull, given, G_1, psi, s):
+    """``(the resultant that is meant by pull, W, its slopes)``: (T,), that one, without W; (level, level), the one of that
+    level, where the slope is 0.
     """
     if len(pull) == 1:
-        return pull[0], 0.0 * given.y
-    W = stored(given.y, G_1, psi, given.area, given.rubber, given.wall)
-    return max((pull[0] + W - given.m * psi) / axial(1.0 + G_1, 0.0 * given.y), NO_ROOM), W
+        return pull[0], 0.0 * given.y, slopes_at(given, G_1, psi)
+    told = energy(given.y, G_1, psi, given.area, given.rubber, given.wall)
+    return resultant(pull[0], given, s, psi, told[0]), told[0], told[1:]
 
 
 @kernel
@@ -221,10 +229,11 @@ def newton_step(given, T, kind, t, G_1, psi, s, W):
     dpsi = select(one, -F / F_p, still)
     dG = select(one, reach(y, psi + dpsi, t, given.gg - 1.0) - G_1, still)
     if some(none):
-        rise, turn, bend = 0.5 * T / s - W_G, given.m - W_p, 0.25 * T / (s * s * s) + W_GG
-        det = bend * W_pp - W_Gp * W_Gp
-        dpsi = select(none, (bend * turn - W_Gp * rise) / det, dpsi)
-        dG = select(none, (W_pp * rise - W_Gp * turn) / det, dG)
+        i = 1.0 / s
+        rise, turn, bend = 0.5 * T * i - W_G, given.m - W_p, 0.25 * T * i * i * i + W_GG
+        per = 1.0 / (bend * W_pp - W_Gp * W_Gp)
+        dpsi = select(none, (bend * turn - W_Gp * rise) * per, dpsi)
+        dG = select(none, (W_pp * rise - W_Gp * turn) * per, dG)
     return dG, dpsi, F_p
 
 
@@ -261,21 +270,22 @@ def beside(given, pull, near):
         going = going & known
         if not some(going):
             break
-        W, s, before = slopes_at(given, G_1, psi), axial(1.0 + G_1, v), kind
-        T, whole = under(pull, given, G_1, psi)
+        s, before = axial(1.0 + G_1, v), kind
+        T, whole, W = under(pull, given, G_1, psi, s)
         a, b = multipliers(y, s, psi, (both, both), (H, D), T, m, W[1], W[2])
         kind = select(
             both,
-            select(a >= 0.0, ALPHA_TAUT, NONE_TAUT) + select(b >= 0.0, BETA_TAUT, NONE_TAUT),
-            select((0.5 * T / s - W[1] >= 0.0) | bonded, kind, NONE_TAUT),
+            select(holds(a, T), ALPHA_TAUT, NONE_TAUT) + select(holds(b, T), BETA_TAUT, NONE_TAUT),
+            select(holds(0.5 * T * (1.0 / s) - W[1], T) | bonded, kind, NONE_TAUT),
         )
         both, none = kind == BOTH_TAUT, kind == NONE_TAUT
         t = H + select(kind == ALPHA_TAUT, D, -D)
-        dG, dpsi, F_p = newton_step(given, T, kind, t, G_1, psi, s, W)
+        wider, further, F_p = newton_step(given, T, kind, t, G_1, psi, s, W)
+        dG, dpsi = select(going, wider, dG), select(going, further, dpsi)
         known = known & (isnt(going & isnt(both | none)) | (F_p < 0.0))
         to_psi, to_G_1 = psi + dpsi, G_1 + dG
         more, then = overreached(given, kind, to_G_1, to_psi)
-        last = (abs(then - before) < 0.5) & (y * abs(dpsi) < CLOSE) & (abs(dG) < CLOSE * s * s)
+        last = (abs(then - kind) < 0.5) & (y * abs(dpsi) < CLOSE) & (abs(dG) < CLOSE * s * s)
         kind = select(going, then, before)
         going = going & isnt(last)
         both, t = kind == BOTH_TAUT, H + select(kind == ALPHA_TAUT, D, -D)

@@ -31,7 +31,7 @@ from ..either import isnt, select, some
 from ..load import Load
 from . import mooney_wall
 from .membrane import excess, yeoh_slope
-from .mooney_wall import Section, mean_reciprocal
+from .mooney_wall import Section, mean_reciprocals
 
 BONDED, LOOSE, ONE_LOOSE, ONE_BONDED, NONE = 0.0, 1.0, 2.0, 3.0, 4.0  # threads: two families, one, none
 MEMBRANE, FEWEST, MOST = 1, 2, 32  # Gauss points; the most where r_o^2 is up to 70,000 r_i^2
@@ -118,7 +118,7 @@ def reciprocal(area, inner):
     """Mean of 1/rho^2; ``inner`` is 0 of a membrane."""
     thick = inner > 0.0
     square, half = select(thick, inner + 0.5 * area, 1.0), select(thick, 0.5 * area, 0.0)
-    return mean_reciprocal(square, half, (square - half) * (square + half))
+    return mean_reciprocals(square, half, (square - half) * (square + half))[0]
 
 
 @kernel
@@ -149,14 +149,14 @@ def lies_inside(wall):
 
 @kernel
 def least_square(y, G, wall):
-    """r^2 of the innermost layer, which has to be positive; where the fibers lie inside, that is their own."""
-    return y * y + select(lies_inside(wall), wall[1] - 1.0, 0.0) / sqrt(G)
+    """r^2 sqrt(G) of the innermost layer, which has to be positive; where the fibers lie inside, that is their own."""
+    return y * y * sqrt(G) + select(lies_inside(wall), wall[1] - 1.0, 0.0)
 
 
 @kernel
 def narrowest(y, wall):
     """G below which the innermost layer would reach the axis."""
-    root = select(lies_inside(wall), 1.0 - wall[1], 0.0) / (y * y)
+    root = select(lies_inside(wall), 1.0 - wall[1], 0.0) * (1.0 / (y * y))
     return root * root
 
 
