@@ -241,10 +241,11 @@ def _pieces(physics, meshes, y, answers, ends, segments):
     pieces = [[] for _ in meshes.starts]
     for k, (mesh, own, (low, high)) in enumerate(parts):
         stay = [end for end, place in ((0, low), (1, high)) if np.any(segments == place)]
-        told = np.insert(rows[:-2, :, own], [0, own.stop - own.start][:2], at_ends[..., 2 * k : 2 * k + 2], axis=-1)
+        told = np.insert(rows[:-2, :, own], [0, own.stop - own.start], at_ends[..., 2 * k : 2 * k + 2], axis=-1)
         x = np.concatenate([[low], meshes.share[own], [high]])
+        beside = np.clip(np.arange(own.start - 1, own.stop + 1), own.start, own.stop - 1)
         keep = slice(0 if 0 in stay else 1, None if 1 in stay else -1)
-        pieces[mesh].append(Piece(x[keep], told[..., keep], (low, high), (own.start + own.stop) // 2))
+        pieces[mesh].append(Piece(x[keep], told[..., keep], (low, high), beside[keep]))
     return pieces
 
 

@@ -47,17 +47,21 @@ def fields(physics, y, place, share):
 
 class Piece:
     """A part of a mesh between two places, in which all is smooth: ``rows`` (fields, 1 + parameters, n) at places ``x``,
-    middles of cells, and its ends where these stay; ``cell`` is in its middle.
+    middles of ``cells``, and its ends where these stay, at the cells beside.
     """
 
-    def __init__(self, x, rows, ends, cell):
-        self.x, self.rows, self.ends, self.cell = x, rows, ends, cell
+    def __init__(self, x, rows, ends, cells):
+        self.x, self.rows, self.ends, self.cells = x, rows, ends, cells
 
     def near(self, field, k):
         """The polynomial through a field at the few of its places beside place k."""
         count = min(STENCIL, len(self.x))
         first = min(max(k - count // 2 + 1, 0), len(self.x) - count)
         return Curve(self.x[first : first + count], self.rows[field][:, first : first + count])
+
+    def only(self, which):
+        """The part of it at some of its places."""
+        return Piece(self.x[which], self.rows[..., which], self.ends, self.cells[which])
 
     def largest(self, field, sign):
         """``sign`` times the field, where that is largest."""
@@ -109,7 +113,7 @@ def slack_of_loose(field, taut, pieces, segments):
     """Share of a mesh along which a loose family is slack, with its derivatives: ``field`` is that of its tension, ``taut``
     (cells,).
     """
-    pulls = [bool(taut[piece.cell]) for piece in pieces]
+    pulls = [bool(taut[piece.cells[len(piece.cells) // 2]]) for piece in pieces]
     total = np.zeros(pieces[0].rows.shape[1])
     for piece, pulled in zip(pieces, pulls):
         total[0] += 0.0 if pulled else piece.ends[1] - piece.ends[0]
@@ -117,8 +121,9 @@ def slack_of_loose(field, taut, pieces, segments):
         place = before.ends[1]
         if one == other or np.any(segments == place):  # where profiles jump, it stays
             continue
-        curve = before.near(field, len(before.x) - 1) if one else behind.near(field, 0)
-        value, slope = curve.at(place)
+        own = before if one else behind
+        own = own.only(taut[own.cells])  # a node may not be where it ends yet
+        value, slope = own.near(field, len(own.x) - 1 if one else 0).at(place)
         total += (1.0 if one else -1.0) * value / slope[0]
     return total
 
