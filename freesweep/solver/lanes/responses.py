@@ -20,12 +20,15 @@ from ..problem import PHYSICAL
 from . import slack_ends
 from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
 from .moved import COUNT, PLACES, SUM, clear, close, make_sums, move_place, way_of
+from .moved_extremes import begin, see
 from .moved_middle import DEPTH, OWN, move_middle
+from .moved_slack import begin_part, begin_parts, end_part, tell_slack
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import look_along
 from .second import place_at
 from .sums import NARROW, find_ends, make_room
-from .told import LEFT, OUTPUTS, TOLD, tell
+from .told import LEFT, TOLD, tell
+from .told_extremes import RESULTS, tell_extremes
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 PASSES = 6  # to a middle whose half has its length
@@ -64,18 +67,20 @@ def down(share, left, width, mid):
 
 
 @kernel
-def over_parts(parts, pieces, edges, mid, cell, load, own, scratch):
+def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scratch):
     """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`.
     Returns the lanes in which each part is of one kind.
     """
-    valid, near = mask_of(-1), nothing_yet(spread(0.0))
+    valid, near, before = mask_of(-1), nothing_yet(spread(0.0)), spread(1.0)
     clear(own)
+    begin(own.seen)
+    begin_parts(own)
     for j in range(parts):
+        begin_part(own)
         first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
         width = (width - first) / pieces
-        within = width > NARROW * mid.depth
+        within, kind = width > NARROW * mid.depth, spread(-1.0)
         for i in range(pieces):
-            kind = spread(-1.0)
             for k in range(COUNT):
                 depth, steep = down(PLACES[k], first + i * width, width, mid)
                 here = look_down(depth, steep, mid, cell, load, near, scratch)
@@ -87,7 +92,10 @@ def over_parts(parts, pieces, edges, mid, cell, load, own, scratch):
                 place = place_at(here.y, here.beyond, at, cell, load)
                 way = way_of(k, within, depth, here.z, here.per_share, place, load, mid)
                 move_place(way, place, at, cell, load, mid, own)
+                see(here.y, before, at, inner, cell, load, own.seen)
+                before = here.y
             close(own)
+        end_part(j, select(within, kind, in_middle), in_middle, own)
     return valid
 
 
@@ -110,7 +118,7 @@ def met_by(mid, far, slope, place, load, half, own, scratch):
 
 
 @kernel
-def seat(group, count, order, problems, pressures, middles, limp, columns, start):
+def seat(group, count, order, problems, pressures, middles, inner, limp, columns, start):
     """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too. Returns
     whether some family of one goes slack somewhere, and not everywhere.
     """
@@ -118,7 +126,7 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
     for lane in range(WIDTH):
         row = order[group + min(lane, count - 1)]
         enter(lane, problems[row], columns)
-        start[0, lane] = middles[row]
+        start[0, lane], start[1, lane] = middles[row], inner[row]
         ends = ends or limp[row]
         if pressures[row] == np.inf:
             lock(lane, columns)
@@ -128,22 +136,22 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
 
 
 @entry_point
-def differentiate_lanes(problems, pressures, middles, limp, order, constants, layers, used, pieces, told):
-    """Values and bounds, ``told`` (2, rows, OUTPUTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
+def differentiate_lanes(problems, pressures, middles, inner_squares, limp, order, constants, layers, used, pieces, told):
+    """Values and bounds, ``told`` (2, rows, RESULTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
     outputs, of their derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where
     vectors cannot.
 
-    Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
-    where some family goes slack along a part of it. ``used`` are the numbers that there are; others are told nothing.
+    Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``inner_squares``
+    are squared radii of the walls' inner surfaces; ``limp`` tells where some family goes slack along a part. ``used`` are the numbers that there are; others are told nothing.
     Other arguments as of :func:`.free.solve_physical`.
     """
-    room, own, small, out = make_room(), make_sums(used), aligned(2, COLUMNS), aligned(2, OUTPUTS * TOLD)
+    room, own, small, out = make_room(), make_sums(used), aligned(2, COLUMNS), aligned(2, RESULTS * TOLD)
     columns, start, scratch, edges = small[0], small[1], room.scratch, room.edges
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
-        searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)
+        searched = seat(group, seats, order, problems, pressures, middles, inner_squares, limp, columns, start)
         cell, _, load = loads(columns, constants, PHYSICAL, layers)
-        y, half = get(start, 0), get(columns, LENGTH)
+        y, inner, half = get(start, 0), get(start, 1), get(columns, LENGTH)
         active, met = mask_of((1 << seats) - 1), mask_of(0)
         searched = searched and may_go_slack(load.wall)
         for step in range(PASSES):
@@ -158,16 +166,18 @@ def differentiate_lanes(problems, pressures, middles, limp, order, constants, la
             at = lagrangian.at_level(mid.y, mid.level, cell, load, nothing_yet(spread(0.0)))
             place = place_at(mid.y, spread(0.0), at, cell, load)
             slope = move_middle(mid, place, at, cell, load, half, own)
-            active = active & over_parts(parts, pieces, edges, mid, cell, load, own, scratch)
+            active = active & over_parts(parts, pieces, edges, mid, at.kind, inner, cell, load, own, scratch)
             better, off = met_by(mid, far, slope, place, load, half, own, scratch)
             met = active & (off < ALMOST)
             if step + 1 == PASSES or not some(active & (off > ENOUGH)):
-                tell(mid, far, off, unsure > 0.0, half, own, out)
+                doubts = tell(mid, far, off, unsure > 0.0, half, own, out)
+                tell_extremes(mid, at, doubts, inner, cell, load, own, out)
+                tell_slack(parts, edges, mid, at.kind, doubts, cell, load, half, own, out, scratch)
                 break
             y = select(off > ENOUGH, better, y)
         for lane in range(seats):
             row = order[group + lane]
-            for i in range(OUTPUTS):
+            for i in range(RESULTS):
                 for j in range(TOLD):
                     k = TOLD * i + j
                     told[0, row, i, j] = out[0, k, lane] if (bits(met) >> lane) & 1 else np.nan
