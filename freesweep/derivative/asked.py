@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..description.families import told
 from . import grid
 from .along import Course
 from .cylinder import at_cylinder
@@ -73,8 +74,8 @@ class Asked:
             natural = measures(self.tube, loads)
             sizes = np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in seeds])
             kind = self.tube.is_thick, self.tube.threads
-            found = differentiated(design, self.tube.energy, sizes, SHAPE, IN_VECTORS * self.accuracy, *kind, known)
-            return [_with_none(rows) for rows in found]
+            found = differentiated(design, self.tube.energy, sizes, self.names, IN_VECTORS * self.accuracy, *kind, known)
+            return [np.array([*told(self.tube, dict(zip(self.names, rows))).values()]) for rows in found]
 
         if self.unknown is None:
             return under(loads, self.seeds)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..description.elastomer import Yeoh
 from ..description.tube_model import FIBER_PLACES, fiber_place
-from ..scaling import OUTPUTS, output_scales, problem_columns, wall_volume_inside
+from ..scaling import ALONG, OUTPUTS, output_scales, problem_columns, wall_volume_inside
 from .along import lines_of
 from .dual import Dual, sqrt, value_of
 from .request import constants, place_of_fibers
@@ -43,10 +43,10 @@ def membranes():
 
 def outputs_of(design, numbers, scales=None, inside=None) -> dict:
     """Outputs in SI units and degrees from dimensionless ones of half a tube, in the order of kernels: length, volume,
-    twist, energy, stretch in the middle. A body has ``scales`` and a volume of wall ``inside`` the fibers of its own.
+    twist, energy, stretch in the middle; and what is largest and least along it, if that is there. A body has ``scales`` and a volume of wall ``inside`` the fibers of its own.
     """
     scales = output_scales(design) | (scales or {})
-    made = {name: number * scales[name] for name, number in zip(OUTPUTS, numbers)}
+    made = {name: number * scales[name] for name, number in zip((*OUTPUTS, *ALONG), numbers)}
     return made | {"volume": made["volume"] - (wall_volume_inside(design) if inside is None else inside)}
 
 

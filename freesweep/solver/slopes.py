@@ -13,15 +13,16 @@ RESULTS = OUTPUTS + len(places.NUMBERS)
 SURE = 1e-8  # accuracy of states that are not known
 
 
-def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None, inner=None):
-    """Values and bounds (n, 1 + directions, 11) of the outputs, and behind them of :mod:`.along.places` of ``problems`` (n, columns), each under one of the
-    ``pressures``, and of their derivatives along directions: ``changes`` (n, directions, columns + 1) are what the problem's
-    columns and the pressure change by.
+def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None, surface=None):
+    """Values and bounds (n, 1 + directions, RESULTS) of the outputs and, behind them, the numbers of :mod:`.along.places`, of
+    ``problems`` (n, columns), each under one of the ``pressures``, and of their derivatives along directions: ``changes`` (n,
+    directions, columns + 1) are what the problem's columns and the pressure change by.
 
     NaN where vectors have no answer. ``accuracy`` is that of derivatives, relative or by the size of the output.
     ``middles`` (n,): stretches of the middle, of states that are known; ``limp`` (n,): where some family of these goes slack
-    along a part. Of others that state is taken that vectors find. ``inner`` (n,): squared radii of the walls' inner surfaces,
-    of which a membrane's column for that, which is 0, changes as ``changes`` tell; else as the column has them, or 1.
+    along a part. Of others that state is taken that vectors find. ``surface``: squared radii of the
+    walls' inner surfaces (n,), which membranes' columns do not tell, and what they change by (n, directions); else those are
+    the fibers'.
     """
     count, directions = changes.shape[:2]
     values, bounds = (np.full((count, directions + 1, RESULTS), np.nan) for _ in range(2))
@@ -34,8 +35,10 @@ def differentiate(problems, pressures, changes, accuracy, middles=None, limp=Non
     limp = np.ones(count, bool) if limp is None else limp
     if wall_columns(problems) == SOURCE:
         problems, changes = as_physical(problems), as_physical(changes, problems.shape[1])
-    if inner is None:
-        inner = np.where(problems[:, INNER] > 0.0, problems[:, INNER], 1.0)
+    inner = np.where(problems[:, INNER] > 0.0, problems[:, INNER], 1.0)
+    if surface is not None:
+        inner, changes = np.ascontiguousarray(surface[0]), changes.copy()
+        changes[..., INNER] = surface[1]
     loaded = (pressures > 0.0) | (problems[:, FORCE] != 0.0) | (problems[:, TORQUE] != 0.0)
     left = np.flatnonzero(np.isfinite(middles) & loaded)
     before = np.full(len(left), np.inf)

@@ -49,11 +49,11 @@ def begin_part(own):
 
 
 @kernel
-def end_part(j, kind, in_middle, own):
-    """Behind part j, in which families are of that ``kind``: its length counts where it is not that of the middle."""
-    here, there = is_taut(kind), is_taut(in_middle)
+def end_part(j, within, pull, in_middle, own):
+    """Behind part j: its length counts where a family pulls in it, and not in the middle, or the other way round."""
     for family in range(FAMILIES):
-        odd = (here[family] & isnt(there[family])) | (there[family] & isnt(here[family]))
+        here, there = pull[family] > 0.0, in_middle[family] > 0.0
+        odd = within & ((here & isnt(there)) | (there & isnt(here)))
         put(own.is_odd[family], j, select(odd, 1.0, spread(0.0)))
         for i in range(NUMBERS + 2):
             grown = get(own.summed[i], SUM) - get(own.before, i)
@@ -62,9 +62,11 @@ def end_part(j, kind, in_middle, own):
 
 @kernel
 def tell_slack(parts, edges, mid, in_middle, doubts, cell, load, half, own, out, scratch):
-    """Write what is told of shares: ``out`` as of :func:`.told_extremes.tell_extremes`, with other arguments as of that."""
-    far, per, unsure, ends, off = doubts
-    zero, there = spread(0.0), is_taut(in_middle)
+    """Write what is told of shares: ``out`` as of :func:`.told_extremes.tell_extremes`, with other arguments as of that;
+    ``in_middle`` is by how much families pull there.
+    """
+    far, per, unsure, _, off = doubts
+    zero, there, ends = spread(0.0), (in_middle[0] > 0.0, in_middle[1] > 0.0), spread(ENDS)
     for family in range(FAMILIES):
         rows, sign = own.odd[family], select(there[family], 1.0, -1.0 + zero) / half
         at = TOLD * (OUTPUTS + (places.SLACK_ALPHA if family == 0 else places.SLACK_BETA))
@@ -122,7 +124,7 @@ def move_end(t, first, second, mid, there, doubts, cell, load, half, own, out, s
 @kernel
 def move_end_by(j, counts, end, signs, mid, here, there, doubts, half, own, out):
     """:func:`move_end` with number j, or, where it ``counts`` for nothing, with the length of the half."""
-    (phi, by_depth, grown, slopes), (far, per, unsure, ends, off), zero = end, doubts, spread(0.0)
+    (phi, by_depth, grown, slopes), (far, per, unsure, _, off), zero, ends = end, doubts, spread(0.0), spread(ENDS)
     row, deeper, of, at_row = own.rows[j], own.middle[DEPTH], own.middle[j], 1 + j
     m, missed = depth_by(j, far, per, ends, own)
     if counts == 0.0:

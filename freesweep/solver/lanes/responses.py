@@ -25,8 +25,10 @@ from .moved_middle import DEPTH, OWN, move_middle
 from .moved_slack import begin_part, begin_parts, end_part, tell_slack
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import look_along
+from .rule import LAST
+from .rule import PLACES as RULE
 from .second import place_at
-from .sums import NARROW, find_ends, make_room
+from .sums import ALPHA, KIND, NARROW, along, find_ends, graded, make_room
 from .told import LEFT, TOLD, tell
 from .told_extremes import RESULTS, tell_extremes
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
@@ -67,9 +69,25 @@ def down(share, left, width, mid):
 
 
 @kernel
+def look_for_ends(pieces, mid, cell, load, room):
+    """Bracket where families that may push would begin to, or stop it, to the room's ``ends``, along so many ``pieces``."""
+    near = nothing_yet(spread(0.0))
+    for lane in range(WIDTH):
+        room.counts[lane] = 0
+    for i in range(pieces):
+        left, right = graded(i, pieces), graded(i + 1, pieces)
+        near, _ = along(spread(left), spread(right), mid, cell, load, near, False, room.rows, room.scratch)
+        for family in range(2):
+            slack_ends.bracket(
+                left, right - left, RULE, room.rows[ALPHA + family], family, LAST, room.rows[KIND:], room.ends, room.counts,
+                room.starts,
+            )  # fmt: skip
+
+
+@kernel
 def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scratch):
-    """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`.
-    Returns the lanes in which each part is of one kind.
+    """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`; by how much
+    families pull ``in_middle``. Returns the lanes in which each part is of one kind.
     """
     valid, near, before = mask_of(-1), nothing_yet(spread(0.0)), spread(1.0)
     clear(own)
@@ -79,7 +97,7 @@ def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scr
         begin_part(own)
         first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
         width = (width - first) / pieces
-        within, kind = width > NARROW * mid.depth, spread(-1.0)
+        within, kind, pull = width > NARROW * mid.depth, spread(-1.0), (spread(0.0), spread(0.0))
         for i in range(pieces):
             for k in range(COUNT):
                 depth, steep = down(PLACES[k], first + i * width, width, mid)
@@ -87,7 +105,7 @@ def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scr
                 at = here.at
                 near = handed_on(here.y, at, near, load.wall)
                 if k == 0:
-                    kind = at.kind
+                    kind, pull = at.kind, slack_ends.pulls(at, load)
                 valid = valid & (((at.room > 0.0) & (at.kind == kind)) | isnt(within))
                 place = place_at(here.y, here.beyond, at, cell, load)
                 way = way_of(k, within, depth, here.z, here.per_share, place, load, mid)
@@ -95,7 +113,7 @@ def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scr
                 see(here.y, before, at, inner, cell, load, own.seen)
                 before = here.y
             close(own)
-        end_part(j, select(within, kind, in_middle), in_middle, own)
+        end_part(j, within, pull, in_middle, own)
     return valid
 
 
@@ -153,26 +171,31 @@ def differentiate_lanes(problems, pressures, middles, inner_squares, limp, order
         cell, _, load = loads(columns, constants, PHYSICAL, layers)
         y, inner, half = get(start, 0), get(start, 1), get(columns, LENGTH)
         active, met = mask_of((1 << seats) - 1), mask_of(0)
-        searched = searched and may_go_slack(load.wall)
+        is_loose = may_go_slack(load.wall)
         for step in range(PASSES):
             (mid, far), parts, unsure = seated(y, cell, load, half, scratch), 1, spread(0.0)
             put(edges, 0, 0.0)
             put(edges, 1, 1.0)
             if searched:
-                _, seen, valid = look_along(pieces, mid, cell, load, room)
-                active = active & valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
+                if is_loose:
+                    _, seen, valid = look_along(pieces, mid, cell, load, room)
+                    active = active & valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
+                else:
+                    look_for_ends(pieces, mid, cell, load, room)
                 parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, edges, scratch)
-                active = active & (unsure < slack_ends.ENOUGH)
+                active = active & ((unsure < slack_ends.ENOUGH) | mask_of(0 if is_loose else -1))
             at = lagrangian.at_level(mid.y, mid.level, cell, load, nothing_yet(spread(0.0)))
             place = place_at(mid.y, spread(0.0), at, cell, load)
+            pull = slack_ends.pulls(at, load)
             slope = move_middle(mid, place, at, cell, load, half, own)
-            active = active & over_parts(parts, pieces, edges, mid, at.kind, inner, cell, load, own, scratch)
+            active = active & over_parts(parts, pieces, edges, mid, pull, inner, cell, load, own, scratch)
             better, off = met_by(mid, far, slope, place, load, half, own, scratch)
             met = active & (off < ALMOST)
             if step + 1 == PASSES or not some(active & (off > ENOUGH)):
-                doubts = tell(mid, far, off, unsure > 0.0, half, own, out)
+                loose = (unsure > 0.0) & mask_of(-1 if is_loose else 0)
+                doubts = tell(mid, far, off, loose, half, own, out)
                 tell_extremes(mid, at, doubts, inner, cell, load, own, out)
-                tell_slack(parts, edges, mid, at.kind, doubts, cell, load, half, own, out, scratch)
+                tell_slack(parts, edges, mid, pull, doubts, cell, load, half, own, out, scratch)
                 break
             y = select(off > ENOUGH, better, y)
         for lane in range(seats):
