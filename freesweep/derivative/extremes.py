@@ -21,7 +21,7 @@ EXTREMES = (
 )  # fmt: skip
 OUTER, STRETCH, PULLS = 0, 1, 2  # rows of what is looked at; tensions come last
 STENCIL = 6  # cells of a polynomial
-TIED = 1e-5  # relative: by how much another place may have less, which may be the largest as well
+TIED, TOGETHER = 1e-5, 1e-12  # relative: by how much another piece may have less, which may have the largest as well; a place
 HALVINGS, REAL = 60, 1e-9  # of the way to a root; what an imaginary part leaves
 
 
@@ -64,11 +64,15 @@ class Piece:
         return Piece(self.x[which], self.rows[..., which], self.ends, self.cells[which])
 
     def largest(self, field, sign):
-        """``sign`` times the field, where that is largest."""
+        """``sign`` times the field, where that is largest, (1 + parameters,); and how differently other places change that have
+        as much.
+        """
         k = int(np.argmax(sign * self.rows[field, 0]))
         curve, low, high = self.near(field, k), self.x[max(k - 1, 0)], self.x[min(k + 1, len(self.x) - 1)]
         made = [sign * curve.at(place)[0] for place in (self.x[k], *curve.turns(low, high))]
-        return max(made, key=lambda one: one[0])
+        best, own = max(made, key=lambda one: one[0]), sign * self.rows[field]
+        alike = own[:, own[0] >= best[0] - TOGETHER * abs(best[0])]
+        return best, np.max(np.abs(alike - best[:, None]), axis=1, initial=0.0)
 
 
 class Curve:
@@ -104,8 +108,8 @@ def largest(field, pieces, sign=1.0):
     other pieces change that have nearly as much.
     """
     tops = [piece.largest(field, sign) for piece in pieces]
-    best = max(tops, key=lambda one: one[0])
-    tied = [np.abs(one - best) for one in tops if one[0] >= best[0] - TIED * abs(best[0])]
+    best = max(tops, key=lambda top: top[0][0])[0]
+    tied = [np.abs(one - best) + doubt for one, doubt in tops if one[0] >= best[0] - TIED * abs(best[0])]
     return best, np.max(tied, axis=0)
 
 
