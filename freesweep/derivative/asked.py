@@ -74,7 +74,9 @@ class Asked:
             natural = measures(self.tube, loads)
             sizes = np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in seeds])
             kind = self.tube.is_thick, self.tube.threads
-            found = differentiated(design, self.tube.energy, sizes, self.names, IN_VECTORS * self.accuracy, *kind, known)
+            found = differentiated(
+                design, self.tube.energy, sizes, self.names, IN_VECTORS * self.accuracy, *kind, known
+            )
             return [np.array([*told(self.tube, dict(zip(self.names, rows))).values()]) for rows in found]
 
         if self.unknown is None:

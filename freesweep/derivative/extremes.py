@@ -21,7 +21,7 @@ EXTREMES = (
 )  # fmt: skip
 OUTER, STRETCH, PULLS = 0, 1, 2  # rows of what is looked at; tensions come last
 STENCIL = 6  # cells of a polynomial
-TIED, TOGETHER = 1e-5, 1e-12  # relative: by how much another piece may have less, which may have the largest as well; a place
+TIED, TOGETHER = 1e-5, 1e-12  # relative: by how much another piece, or place, may have less, and be the largest as well
 HALVINGS, REAL = 60, 1e-9  # of the way to a root; what an imaginary part leaves
 
 
@@ -34,8 +34,8 @@ def _stretched():
 
 
 def fields(physics, y, place, share):
-    """Outer radius [m], largest stretch and tensions of both lines [N], of a locked shape [N/Pa], where the stretch is ``y``:
-    dual numbers. ``place``: G - 1, twist rate and these tensions there.
+    """Outer radius [m], largest stretch and tensions of both lines [N], of a locked shape [N/Pa], where the stretch is
+    ``y``: dual numbers. ``place``: G - 1, twist rate and these tensions there.
     """
     G_1, psi, tensions = place
     inner, outer, fibers = physics.surfaces(share)
@@ -64,8 +64,8 @@ class Piece:
         return Piece(self.x[which], self.rows[..., which], self.ends, self.cells[which])
 
     def largest(self, field, sign):
-        """``sign`` times the field, where that is largest, (1 + parameters,); and how differently other places change that have
-        as much.
+        """``sign`` times the field, where that is largest, (1 + parameters,); and how differently other places change that
+        have as much.
         """
         k = int(np.argmax(sign * self.rows[field, 0]))
         curve, low, high = self.near(field, k), self.x[max(k - 1, 0)], self.x[min(k + 1, len(self.x) - 1)]

@@ -175,16 +175,24 @@ def on_nested(task, x, y, ends, hold, least):
         rows, units, doubts = finish(*outputs(wanted, meshes, y, ends, segments), own)
         table += list(rows)
         seen += [physics.kinks(segments, meshes.cells(k)) for k in range(len(levels))]
-        values, bounds = extrapolate([rows[:first] for rows in table], units[:first])
-        others = [extrapolate([rows[k : k + 1] for rows in table], units[k : k + 1], True) for k in range(first, len(units))]
+        if not later:  # finer meshes are for the others only
+            values, bounds = extrapolate([rows[:first] for rows in table], units[:first])
+            met = np.max(bounds / units[:first]) <= accuracy
+        others = [
+            extrapolate([rows[k : k + 1] for rows in table], units[k : k + 1], True) for k in range(first, len(units))
+        ]
         rough = max(np.max(about / units[k]) for k, (_, about) in enumerate(others, first))
-        met = np.max(bounds / units[:first]) <= accuracy
-        if met and (rough <= ROUGH or later == LATER) or levels[-1] >= FINEST:
+        if (met and (rough <= ROUGH or later == LATER)) or levels[-1] >= FINEST:
             break
         later += met
         last = meshes.nodes(len(levels) - 1)
         levels = [levels[-1] + 1]
-        meshes, y, own = stand(physics, levels, Shape(physics, meshes.x[last], y[last], ends), own)
+        try:
+            meshes, y, own = stand(physics, levels, Shape(physics, meshes.x[last], y[last], ends), own)
+        except NotFound:
+            if not met:
+                raise
+            break
     values, bounds = map(np.concatenate, zip((values, bounds), *others))
     return Found(values, bounds + doubts), units, places_of(seen[-3:])
 

@@ -260,12 +260,12 @@ class PhysicalTube(Physics):
     def at_flux(self, y, flux, share):
         """As of :class:`Physics`: that of a uniform tube of the same resultant, which a stronger pull makes."""
         given, load = self.properties(share)
-        cell, _, (*_, p, f, m, e) = walls()[-1][0](y, 0.0, given, load)
+        _, _, (*_, p, f, _, _) = walls()[-1][0](y, 0.0, given, load)
         T, own = p * y * y + f, flux if len(given) == 3 else flux / (given[3] * given[3] * given[3])
         there = copy(self)
         there.beyond = own * own / (T + sqrt(T * T + own * own))
         there.settled = self.settled.at(share)
-        there.local(y, Dual(np.zeros(len(share))) , share)
+        there.local(y, Dual(np.zeros(len(share))), share)
         return there.place(y, None, share)
 
     def begin(self, other):

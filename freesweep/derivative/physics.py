@@ -43,7 +43,8 @@ def membranes():
 
 def outputs_of(design, numbers, scales=None, inside=None) -> dict:
     """Outputs in SI units and degrees from dimensionless ones of half a tube, in the order of kernels: length, volume,
-    twist, energy, stretch in the middle; and what is largest and least along it, if that is there. A body has ``scales`` and a volume of wall ``inside`` the fibers of its own.
+    twist, energy, stretch in the middle; and what is largest and least along it, if that is there. A body has ``scales``
+    and a volume of wall ``inside`` the fibers of its own.
     """
     scales = output_scales(design) | (scales or {})
     made = {name: number * scales[name] for name, number in zip((*OUTPUTS, *ALONG), numbers)}
@@ -139,8 +140,8 @@ class Physics:
         return kernels()[1](y, v, *self.properties(share))[:4]
 
     def place(self, y, v, share):
-        """``(G - 1, twist rate, tensions of both lines [N])`` in the cells of which :meth:`local` was asked last; of a locked
-        shape tensions are per pressure.
+        """``(G - 1, twist rate, tensions of both lines [N])`` in the cells of which :meth:`local` was asked last; of a
+        locked shape tensions are per pressure.
         """
         as_tube, kinematics, multipliers, of_multipliers, _ = membranes()
         given, load = self.properties(share)

@@ -41,7 +41,9 @@ def differentiated(design, energy, sizes, names, accuracy, thick=False, threads=
     state = (None, None) if known is None else (known[0] / design["fiber_radius"].value, known[1])
     values, bounds = differentiate(problems, pressures, changes, accuracy, *state, surface)  # (n, 1 + seeds, results)
     none = np.zeros((OWN, n))
-    values, bounds = (np.moveaxis(array, (2, 1), (0, 1)) / sizes for array in (values, bounds))  # (results, 1 + seeds, n)
+    values, bounds = (
+        np.moveaxis(array, (2, 1), (0, 1)) / sizes for array in (values, bounds)
+    )  # (results, 1 + seeds, n)
     numbers = [Dual(own[0], np.concatenate([none, own[1:]])) for own in values]
     per_pressure = {name: 2.0 * np.pi * design["fiber_radius"] ** 2 for name in PULLS if np.all(locked)}
     made = outputs_of(design, numbers, per_pressure)

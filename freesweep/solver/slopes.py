@@ -8,15 +8,16 @@ from .batch import OUTPUTS, kinds_of, walk_by_vectors
 from .problem import FORCE, INNER, MOONEY_RIVLIN, SOURCE, TORQUE, wall_columns
 
 FINENESS, SHARP = (1, 2, 4, 8, 16, 32), 1e-5  # pieces of parts; a bound that is taken where no more pieces are tried
+ONE = 1  # layer
 MENDED = 0.5  # of a bound: what twice as many pieces leave more of is no pieces' fault
 RESULTS = OUTPUTS + len(places.NUMBERS)
 SURE = 1e-8  # accuracy of states that are not known
 
 
 def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None, surface=None):
-    """Values and bounds (n, 1 + directions, RESULTS) of the outputs and, behind them, the numbers of :mod:`.along.places`, of
-    ``problems`` (n, columns), each under one of the ``pressures``, and of their derivatives along directions: ``changes`` (n,
-    directions, columns + 1) are what the problem's columns and the pressure change by.
+    """Values and bounds (n, 1 + directions, RESULTS) of the outputs and, behind them, the numbers of :mod:`.along.places`,
+    of ``problems`` (n, columns), each under one of the ``pressures``, and of their derivatives along directions: ``changes``
+    (n, directions, columns + 1) are what the problem's columns and the pressure change by.
 
     NaN where vectors have no answer. ``accuracy`` is that of derivatives, relative or by the size of the output.
     ``middles`` (n,): stretches of the middle, of states that are known; ``limp`` (n,): where some family of these goes slack
@@ -59,13 +60,13 @@ def as_physical(columns, at=None):
     of a problem come behind these, too.
     """
     at = columns.shape[-1] if at is None else at
-    return np.ascontiguousarray(np.insert(columns, [at, at], 0.0, axis=-1))
+    none = np.zeros((*columns.shape[:-1], 2))
+    return np.concatenate([columns[..., :at], none, columns[..., at:]], axis=-1)
 
 
 def along(problems, pressures, known, changes, pieces):
-    """Values and bounds as of :func:`differentiate`, of physical ``problems`` of which middles, inner surfaces, and which are
-    limp, are ``known``, and the largest of these, scaled (n,); each
-    part of a tube is summed in so many ``pieces``.
+    """Values and bounds as of :func:`differentiate`, of physical ``problems`` of which middles, inner surfaces, and which
+    are limp, are ``known``, and the largest of these, scaled (n,); each part of a tube is summed in so many ``pieces``.
     """
     from .lanes.chain import chain
 
@@ -86,6 +87,7 @@ def answers(problems, pressures, middles, inner, limp, pieces):
     order = np.lexsort((middles, limp))  # what shares a vector should need much the same work
     for _, _, (constants, layers), some in kinds_of(problems):
         absent = (second.SECOND, second.THIRD) if constants == MOONEY_RIVLIN else ()
+        absent += (second.INNER,) if layers == ONE else ()  # a membrane has no inside
         used = np.array([k for k in range(second.NUMBERS) if k not in absent])
         given = problems, pressures, middles, inner, limp, order[some[order]], constants, layers
         differentiate_lanes(*given, used, pieces, told)

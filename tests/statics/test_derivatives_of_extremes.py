@@ -1,5 +1,5 @@
-"""Derivatives of what is largest and least along a tube, and of the shares of it along which fibers are slack: by scaling laws,
-by differences of the solver as far as its bounds tell, and where there is nothing to be told.
+"""Derivatives of what is largest and least along a tube, and of the shares of it along which fibers are slack: by scaling
+laws, by differences of the solver as far as its bounds tell, and where there is nothing to be told.
 """
 
 import numpy as np
@@ -82,7 +82,9 @@ def test_extremes_change_as_differences_tell(kind, name, step):
     far, near = [[moved(side * part * step) for side in (1.0, -1.0)] for part in (1.0, 0.5)]
     changing = 0
     for output in EXTREMES:
-        slopes = [float(one[output] - other[output]) / (2.0 * part * step) for (one, other), part in ((far, 1.0), (near, 0.5))]
+        slopes = [
+            float(one[output] - other[output]) / (2.0 * part * step) for (one, other), part in ((far, 1.0), (near, 0.5))
+        ]
         told = (4.0 * slopes[1] - slopes[0]) / 3.0
         doubt = abs(told - slopes[1]) + 4.0 * max(float(one[f"{output}_error"]) for one in near) / step
         exact, bound = (float(found[f"d_{output}_d_{name}{end}"]) for end in ("", "_error"))

@@ -43,9 +43,9 @@ TINY = 1e-140
 
 class Sums(NamedTuple):
     """Scratch: ``rows`` (NUMBERS, ROWS, WIDTH) of a place, those of the ``middle`` (NUMBERS + 2, MIDDLE, WIDTH), and what is
-    ``summed`` (NUMBERS + 2, SUMS, WIDTH), of the numbers ``used``; what is ``seen`` of fields (fields, SEEN, WIDTH); of
-    both families what is summed of the length of parts that are ``odd`` (2, NUMBERS + 2, WIDTH), which parts are (2, MOST + 2,
-    ...), and what was summed ``before`` a part (NUMBERS + 2, ...).
+    ``summed`` (NUMBERS + 2, SUMS, WIDTH), of the numbers ``used``; what is ``seen`` of fields (fields, SEEN, WIDTH); for
+    both families the length of parts that are ``odd`` (2, NUMBERS + 2, WIDTH), which are that (2, MOST + 2, WIDTH), and what
+    was summed ``before`` a part (NUMBERS + 2, WIDTH).
     """
 
     used: np.ndarray
@@ -61,8 +61,11 @@ class Sums(NamedTuple):
 @kernel
 def make_sums(used):
     """Scratch of a vector."""
-    seen, odd, is_odd, before = aligned(FIELDS, SEEN), aligned(2, NUMBERS + 2), aligned(2, MOST + 2), aligned(1, NUMBERS + 2)[0]
-    return Sums(used, aligned(NUMBERS, ROWS), aligned(NUMBERS + 2, MIDDLE), aligned(NUMBERS + 2, SUMS), seen, odd, is_odd, before)
+    all_of_them = NUMBERS + 2
+    return Sums(
+        used, aligned(NUMBERS, ROWS), aligned(all_of_them, MIDDLE), aligned(all_of_them, SUMS), aligned(FIELDS, SEEN),
+        aligned(2, all_of_them), aligned(2, MOST + 2), aligned(1, all_of_them)[0],
+    )  # fmt: skip
 
 
 class Way(NamedTuple):

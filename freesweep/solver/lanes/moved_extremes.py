@@ -1,9 +1,9 @@
 """How the largest outer radius and stretch, and the least pulls, of half a tube change as numbers do, for a vector of
 designs.
 
-The level of the first integral, with a stretch y, tells all of a place. So what is largest along the tube is largest over y,
-from the end's 1 to that of the middle; where it is, it changes as it does at that very stretch, or, in the middle, at the one
-that moves with that.
+The level of the first integral, with a stretch y, tells all of a place. So what is largest along the tube is largest over
+y, from the end's 1 to that of the middle; where it is, it changes as it does at that very stretch, or, in the middle, at the
+one that moves.
 
 Multipliers follow what keeps K stationary (:mod:`second`): of taut families ::
 

@@ -1,7 +1,7 @@
 """How the shares of half a tube change along which families of fibers are slack, for a vector of designs.
 
-Parts in which a family does what it does not do in the middle are summed by themselves. Where such a part ends its pull, seen
-from the taut side, vanishes: at the stretch y that moves by ::
+Parts in which a family pulls, and not in the middle, or the other way round, are summed by themselves. Where such a part
+ends the pull, seen from the taut side, vanishes: at the stretch y that moves by ::
 
     dy = -(da at that stretch)/(a's slope along the tube)
 
@@ -103,7 +103,15 @@ def move_end(t, first, second, mid, there, doubts, cell, load, half, own, out, s
     taut, at = is_taut(place.at.kind), place.at
     kind, zero = kind_of(taut[0] | ended[0], taut[1] | ended[1]), spread(0.0)
     at = Level(
-        at.room, at.R, at.rise, at.G_1, at.psi, kind, select(ended[0], zero, at.a), select(ended[1], zero, at.b), at.weighed
+        at.room,
+        at.R,
+        at.rise,
+        at.G_1,
+        at.psi,
+        kind,
+        select(ended[0], zero, at.a),
+        select(ended[1], zero, at.b),
+        at.weighed,
     )
     here = place_at(place.y, place.beyond, at, cell, load)
     by_numbers(here, at, cell, load, own.rows)
@@ -118,7 +126,9 @@ def move_end(t, first, second, mid, there, doubts, cell, load, half, own, out, s
         of_length = k == len(own.used)
         j = 0 if of_length else own.used[k]
         counts = 0.0 if of_length else 1.0
-        move_end_by(j, counts, (phi, by_depth, grown, slopes), (first, second), mid, here, there, doubts, half, own, out)
+        move_end_by(
+            j, counts, (phi, by_depth, grown, slopes), (first, second), mid, here, there, doubts, half, own, out
+        )
 
 
 @kernel

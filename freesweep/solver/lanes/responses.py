@@ -154,14 +154,17 @@ def seat(group, count, order, problems, pressures, middles, inner, limp, columns
 
 
 @entry_point
-def differentiate_lanes(problems, pressures, middles, inner_squares, limp, order, constants, layers, used, pieces, told):
+def differentiate_lanes(
+    problems, pressures, middles, inner_squares, limp, order, constants, layers, used, pieces, told
+):
     """Values and bounds, ``told`` (2, rows, RESULTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
     outputs, of their derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where
     vectors cannot.
 
-    Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``inner_squares``
-    are squared radii of the walls' inner surfaces; ``limp`` tells where some family goes slack along a part. ``used`` are the numbers that there are; others are told nothing.
-    Other arguments as of :func:`.free.solve_physical`.
+    Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about;
+    ``inner_squares`` are the squared radii of the walls' inner surfaces; ``limp`` tells where some family goes slack along a
+    part. ``used`` are the numbers that there are; others are told nothing. Other arguments as of
+    :func:`.free.solve_physical`.
     """
     room, own, small, out = make_room(), make_sums(used), aligned(2, COLUMNS), aligned(2, RESULTS * TOLD)
     columns, start, scratch, edges = small[0], small[1], room.scratch, room.edges

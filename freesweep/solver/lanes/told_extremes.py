@@ -12,7 +12,7 @@ from ..physics import lagrangian
 from .moved import MISSED
 from .moved_extremes import FIELDS, NAN, OUTER, PULL_BETA, change, moves, place_of, place_where, steepness, values
 from .moved_middle import DEPTH, OF_LEVEL, OF_Y
-from .second import AREA, BY_K, BY_KG, BY_KP, GAMMA, INNER, T_ALPHA, T_BETA, by_numbers, settled_by
+from .second import AREA, BY_K, BY_KG, BY_KP, GAMMA, INNER, NUMBERS, T_ALPHA, T_BETA, by_numbers, settled_by
 from .told import BEHIND, NOISE, OUTPUTS, SAFETY, TOLD, WRONG, depth_by
 from .vector import get, put, spread
 
@@ -58,8 +58,7 @@ def tell_field(field, value, place, mid, doubts, inner, cell, load, own, out):
     told = scale * value * (1.0 if field < OUTER else 2.0)
     put(out[0], at, select(fine, told, NAN))
     put(out[1], at, unsure * abs(told))
-    for k in range(len(own.used)):
-        j = own.used[k]
+    for j in range(NUMBERS):
         row, (m, missed) = own.rows[j], depth_by(j, far, per, ends, own)
         dy, level, size = moves(j, m, False, middle, own)
         dR = (level - here.K_y * dy - get(row, BY_K)) * here.per_s
@@ -69,7 +68,9 @@ def tell_field(field, value, place, mid, doubts, inner, cell, load, own, out):
         own_part = zero
         if field < OUTER:
             own_part = -value * (one_if(j == GAMMA) * longer)
-            own_part = own_part - value * (one_if(j == (T_ALPHA if field < PULL_BETA else T_BETA)) * load.gamma * t / longer)
+            own_part = own_part - value * (
+                one_if(j == (T_ALPHA if field < PULL_BETA else T_BETA)) * load.gamma * t / longer
+            )
         doubt = missed * of_depth + unsure * (by_level * size[1] + by_y * size[0])
         doubt = doubt + NOISE * (abs(moved) + by_level * abs(get(row, BY_K)))
         put(out[0], at + 1 + j, select(fine, scale * moved + own_part, NAN))
