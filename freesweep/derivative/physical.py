@@ -261,12 +261,15 @@ class PhysicalTube(Physics):
         """As of :class:`Physics`: that of a uniform tube of the same resultant, which a stronger pull makes."""
         given, load = self.properties(share)
         _, _, (*_, p, f, _, _) = walls()[-1][0](y, 0.0, given, load)
-        T, own = p * y * y + f, flux if len(given) == 3 else flux / (given[3] * given[3] * given[3])
+        T, own, level = p * y * y + f, flux, Dual(np.zeros(len(share)))
+        if self.tube.is_body:  # along whose meridian nothing rises
+            _, _, _, R, rise, _ = given
+            own, level = flux / (R * R * R), -(rise * y) / R
         there = copy(self)
         there.beyond = own * own / (T + sqrt(T * T + own * own))
         there.settled = self.settled.at(share)
-        there.local(y, Dual(np.zeros(len(share))), share)
-        return there.place(y, None, share)
+        there.local(y, level, share)
+        return there.place(y, level, share)
 
     def begin(self, other):
         """As of :class:`Physics`."""
