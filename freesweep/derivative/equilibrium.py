@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, solve_banded
 
 from .dual import Dual
-from .extremes import Piece, extremes, fields
+from .extremes import Piece, extremes, fields, unknown
 from .physics import BY_V, BY_Y, OWN
 
 ITERATIONS, HALVINGS = 40, 30
@@ -212,8 +212,12 @@ def outputs(physics, meshes, y, ends, segments):
     found = sums(physics, meshes, y)
     moved, step = responses(found, meshes)
     made = _outputs(physics, meshes, y, moved, step)
-    pieces = _pieces(physics, meshes, y, (found, moved, step), ends, segments)
-    along, doubts = extremes(physics, pieces, segments, 2.0 if meshes.free else 1.0)
+    try:
+        with np.errstate(all="ignore"):
+            pieces = _pieces(physics, meshes, y, (found, moved, step), ends, segments)
+            along, doubts = extremes(physics, pieces, segments, 2.0 if meshes.free else 1.0)
+    except NotFound:  # where fibers settle at an end
+        along, doubts = unknown(len(physics.parameters), len(meshes.starts))
     return made | along, doubts
 
 

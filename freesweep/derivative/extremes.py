@@ -90,7 +90,8 @@ class Curve:
     def turns(self, low, high):
         """Places between two others at which the slope of the value vanishes."""
         steep = np.polynomial.polynomial.polyder(self.series[:, 0])
-        roots = np.polynomial.polynomial.polyroots(steep) if np.any(steep[1:]) else np.zeros(0)
+        bent = np.any(steep[1:]) and np.all(np.isfinite(steep))
+        roots = np.polynomial.polynomial.polyroots(steep) if bent else np.zeros(0)
         places = roots[np.abs(np.imag(roots)) < REAL].real * self.size + self.middle
         return places[(places > low) & (places < high)]
 
@@ -172,3 +173,9 @@ def extremes(physics, pieces, segments, whole):
     none = np.zeros((OWN, len(pieces)))
     numbers = [Dual(one[0, 0], np.concatenate([none, one[0, 1:]])) for one in made]
     return dict(zip(EXTREMES, numbers)), made[:, 1]
+
+
+def unknown(parameters, meshes):
+    """As of :func:`extremes`, of what is not known."""
+    doubts = np.full((len(EXTREMES), 1 + parameters, meshes), np.nan)
+    return {name: Dual(doubts[0, 0], np.full((OWN + parameters, meshes), np.nan)) for name in EXTREMES}, doubts
