@@ -12,6 +12,7 @@ from ..derivative.physics import OWN, Physics
 from ..derivative.request import SHAPE
 from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
+from ..scaling import SLACK
 from .beside import Held, load_slopes
 from .freedom import LOADS
 from .outputs import FOLLOWING, derived
@@ -80,7 +81,8 @@ def _state(space, state, outputs, columns, values, middles, some, free):
         design[state.kind] = Dual(values[:, 0], load)
     tube, sizes = space.template, _sizes(design, state, len(some), free)
 
-    known = None if middles is None else (middles, np.ones(len(middles), bool))
+    limp = tube.is_loose or any(name in SLACK for name in outputs)  # only then ends of slack parts are looked for
+    known = None if middles is None else (middles, np.full(len(middles), limp))
     rows, _ = differentiated(design, tube.energy, sizes, NAMES, ACCURACY, tube.is_thick, tube.threads, known)
     if held is not None:
         rows = _straight(tube, design, rows, free + 1) if space.is_source else rows

@@ -26,6 +26,7 @@ PULL_ALPHA, PULL_BETA, OUTER, STRETCH, FIELDS = range(5)  # less multipliers; sq
 # of each field: the largest so far, the stretches before it, there and behind it, whether that is still to come; what may be
 # handed on there
 BEST, BEFORE, AT, BEHIND, COMING, KIND, PSI, WIDE, SEEN = range(9)
+TOGETHER = 1e-12  # relative: by how much one place may have less, and be the largest as well
 STEPS, CLOSE, SMOOTH = 24, 1e-11, 1e-5  # to where a slope vanishes, of a strain; what it leaves, of a field
 NAN = float("nan")
 
@@ -153,6 +154,7 @@ def place_where(field, ends, mid, inner, cell, load, seen):
     near = get(row, KIND), get(row, AT), zero, get(row, PSI), zero, zero, get(row, WIDE), zero, zero
     middle, fine = isnt(inside) & (last >= first), inside | isnt(inside)
     y = select(inside, get(row, AT), select(middle, mid.y, 1.0))
+    alike = isnt(inside) & (abs(first - last) <= TOGETHER * abs(first)) & (abs(first) > 0.0)  # all along
     slack = inside & (best == 0.0) if field < OUTER else isnt(fine)  # it pulls nowhere there
     going = inside & isnt(slack)
     if some(going):
@@ -173,7 +175,7 @@ def place_where(field, ends, mid, inner, cell, load, seen):
         y = select(inside & isnt(slack) & fine, t, y)
         smooth = abs(slope * (mid.y - 1.0)) <= SMOOTH * abs(best)
         fine = fine & (isnt(inside) | slack | smooth)
-    return y, middle, fine, near
+    return y, middle, fine & isnt(alike), near
 
 
 @kernel
