@@ -83,12 +83,12 @@ def answers(problems, pressures, middles, inner, limp, pieces):
     from .lanes.responses import differentiate_lanes
     from .lanes.told import TOLD
 
-    told = np.zeros((2, len(problems), RESULTS, TOLD))
+    told, known = np.zeros((2, len(problems), RESULTS, TOLD)), np.array([middles, inner])
     order = np.lexsort((middles, limp))  # what shares a vector should need much the same work
     for _, _, (constants, layers), some in kinds_of(problems):
         absent = (second.SECOND, second.THIRD) if constants == MOONEY_RIVLIN else ()
         absent += (second.INNER,) if layers == ONE else ()  # a membrane has no inside
         used = np.array([k for k in range(second.NUMBERS) if k not in absent])
-        given = problems, pressures, middles, inner, limp, order[some[order]], constants, layers
+        given = problems, pressures, known, limp, order[some[order]], constants, layers
         differentiate_lanes(*given, used, pieces, told)
     return told[0], told[1]

@@ -61,7 +61,7 @@ def end_part(j, within, pull, in_middle, own):
 
 
 @kernel
-def tell_slack(parts, edges, mid, in_middle, doubts, cell, load, half, own, out, scratch):
+def tell_slack(parts, room, mid, in_middle, doubts, cell, load, half, own, out):
     """Write what is told of shares: ``out`` as of :func:`.told_extremes.tell_extremes`, with other arguments as of that;
     ``in_middle`` is by how much families pull there.
     """
@@ -89,30 +89,24 @@ def tell_slack(parts, edges, mid, in_middle, doubts, cell, load, half, own, out,
         first = get(own.is_odd[0], j - 1) - get(own.is_odd[0], j)
         second = get(own.is_odd[1], j - 1) - get(own.is_odd[1], j)
         if some((abs(first) > 0.5) | (abs(second) > 0.5)):
-            move_end(get(edges, j), first, second, mid, there, doubts, cell, load, half, own, out, scratch)
+            families, tube = ((first, second), there), (cell, load, half)
+            move_end(get(room.edges, j), families, mid, doubts, tube, own, out, room.scratch)
 
 
 @kernel
-def move_end(t, first, second, mid, there, doubts, cell, load, half, own, out, scratch):
-    """Add what it does to both shares that an end at the share ``t`` of the depth moves, where ``first`` and ``second`` are
-    not 0: 1 where the part that counts lies before it, or -1.
+def move_end(t, families, mid, doubts, tube, own, out, scratch):
+    """Add what it does to both shares that an end at the share ``t`` of the depth moves; ``families``: (signs, 1 where the
+    part that counts lies before it, -1 where behind, else 0; whether each pulls in the middle). ``tube``: (cell, load,
+    half).
     """
+    (first, second), (cell, load, half) = families[0], tube
     depth, steep = deep(t, mid.depth)
     ended = abs(first) > 0.5, abs(second) > 0.5
     place = look_down(depth, steep, mid, cell, load, nothing_yet(t), scratch)
     taut, at = is_taut(place.at.kind), place.at
     kind, zero = kind_of(taut[0] | ended[0], taut[1] | ended[1]), spread(0.0)
-    at = Level(
-        at.room,
-        at.R,
-        at.rise,
-        at.G_1,
-        at.psi,
-        kind,
-        select(ended[0], zero, at.a),
-        select(ended[1], zero, at.b),
-        at.weighed,
-    )
+    a, b = select(ended[0], zero, at.a), select(ended[1], zero, at.b)
+    at = Level(at.room, at.R, at.rise, at.G_1, at.psi, kind, a, b, at.weighed)
     here = place_at(place.y, place.beyond, at, cell, load)
     by_numbers(here, at, cell, load, own.rows)
     sine = sqrt(max(place.beyond * (here.R + here.T), LEAST)) / here.R
@@ -126,14 +120,13 @@ def move_end(t, first, second, mid, there, doubts, cell, load, half, own, out, s
         of_length = k == len(own.used)
         j = 0 if of_length else own.used[k]
         counts = 0.0 if of_length else 1.0
-        move_end_by(
-            j, counts, (phi, by_depth, grown, slopes), (first, second), mid, here, there, doubts, half, own, out
-        )
+        move_end_by(j, counts, (phi, by_depth, grown, slopes), families, mid, here, doubts, half, own, out)
 
 
 @kernel
-def move_end_by(j, counts, end, signs, mid, here, there, doubts, half, own, out):
+def move_end_by(j, counts, end, families, mid, here, doubts, half, own, out):
     """:func:`move_end` with number j, or, where it ``counts`` for nothing, with the length of the half."""
+    signs, there = families
     (phi, by_depth, grown, slopes), (far, per, unsure, _, off), zero, ends = end, doubts, spread(0.0), spread(ENDS)
     row, deeper, of, at_row = own.rows[j], own.middle[DEPTH], own.middle[j], 1 + j
     m, missed = depth_by(j, far, per, ends, own)

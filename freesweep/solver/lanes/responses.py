@@ -136,7 +136,7 @@ def met_by(mid, far, slope, place, load, half, own, scratch):
 
 
 @kernel
-def seat(group, count, order, problems, pressures, middles, inner, limp, columns, start):
+def seat(group, count, order, problems, pressures, known, limp, columns, start):
     """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too. Returns
     whether some family of one goes slack somewhere, and not everywhere.
     """
@@ -144,7 +144,7 @@ def seat(group, count, order, problems, pressures, middles, inner, limp, columns
     for lane in range(WIDTH):
         row = order[group + min(lane, count - 1)]
         enter(lane, problems[row], columns)
-        start[0, lane], start[1, lane] = middles[row], inner[row]
+        start[0, lane], start[1, lane] = known[0, row], known[1, row]
         ends = ends or limp[row]
         if pressures[row] == np.inf:
             lock(lane, columns)
@@ -154,15 +154,13 @@ def seat(group, count, order, problems, pressures, middles, inner, limp, columns
 
 
 @entry_point
-def differentiate_lanes(
-    problems, pressures, middles, inner_squares, limp, order, constants, layers, used, pieces, told
-):
+def differentiate_lanes(problems, pressures, known, limp, order, constants, layers, used, pieces, told):
     """Values and bounds, ``told`` (2, rows, RESULTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
     outputs, of their derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where
     vectors cannot.
 
-    Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about;
-    ``inner_squares`` are the squared radii of the walls' inner surfaces; ``limp`` tells where some family goes slack along a
+    Row i is a physical problem under ``pressures[i]``, of which are ``known`` (2, rows) the stretch of the
+    middle, about, and the squared radius of the wall's inner surface; ``limp`` tells where some family goes slack along a
     part. ``used`` are the numbers that there are; others are told nothing. Other arguments as of
     :func:`.free.solve_physical`.
     """
@@ -170,7 +168,7 @@ def differentiate_lanes(
     columns, start, scratch, edges = small[0], small[1], room.scratch, room.edges
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
-        searched = seat(group, seats, order, problems, pressures, middles, inner_squares, limp, columns, start)
+        searched = seat(group, seats, order, problems, pressures, known, limp, columns, start)
         cell, _, load = loads(columns, constants, PHYSICAL, layers)
         y, inner, half = get(start, 0), get(start, 1), get(columns, LENGTH)
         active, met = mask_of((1 << seats) - 1), mask_of(0)
@@ -198,7 +196,7 @@ def differentiate_lanes(
                 loose = (unsure > 0.0) & mask_of(-1 if is_loose else 0)
                 doubts = tell(mid, far, off, loose, half, own, out)
                 tell_extremes(mid, at, doubts, inner, cell, load, own, out)
-                tell_slack(parts, edges, mid, pull, doubts, cell, load, half, own, out, scratch)
+                tell_slack(parts, room, mid, pull, doubts, cell, load, half, own, out)
                 break
             y = select(off > ENOUGH, better, y)
         for lane in range(seats):
