@@ -49,17 +49,17 @@ def problem_columns(design, energy, thick=False, threads=0.0) -> tuple:
 def output_scales(design) -> dict:
     """SI units of one dimensionless output of half a tube, by name; rotation in degrees."""
     r, c10 = design["fiber_radius"], design["c10"]
+    one = 0.0 * r + 1.0
     return {
         "deformed_length": 2.0 * r,
         "volume": 2.0 * np.pi * r**3,
-        "rotation": 0.0 * r + np.degrees(2.0),
+        "rotation": one * np.degrees(2.0),
         "strain_energy": 2.0 * np.pi * r**3 * c10,
         "mid_radius": r,
-        "slack_alpha": 1.0,
-        "slack_beta": 1.0,
+        **dict.fromkeys(SLACK, one),
         **dict.fromkeys(PULLS, 2.0 * np.pi * r**2 * c10),
         "outer_radius": r,
-        "largest_stretch": 1.0,
+        "largest_stretch": one,
     }
 
 

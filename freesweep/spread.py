@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .derivative.extremes import EXTREMES
 from .derivative.request import SHAPE, parameters, unit_of
 from .description.actuator import Actuator
 from .description.faults import ActuatorError
@@ -58,7 +59,7 @@ def tolerance(
     warn_of(tolerance_doubts(tube.design(), spread), stacklevel=2)
     names = list(spread)
     found = inflate(tube, pressure, force, torque, accuracy=accuracy, derivatives=names)
-    for output in SHAPE:
+    for output in (*SHAPE, *EXTREMES):
         each = [found[f"d_{output}_d_{name}"] * spread[name] for name in names]
         bound = [found[f"d_{output}_d_{name}_error"] * spread[name] for name in names]
         variance = sum(one**2 for one in each)

@@ -54,15 +54,15 @@ def lock(
         faults.append(UNLOCKED)
     stations, accuracy = read_stations(tube, x, accuracy, faults)
     loads = {"force": 0.0, "torque": 0.0, "pressure": np.inf}
-    result = _differentiated(_solve(tube, loads, stations, accuracy), tube, names, loads, accuracy)
-    result = result.drop_vars(["limit_pressure", "limit_pressure_error", "limit_found", *LOADS])
+    result = _solve(tube, loads, stations, accuracy)
     for name in (f"{what}_{family}" for what in ("fiber_tension", "least_tension") for family in FAMILIES):
         # the kernel's locked state is that of the pressure c10
         for one in (name, f"{name}_error"):
             scaled = result.variables[one]  # to put in another would take longer than to solve the tube
             scaled.values = scaled.values / tube.material.c10
             scaled.attrs |= {"units": "N/Pa", "long_name": f"{scaled.attrs['long_name']} per pressure"}
-    return result
+    result = _differentiated(result, tube, names, loads, accuracy)
+    return result.drop_vars(["limit_pressure", "limit_pressure_error", "limit_found", *LOADS])
 
 
 def inflate(

@@ -2,11 +2,13 @@
 
 import numpy as np
 
+from ..description.families import told
 from . import grid
 from .along import Course
 from .cylinder import at_cylinder
 from .equilibrium import Hold
-from .nested import ROUNDING, solve
+from .extremes import EXTREMES
+from .nested import ROUNDING, Task, solve
 from .physical import PhysicalTube
 from .physics import Physics
 from .request import ANGLE, SHAPE, measures, sizes
@@ -37,8 +39,10 @@ class Asked:
         self.x = grid.first_places(self.segments[:1] if self.half else self.segments, radii, self.half)
         own = [name for name in parameters if name != held]
         self.seeds = own if unknown is None else [unknown, *own]
-        self.holding = None if unknown is None else Held(held, unknown, parameters, SHAPE, self.seeds, tied)
-        self.outputs = SHAPE if unknown is None else self.holding.outputs
+        self.names = (*SHAPE, *EXTREMES)
+        self.holding = None if unknown is None else Held(held, unknown, parameters, self.names, self.seeds, tied)
+        self.outputs = self.names if unknown is None else self.holding.outputs
+        self.first = len(self.outputs) - len(EXTREMES)  # so many outputs tell a state
 
     @property
     def is_physical(self):
@@ -70,7 +74,10 @@ class Asked:
             natural = measures(self.tube, loads)
             sizes = np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in seeds])
             kind = self.tube.is_thick, self.tube.threads
-            return differentiated(design, self.tube.energy, sizes, SHAPE, IN_VECTORS * self.accuracy, *kind, known)
+            found = differentiated(
+                design, self.tube.energy, sizes, self.names, IN_VECTORS * self.accuracy, *kind, known
+            )
+            return [np.array([*told(self.tube, dict(zip(self.names, rows))).values()]) for rows in found]
 
         if self.unknown is None:
             return under(loads, self.seeds)
@@ -99,7 +106,7 @@ class Asked:
 
         def made(seeds):
             outputs, there = at_cylinder(self._physics(loads, seeds), len(some))
-            return np.where(there, rows_of(outputs, SHAPE, len(seeds)), np.nan)
+            return _with_none(np.where(there, rows_of(outputs, SHAPE, len(seeds)), np.nan))
 
         if self.unknown is not None:
             value, slope = self.holding.at(made(self.seeds[:1]))
@@ -120,13 +127,14 @@ class Asked:
             unit = float(measures(self.tube, loads)[self.unknown])
             hold = Hold(self.held, self.unknown, target, unit, np.array([loads[self.unknown]]))
 
-        def finish(made, hold):
-            rows = rows_of(made, SHAPE, len(self.seeds))
+        def finish(made, doubts, hold):
+            rows = rows_of(made, self.names, len(self.seeds))
+            doubts = np.concatenate([0.0 * rows[: len(SHAPE)], doubts])
             if hold is not None:
-                rows, _ = self.holding.table(hold.load, rows, 0.0 * rows)
+                rows, doubts = self.holding.table(hold.load, rows, doubts)
             units = sizes(self.tube, loads, self.outputs, self.parameters, rows[:, 0, -1])
             rows = np.moveaxis(rows, -1, 0)
-            return rows, np.maximum(np.abs(rows[-1]), units)
+            return rows, np.maximum(np.abs(rows[-1]), units), doubts[..., -1]
 
         known = self._physics(loads, () if hold is None else self.seeds[:1])
         wanted = self._physics(loads, self.seeds)
@@ -134,7 +142,8 @@ class Asked:
         def shape(finer):
             return self.places(finer), stretches(finer)
 
-        return solve(known, wanted, shape, self.half, self.segments, hold, finish, SHARE * self.accuracy)
+        task = Task(known, wanted, self.half, self.segments, finish, SHARE * self.accuracy, self.first)
+        return solve(task, shape, hold)
 
     def _physics(self, loads, seeds):
         kind = PhysicalTube if self.is_physical else Physics
@@ -144,7 +153,7 @@ class Asked:
         """As :meth:`state`, of the undeformed tube, with bounds of 0."""
         wanted = self._physics(loads, self.seeds)
         made = at_rest(wanted, 0.5 * (self.x[1:] + self.x[:-1]), np.diff(self.x), self.half)
-        rows = rows_of(made, SHAPE, len(self.seeds))
+        rows = _with_none(rows_of(made, SHAPE, len(self.seeds)))
         found = rows, 0.0 * rows
         if self.unknown is not None:
             found = self.holding.table(np.array([loads[self.unknown]]), *found)
@@ -154,3 +163,10 @@ class Asked:
         """What outputs are measured by, under loads (n,): (outputs, n)."""
         natural = measures(self.tube, loads)
         return np.array([np.broadcast_to(natural[name], loads["pressure"].shape) for name in self.outputs])
+
+
+def _with_none(rows):
+    """Rows (outputs, ...) of the first outputs, behind them those of extremes, which are not known: places that are alike
+    are largest together.
+    """
+    return np.concatenate([rows, np.full((len(EXTREMES), *rows.shape[1:]), np.nan)])

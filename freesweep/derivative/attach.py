@@ -46,7 +46,7 @@ def attach(result, asked, loads, solve, target=None):
     near = np.array([np.ravel(result[f"{name}_error"].values)[todo] for name in asked.outputs])
     values, bounds = asked.cylinders(loads, target, known)
     units = asked.units(loads)
-    same = _are_same((values, bounds), known, near, units)
+    same = _are_same(asked.first, (values, bounds), known, near, units)
     values[..., ~same] = bounds[..., ~same] = np.nan
     left = np.flatnonzero(~same)
     if asked.is_alike and len(left) and is_worth_vectors(len(left)):
@@ -54,7 +54,7 @@ def attach(result, asked, loads, solve, target=None):
             {name: value[left] for name, value in loads.items()}, None if target is None else target[left],
             [np.ravel(one)[todo][left] for one in (result["mid_radius"].values, _is_limp(result))],
         )  # fmt: skip
-        done = _are_same(found, known[:, left], near[:, left], units[:, left])
+        done = _are_same(asked.first, found, known[:, left], near[:, left], units[:, left])
         values[..., left[done]], bounds[..., left[done]] = (array[..., done] for array in found)
         same[left[done]] = True
     shapes, lost = cache(lambda finer: shapes_of(asked, solve, finer)), 0
@@ -65,13 +65,12 @@ def attach(result, asked, loads, solve, target=None):
             found = asked.at_rest(own) if rest else asked.state(own, held, lambda finer, i=i: shapes(finer)[todo[i]])
             found = tuple(array[..., None] for array in found)
             here = slice(i, i + 1)
-            given = found, known[:, here], near[:, here], units[:, here]
+            given = asked.first, found, known[:, here], near[:, here], units[:, here]
             if not np.all(_are_same(*given, FRONTS if asked.is_buckled else SAME)):
                 if not (asked.tube.is_thick and asked.tube.varies and np.all(_are_same(*given, RULE))):
                     raise NotFound
-                off = np.max(
-                    np.abs(found[0][:, 0] - known[:, here]) / np.maximum(np.abs(known[:, here]), units[:, here])
-                )
+                was, unit = (array[: asked.first, here] for array in (known, units))
+                off = np.max(np.abs(found[0][: asked.first, 0] - was) / np.maximum(np.abs(was), unit))
                 found = found[0], found[1] + OF_RULE * off * np.abs(found[0])
         except NotFound:
             lost += 1
@@ -80,7 +79,11 @@ def attach(result, asked, loads, solve, target=None):
     if lost:
         warnings.warn(LOST.format(count=lost, all=len(todo)), stacklevel=4)
     bounds += SENSITIVITY * asked.error * np.abs(values)
-    return result.assign(dict(_variables(asked, values, bounds, todo, dims, shape)))
+    off = ~_fit((values, bounds), known, near, asked.units(loads))
+    off[: asked.first] = False
+    values[off.nonzero()[0], :, off.nonzero()[1]] = bounds[off.nonzero()[0], :, off.nonzero()[1]] = np.nan
+    units = {name: result[name].attrs["units"] for name in asked.outputs}
+    return result.assign(dict(_variables(asked, values, bounds, units, todo, dims, shape)))
 
 
 def is_worth_vectors(count):
@@ -101,21 +104,26 @@ def _at(loads, i):
     return {name: float(value[i]) for name, value in loads.items()}
 
 
-def _are_same(found, known, near, units, same=SAME):
-    """Which states (n,) have the outputs that are ``known``, about within both bounds, or ``same`` units: where one of a
+def _are_same(first, *given):
+    """Which states (n,) have those of the ``first`` outputs that are known."""
+    return np.all(_fit(*given)[:first], axis=0)
+
+
+def _fit(found, known, near, units, same=SAME):
+    """Which outputs (outputs, n) are those that are ``known``, about within both bounds, or ``same`` units: where one of a
     thousand is too small, that is no other state.
     """
     values, bounds = found[0][:, 0], found[1][:, 0]
-    return np.all((np.abs(values - known) <= BOUNDS * (near + bounds) + same * units) | np.isnan(known), axis=0)
+    return (np.abs(values - known) <= BOUNDS * (near + bounds) + same * units) | np.isnan(known)
 
 
-def _variables(asked, values, bounds, todo, dims, shape):
-    """(name, variable) of each derivative and its bound."""
+def _variables(asked, values, bounds, units, todo, dims, shape):
+    """(name, variable) of each derivative and its bound; ``units`` of outputs by name."""
     whole = np.full((2, *values.shape[:2], int(np.prod(shape))), np.nan)
     whole[0][..., todo], whole[1][..., todo] = values, bounds
     for i, output in enumerate(asked.outputs):
         for j, name in enumerate(asked.parameters):
-            one, about = f"d_{output}_d_{name}", attributes(output, name, asked.tube)
+            one, about = f"d_{output}_d_{name}", attributes(output, name, asked.tube, units[output])
             value, bound = (array[i, 1 + j].reshape(shape) for array in whole)
             yield one, (dims, value, about)
             yield f"{one}_error", (dims, bound, about | {"long_name": f"error bound of {one}"})

@@ -110,11 +110,11 @@ def select(which, first, other):
 
 
 def sqrt(x):
-    """Square root."""
+    """Square root; where it is 0, what is the root of stays 0."""
     if not isinstance(x, Dual):
         return np.sqrt(x)
     root = np.sqrt(x.value)
-    return _along(x, root, 0.5 / root)
+    return _along(x, root, 0.5 / np.where(root > 0.0, root, np.inf))
 
 
 def maximum(first, other):

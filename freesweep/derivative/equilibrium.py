@@ -8,16 +8,19 @@ Where an output is held, the load that holds it is one unknown more on each mesh
 under given loads leaves missing (:mod:`freesweep.solver.numerics.held`).
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import LinAlgError, solve_banded
 
 from .dual import Dual
+from .extremes import Piece, extremes, fields, unknown
 from .physics import BY_V, BY_Y, OWN
 
 ITERATIONS, HALVINGS = 40, 30
 SMALL, SETTLED = 1e-7, 1e-12  # relative steps: after the first one the next is rounding
+INSIDE = 1e-9  # of half a cell: the profiles at its end
 MIN_ROOM = 0.02  # of the room of any cell that a step must leave, as in the solver's
 
 
@@ -75,6 +78,8 @@ class Sums(NamedTuple):
     room: np.ndarray  # (cells,)
     gradient: np.ndarray  # (1 + parameters, nodes): J_y, and J_y by each parameter
     hessian: np.ndarray  # (3, nodes): as LAPACK takes the bands
+    left: np.ndarray  # (1 + parts, cells): what each cell gives to the node at its left, the flux through that
+    right: np.ndarray  # likewise
 
 
 def _full(number, count, cells):
@@ -122,7 +127,7 @@ def sums(physics, meshes, y) -> Sums:
     hessian[1] = meshes.to_nodes(_by_left(left, step), _by_right(right, step))
     hessian[2, meshes.left] = _by_left(right, step)
     own = [0, *range(1 + OWN, 1 + count)]
-    return Sums(np.broadcast_to(room, n), meshes.to_nodes(left[own], right[own]), hessian)
+    return Sums(np.broadcast_to(room, n), meshes.to_nodes(left[own], right[own]), hessian, left, right)
 
 
 def responses(found, meshes):
@@ -199,11 +204,84 @@ def equilibrium(physics, meshes, y, hold=None):
     raise NotFound
 
 
-def outputs(physics, meshes, y):
+def outputs(physics, meshes, y, ends, segments):
     """The outputs in SI units and degrees, dual numbers over the meshes with their derivatives by the parameters of
-    ``physics``; Raises :class:`NotFound`.
+    ``physics``, and the doubts of :func:`.extremes.extremes`: between ``ends`` all is smooth, where ``segments`` meet
+    profiles jump. Raises :class:`NotFound`.
     """
-    return _outputs(physics, meshes, y, *responses(sums(physics, meshes, y), meshes))
+    found = sums(physics, meshes, y)
+    moved, step = responses(found, meshes)
+    made = _outputs(physics, meshes, y, moved, step)
+    try:
+        with np.errstate(all="ignore"):
+            pieces = _pieces(physics, meshes, y, (found, moved, step), ends, segments)
+            along, doubts = extremes(physics, pieces, segments, 2.0 if meshes.free else 1.0)
+    except NotFound:  # where fibers settle at an end
+        along, doubts = unknown(len(physics.parameters), len(meshes.starts))
+    return made | along, doubts
+
+
+def _pieces(physics, meshes, y, answers, ends, segments):
+    """The :class:`.extremes.Piece` of each mesh between ``ends``, with what :func:`.extremes.fields` tells; those ends are
+    places of it, too, where ``segments`` meet. ``answers``: sums, how nodes move, and the last step.
+    """
+    found, moved, step = answers
+    stretch, slope, _ = _cells(physics, meshes, y)
+    count = OWN + len(physics.parameters)
+    seen = fields(physics, stretch, physics.place(stretch, slope, meshes.share), meshes.share)
+    rows = np.stack([_full(one, count, len(meshes.step)) for one in seen])
+    fluxes = np.stack([found.left, found.right])
+    rows = _carried(physics, meshes, np.concatenate([rows, fluxes]), moved, step)
+    cells, nodes, parts = [], [], []
+    for mesh in range(len(meshes.starts)):
+        x, first = meshes.x[meshes.nodes(mesh)], meshes.cells(mesh).start
+        at = [int(np.argmin(np.abs(x - end))) for end in ends]
+        for a, b in pairwise(at):
+            cells += [first + a, first + b - 1]
+            nodes += [meshes.starts[mesh] + a, meshes.starts[mesh] + b]
+            parts.append((mesh, slice(first + a, first + b), (x[a], x[b])))
+    cells, nodes = np.array(cells), np.array(nodes)
+    at_ends = _at_nodes(physics, meshes, y, (rows[-2:], moved, step), cells, nodes)
+    pieces = [[] for _ in meshes.starts]
+    for k, (mesh, own, (low, high)) in enumerate(parts):
+        stay = [end for end, place in ((0, low), (1, high)) if np.any(segments == place)]
+        told = np.insert(rows[:-2, :, own], [0, own.stop - own.start], at_ends[..., 2 * k : 2 * k + 2], axis=-1)
+        x = np.concatenate([[low], meshes.share[own], [high]])
+        beside = np.clip(np.arange(own.start - 1, own.stop + 1), own.start, own.stop - 1)
+        keep = slice(0 if 0 in stay else 1, None if 1 in stay else -1)
+        pieces[mesh].append(Piece(x[keep], told[..., keep], (low, high), beside[keep]))
+    return pieces
+
+
+def _at_nodes(physics, meshes, y, answers, cells, nodes):
+    """What :func:`.extremes.fields` tells of nodes, (fields, 1 + parameters, nodes), by the flux through them, which a cell
+    beside each tells: its first node, or its last one, in turn.
+    """
+    fluxes, moved, step = answers
+    none = np.zeros((OWN, len(nodes)))
+
+    def number(values):
+        return Dual(values[0], np.concatenate([none, values[1:]]))
+
+    flux = np.where(np.arange(len(nodes)) % 2 == 0, fluxes[0][:, cells], fluxes[1][:, cells])
+    all_moved = np.vstack([y + step, moved])[:, nodes]
+    share = meshes.x[nodes] + INSIDE * (meshes.share[cells] - meshes.x[nodes])
+    stretch = number(all_moved)
+    here, count = physics.in_cells(cells), OWN + len(physics.parameters)
+    seen = fields(here, stretch, here.at_flux(stretch, number(flux), share), share)
+    return np.stack([_full(one, count, len(nodes)) for one in seen])[:, [0, *range(1 + OWN, 1 + count)]]
+
+
+def _carried(physics, meshes, rows, moved, step):
+    """``rows`` (..., 1 + parts, cells) of cells, as nodes move with each parameter, after a ``step``: (..., 1 + parameters,
+    cells).
+    """
+    width = meshes.step * physics.length.value
+    all_moved = np.vstack([step, moved])
+    found = rows[:, [0, *range(1 + OWN, rows.shape[1])]]
+    found += _by_left(rows, width)[:, None] * all_moved[:, meshes.left]
+    found += _by_right(rows, width)[:, None] * all_moved[:, meshes.left + 1]
+    return found
 
 
 def _outputs(physics, meshes, y, moved, step):
@@ -214,16 +292,12 @@ def _outputs(physics, meshes, y, moved, step):
     width = meshes.step * physics.length.value
     stretch, slope, scale = _cells(physics, meshes, y)
     integrands = physics.integrands(stretch, slope, meshes.share)
-    own, all_moved = [0, *range(1 + OWN, 1 + count)], np.vstack([step, moved])
     rows = np.stack([_full(width * scale * q, count, n) for q in integrands])
-    totals = rows[:, own]  # (4, 1 + parameters, cells)
-    totals += _by_left(rows, width)[:, None] * all_moved[:, meshes.left]
-    totals += _by_right(rows, width)[:, None] * all_moved[:, meshes.left + 1]
-    totals = meshes.total(totals)
+    totals = meshes.total(_carried(physics, meshes, rows, moved, step))
 
     def number(values):
         return Dual(values[0], np.concatenate([np.zeros((OWN, values.shape[1])), values[1:]]))
 
-    middle = all_moved[:, meshes.middle]
+    middle = np.vstack([step, moved])[:, meshes.middle]
     middle[0] += y[meshes.middle]
     return physics.outputs([number(row) for row in totals], number(middle), meshes.free)

@@ -15,8 +15,8 @@ LEVELS = 4  # meshes, each with twice the cells of the one before, that are solv
 FINEST = 8  # doublings of the coarsest mesh's cells
 COARSEST, OF_WAVES = 7, 5  # as many, at most, of those that have no state; of a shape that needs many places
 FINER = 2  # times that the places of a shape are asked four times as densely
-SAFETY = 3.3  # as in the solver's bounds
-FAINT = 0.02  # likewise
+SAFETY, FAINT, SLOWEST = 3.3, 0.02, 0.75  # as in the solver's bounds
+ROUGH, LATER = 1e-6, 1  # accuracy of other outputs, for which so many meshes are added
 ROUNDING = 1e-11  # of a derivative's own unit: what nearly cancels in it
 ROUNDS, CAUTION = 8, 2.0  # of placing nodes where kinds of cells change; times what is left of their way
 FINER_FOR_PLACES, NEXT_TO_NONE = 2, 1e-12  # doublings of meshes that miss such a place by too much; a way of a node
@@ -78,7 +78,7 @@ def shrunk(physics, meshes, y):
 class Task(NamedTuple):
     """What is to be told of a state: ``known`` solves, ``wanted`` has all parameters; whether the last node is ``free``, as
     of half a tube, and where ``segments`` meet; ``finish`` makes tables of outputs (meshes, outputs, 1 + parameters), and
-    the unit of each number; and how exactly.
+    the unit of each number, and its doubts; how exactly; and how many outputs are to be told so exactly, which come first.
     """
 
     known: Physics
@@ -87,19 +87,18 @@ class Task(NamedTuple):
     segments: np.ndarray
     finish: Callable
     accuracy: float
+    first: int
 
 
-def solve(known, wanted, shape, free, segments, hold, finish, accuracy) -> Found:
-    """Outputs and derivatives of the state of which ``shape(finer)`` gives places and the stretches there, about: ``known``
-    solves, ``wanted`` has all parameters; ``finish`` makes tables of outputs (meshes, outputs, 1 + parameters), and the
-    unit of each number.
+def solve(task, shape, hold) -> Found:
+    """Outputs and derivatives of the state of which ``shape(finer)`` gives places and the stretches there, about.
 
     Where the kind of cell changes (:mod:`physical`) a node is put: on either side everything is smooth then. What is left of
     its distance from there, and by how much meshes miss that place, enters the bounds, as the results moved when it was
     first moved; where meshes miss it by too much, finer ones are taken.
     """
-    known, x, y, hold, least = on_first(known, shape, free, segments, hold)
-    task = Task(known, wanted, free, segments, finish, accuracy)
+    known, x, y, hold, least = on_first(task.known, shape, task.free, task.segments, hold)
+    task, segments, accuracy, first = task._replace(known=known), task.segments, task.accuracy, slice(task.first)
     kinks, before, slope, finest = known.kinks(segments), None, None, least + FINER_FOR_PLACES
     for made in range(ROUNDS):
         ends = np.union1d(segments, kinks)
@@ -112,9 +111,9 @@ def solve(known, wanted, shape, free, segments, hold, finish, accuracy) -> Found
                 values, shift = before
                 if slope is None:
                     slope = np.abs(found.values - values) / max(shift, NEXT_TO_NONE)
-                doubt, missed = CAUTION * left * slope, np.max(unsure) * slope
-                if made == ROUNDS - 1 or np.max(doubt / units) <= accuracy:
-                    if made == ROUNDS - 1 or least == finest or np.max(missed / units) <= accuracy:
+                doubt, missed = CAUTION * left * slope, np.where(slope > 0.0, np.max(unsure) * slope, 0.0)
+                if made == ROUNDS - 1 or np.max((doubt / units)[first]) <= accuracy:
+                    if made == ROUNDS - 1 or least == finest or np.max((missed / units)[first]) <= accuracy:
                         return Found(found.values, found.bounds + doubt + missed)
                     least += 1
             before = found.values, left
@@ -152,7 +151,7 @@ def on_nested(task, x, y, ends, hold, least):
     """Results on nested meshes with nodes at ``ends``, their units, and where kinds of cells change, and how unsure that is;
     the coarsest, doubled ``least`` times, is a finer one where that has no state.
     """
-    known, wanted, free, segments, finish, accuracy = task
+    known, wanted, free, segments, finish, accuracy, first = task
     shape = Shape(known, x, y, ends)
     nodes, edges = shape.graded(ends, free)
 
@@ -168,21 +167,34 @@ def on_nested(task, x, y, ends, hold, least):
         except NotFound:
             if coarsest == COARSEST:
                 raise
-    table, seen = [], []
+    table, seen, later = [], [], 0
     while True:
         if own is not None:
             wanted.bear(own.unknown, meshes.in_cells(own.load))
         wanted.begin(physics)
-        rows, units = finish(outputs(wanted, meshes, y), own)
+        rows, units, doubts = finish(*outputs(wanted, meshes, y, ends, segments), own)
         table += list(rows)
         seen += [physics.kinks(segments, meshes.cells(k)) for k in range(len(levels))]
-        values, bounds = extrapolate(table, units)
-        if np.max(bounds / units) <= accuracy or levels[-1] >= FINEST:
+        if not later:  # finer meshes are for the others only
+            values, bounds = extrapolate([rows[:first] for rows in table], units[:first])
+            met = np.max(bounds / units[:first]) <= accuracy
+        others = [
+            extrapolate([rows[k : k + 1] for rows in table], units[k : k + 1], True) for k in range(first, len(units))
+        ]
+        rough = max(np.max(about / units[k]) for k, (_, about) in enumerate(others, first))
+        if (met and (rough <= ROUGH or later == LATER)) or levels[-1] >= FINEST:
             break
+        later += met
         last = meshes.nodes(len(levels) - 1)
         levels = [levels[-1] + 1]
-        meshes, y, own = stand(physics, levels, Shape(physics, meshes.x[last], y[last], ends), own)
-    return Found(values, bounds), units, places_of(seen[-3:])
+        try:
+            meshes, y, own = stand(physics, levels, Shape(physics, meshes.x[last], y[last], ends), own)
+        except NotFound:
+            if not met:
+                raise
+            break
+    values, bounds = map(np.concatenate, zip((values, bounds), *others))
+    return Found(values, bounds + doubts), units, places_of(seen[-3:])
 
 
 def places_of(seen):
@@ -198,11 +210,16 @@ def places_of(seen):
     return found, SAFETY / 15.0 * np.abs(found - (4.0 * one - two) / 3.0)
 
 
-def extrapolate(table, units):
-    """Fourth-order values and bounds from the last four meshes."""
+def extrapolate(table, units, is_rough=False):
+    """Fourth-order values and bounds from the last four meshes; of ``is_rough`` results, whose differences may fall by less
+    than the order allows, or, once meshes are fine enough, by far more.
+    """
     a, b, c, d = table[-4:]
     first, second, third = (4.0 * b - a) / 3.0, (4.0 * c - b) / 3.0, (4.0 * d - c) / 3.0
-    estimate = np.maximum(np.abs(third - second) / 15.0, np.abs(second - first) / 225.0)
+    last, before = np.abs(third - second), np.abs(second - first)
+    fallen = np.minimum(last / (before + 1e-300), SLOWEST) if is_rough else 0.0
+    guard = np.minimum(before / 225.0, np.abs(c - b) / 12.0) if is_rough else before / 225.0
+    estimate = np.maximum(last * np.maximum(fallen / (1.0 - fallen), 1.0 / 15.0), guard)
     change = np.abs(d - c)
     share = np.max(estimate / (change + units * (FAINT * np.mean(change / units) + 1e-300)))
     bounds = np.maximum(SAFETY * estimate, share * change)

@@ -10,6 +10,7 @@ Newton's method solves that in all cells at once; a taut family whose multiplier
 its reach taut. One more step, in dual numbers, gives all first derivatives of the four; bonded fibers stay taut.
 """
 
+from copy import copy
 from functools import cache
 from typing import NamedTuple
 
@@ -51,7 +52,7 @@ def walls():
         """Of each cell: a body's own radius rounds what is no wall inside to next to none, here and there."""
         return (value_of(wall[1]) > 0.0) & (value_of(wall[1]) < 1.0)
 
-    changes = twin(body.as_tube), twin(body.of_partials), twin(body.of_integrals)
+    changes = tuple(map(twin, (body.as_tube, body.of_partials, body.of_integrals, body.of_multipliers)))
     narrowest = twin(wall.narrowest, lies_inside=lies_inside, select=select)
     return twin(wall.energy, points=points, needs_most=needs_most), narrowest, twin(physical.place), changes
 
@@ -120,7 +121,7 @@ def jacobian(y, T, s, four, tangents, taut, second):
 class PhysicalTube(Physics):
     """As :class:`Physics`, of tubes with a thick wall, loose fibers, or both."""
 
-    settled = None
+    settled, beyond = None, 0.0
 
     def settle(self, y, v, share):
         """Where each cell settles: numbers of the tube there, its slope, and the weight of its energy; the four, which
@@ -129,6 +130,7 @@ class PhysicalTube(Physics):
         given, load = self.properties(share)
         energy, narrowest, place, (as_tube, *_) = walls()
         (H, D, area), w, (gamma, rubber, wall, p, f, m, e) = as_tube(y, v, given, load)
+        f = f + self.beyond
         local, y, v = Local(y, p, f, m, H + D, H - D, gamma * gamma, area, rubber, wall), y.value, w.value
 
         def value(number):
@@ -216,7 +218,7 @@ class PhysicalTube(Physics):
     def local(self, y, v, share):
         """As of :class:`Physics`."""
         own, v, e, four, alpha, beta, low, given = self.settle(y, v, share)
-        energy, _, _, (_, of_partials, of_integrals) = walls()
+        energy, _, _, (_, of_partials, of_integrals, _) = walls()
         G_1, psi, n = four[0], four[1], len(share)
         W = energy(y, Dual(G_1), Dual(psi), own.area * e, own.rubber, own.wall) if e > 0.0 else [Dual(np.zeros(n))] * 10
         s = _root(G_1 + 1.0 - v * v)
@@ -243,11 +245,31 @@ class PhysicalTube(Physics):
         stored = _with(W[0], w[2], w[3], moved)
         room = np.minimum(G_1 - low, np.broadcast_to(tension.value, n))
         self.seen = of_integrals(given, (s, y * y * s, twist, stored, 0.0))[:4]
+        self.there = G, twist, (a, b), given
         return of_partials(given, (room, L_y, L_v, 0.0, 0.0, 0.0))[:3]
 
     def integrands(self, y, v, share):
         """As of :class:`Physics`."""
         return self.seen
+
+    def place(self, y, v, share):
+        """As of :class:`Physics`."""
+        G_1, twist, pulls, given = self.there
+        return G_1, twist, self.tensions(given, *walls()[-1][-1](given, 0.0, *pulls)[1:])
+
+    def at_flux(self, y, flux, share):
+        """As of :class:`Physics`: that of a uniform tube of the same resultant, which a stronger pull makes."""
+        given, load = self.properties(share)
+        _, _, (*_, p, f, _, _) = walls()[-1][0](y, 0.0, given, load)
+        T, own, level = p * y * y + f, flux, Dual(np.zeros(len(share)))
+        if self.tube.is_body:  # along whose meridian nothing rises
+            _, _, _, R, rise, _ = given
+            own, level = flux / (R * R * R), -(rise * y) / R
+        there = copy(self)
+        there.beyond = own * own / (T + sqrt(T * T + own * own))
+        there.settled = self.settled.at(share)
+        there.local(y, level, share)
+        return there.place(y, level, share)
 
     def begin(self, other):
         """As of :class:`Physics`."""

@@ -2,15 +2,16 @@
 degrees, so that no chain rule is left to do outside.
 """
 
+from copy import copy
 from functools import cache
 
 import numpy as np
 
 from ..description.elastomer import Yeoh
 from ..description.tube_model import FIBER_PLACES, fiber_place
-from ..scaling import OUTPUTS, output_scales, problem_columns, wall_volume_inside
+from ..scaling import ALONG, OUTPUTS, output_scales, problem_columns, wall_volume_inside
 from .along import lines_of
-from .dual import Dual, value_of
+from .dual import Dual, sqrt, value_of
 from .request import constants, place_of_fibers
 from .twins import twin
 
@@ -29,12 +30,24 @@ def kernels():
     return twin(lagrangian.density), twin(lagrangian.integrands), twin(cells.rise), twin(mesh.ease)
 
 
+@cache
+def membranes():
+    """The tube of a body's radius, its stretch and twist, its fibers' multipliers, these as the body has them, and all of
+    it where a flux is known.
+    """
+    from ..solver.physics import body, lagrangian, membrane
+
+    parts = body.as_tube, membrane.kinematics, membrane.fiber_multipliers, body.of_multipliers, lagrangian.at_flux
+    return tuple(map(twin, parts))
+
+
 def outputs_of(design, numbers, scales=None, inside=None) -> dict:
     """Outputs in SI units and degrees from dimensionless ones of half a tube, in the order of kernels: length, volume,
-    twist, energy, stretch in the middle. A body has ``scales`` and a volume of wall ``inside`` the fibers of its own.
+    twist, energy, stretch in the middle; and what is largest and least along it, if that is there. A body has ``scales``
+    and a volume of wall ``inside`` the fibers of its own.
     """
     scales = output_scales(design) | (scales or {})
-    made = {name: number * scales[name] for name, number in zip(OUTPUTS, numbers)}
+    made = {name: number * scales[name] for name, number in zip((*OUTPUTS, *ALONG), numbers)}
     return made | {"volume": made["volume"] - (wall_volume_inside(design) if inside is None else inside)}
 
 
@@ -74,6 +87,12 @@ class Physics:
     def bear(self, name, load):
         """Bear another ``load``, in SI units, in each cell."""
         self.design = self.design | {name: self.seed(name, load)}
+
+    def in_cells(self, some):
+        """The physics of some of the cells that it was asked of last."""
+        here = copy(self)
+        here.design = {name: number.take(some) for name, number in self.design.items()}
+        return here
 
     def columns(self, design):
         """Those of a dimensionless problem."""
@@ -119,6 +138,35 @@ class Physics:
     def integrands(self, y, v, share):
         """What the outputs integrate, in the cells of which :meth:`local` was asked last."""
         return kernels()[1](y, v, *self.properties(share))[:4]
+
+    def place(self, y, v, share):
+        """``(G - 1, twist rate, tensions of both lines [N])`` in the cells of which :meth:`local` was asked last; of a
+        locked shape tensions are per pressure.
+        """
+        as_tube, kinematics, multipliers, of_multipliers, _ = membranes()
+        given, load = self.properties(share)
+        cell, slope, own = as_tube(y, v, given, load)
+        psi, _, _, G_1, _, _ = kinematics(y, cell, own)
+        pulls = multipliers(y, sqrt(G_1 + 1.0 - slope * slope), cell, own)
+        return G_1, psi, self.tensions(given, *of_multipliers(given, 0.0, *pulls)[1:])
+
+    def at_flux(self, y, flux, share):
+        """As :meth:`place`, at any places where the flux T v/s is known."""
+        given, load = self.properties(share)
+        psi, G_1, *pulls = membranes()[-1](y, flux, given, load)
+        return G_1, psi, self.tensions(given, *pulls)
+
+    def tensions(self, cell, alpha, beta):
+        """Of both lines [N], all around the tube, from their multipliers."""
+        r, tangents = self.design["fiber_radius"], (cell[0] + cell[1], cell[0] - cell[1])
+        unit = 2.0 * np.pi * r * r * self.design["fiber_extension"]
+        unit = unit if self.is_locked else unit * self.design["c10"]
+        return [unit * pull * sqrt(t * t + 1.0) for pull, t in zip((alpha, beta), tangents)]
+
+    def surfaces(self, share):
+        """Undeformed radii of the wall's surfaces, and of the fibers [m]."""
+        design = self.design if self.course is None else self.design | self.course.at(share, self.seed)
+        return design["radius"], design["radius"] + design["wall"], design["fiber_radius"]
 
     def begin(self, other):
         """Take over from another one of the same state what helps to find it."""

@@ -9,6 +9,7 @@ from ..description.elastomer import Yeoh
 from ..description.families import FAMILIES, followed, given_by
 from ..description.given import described
 from ..description.tube_model import MODELS
+from ..scaling import PULLS, SLACK
 
 SHAPE = ("deformed_length", "rotation", "mid_radius", "volume", "strain_energy")
 DESIGN = ("alpha", "beta", "length", "radius", "wall", "fiber_extension")
@@ -71,9 +72,9 @@ def unit_of(name, tube) -> str:
     return PARAMETERS[of].units if of in PARAMETERS else VARIABLES[of].units
 
 
-def attributes(output, parameter, tube) -> dict:
-    """Attributes of ``d_<output>_d_<parameter>``."""
-    above, below = unit_of(output, tube), unit_of(parameter, tube)
+def attributes(output, parameter, tube, above) -> dict:
+    """Attributes of ``d_<output>_d_<parameter>``, of an output in the unit ``above``."""
+    below = unit_of(parameter, tube)
     below = f"({below})" if " " in below else below
     units = above if below == "1" else f"{above}/{below}"
     return {"units": units, "long_name": f"derivative of {output} with respect to {parameter}"}
@@ -90,7 +91,8 @@ def measures(tube, loads) -> dict:
     )
     natural = {
         "deformed_length": tube.length, "rotation": ANGLE, "mid_radius": r, "volume": area * tube.length,
-        "strain_energy": LITTLE * pressure * area * tube.length,
+        "strain_energy": LITTLE * pressure * area * tube.length, "outer_radius": r, "largest_stretch": 1.0,
+        **dict.fromkeys(PULLS, np.where(np.isfinite(loads["pressure"]), pressure, 1.0) * area), **dict.fromkeys(SLACK, 1.0),
         "pressure": pressure, "force": pressure * area, "torque": pressure * area * r,
         "alpha": ANGLE, "beta": ANGLE, "fiber_extension": 1.0, **dict.fromkeys(OF_BODIES, 1.0),
         **{name: c10 for name in constants(tube.material)},

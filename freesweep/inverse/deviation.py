@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 
 from ..derivative.dual import Dual
+from ..derivative.extremes import EXTREMES
 from ..derivative.physics import OWN
 from ..derivative.request import SHAPE, constants, parameters, place_of_fibers, unit_of
 from ..derivative.table import rows_of
@@ -39,7 +40,7 @@ def read_tolerances(given, template, faults) -> dict:
 
 def deviations(tubes, wishes, columns, tolerances) -> np.ndarray:
     """Standard deviations (tubes, wishes) of what is wished for; NaN where no derivative is known: of limit pressures and
-    stiffnesses, of the outer radius of what varies or hangs on loose fibers, and where there is no state. ``columns`` hold
+    stiffnesses, and where there is no state. ``columns`` hold
     the loads of each tube, by name.
     """
     found = np.full((len(tubes), len(wishes)), np.nan)
@@ -49,9 +50,8 @@ def deviations(tubes, wishes, columns, tolerances) -> np.ndarray:
             loads = {name: float(columns[name][i]) for name in LOADS}
             seen = {}
             for k, wish in enumerate(wishes):
-                outer = wish.output == "outer_radius" and (tube.varies or tube.is_loose)  # no closed form tells it
-                known = wish.output in (*SHAPE, *FOLLOWING, *HELD, *tube.design(), "pressure")
-                if wish.kind != "limit" and known and not outer:
+                known = wish.output in (*SHAPE, *EXTREMES, *FOLLOWING, *HELD, *tube.design(), "pressure")
+                if wish.kind != "limit" and known:
                     found[i, k] = _deviation(tube, wish, loads, tolerances, seen)
     return found
 
@@ -92,7 +92,7 @@ def _state(tube, state, loads, names):
     asked = [name for name in names if name in parameters(tube, WORKING[state.kind])]
     found = states_of(tube, state.kind, rest, [given["pressure"]], given, 0.0, accuracy=ACCURACY, derivatives=asked)
     made = {}
-    for output in (*SHAPE, state.kind):
+    for output in (*SHAPE, *EXTREMES, state.kind):
         if output in found.data_vars:
             parts = np.zeros((OWN + len(names), 1))
             for name in asked:

@@ -7,10 +7,12 @@ import numpy as np
 
 from ..derivative.cylinder import at_cylinder
 from ..derivative.dual import Dual
+from ..derivative.extremes import EXTREMES
 from ..derivative.physics import OWN, Physics
 from ..derivative.request import SHAPE
 from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
+from ..scaling import SLACK
 from .beside import Held, load_slopes
 from .freedom import LOADS
 from .outputs import FOLLOWING, derived
@@ -18,6 +20,7 @@ from .predict import state_of
 from .vectors import STRAIGHT, Kind, points_of
 from .wishes import HELD
 
+NAMES = (*SHAPE, *EXTREMES)
 ACCURACY = 1e-4  # of the slopes, in the unit box: nearly all are told a thousand times as closely
 STEP = 1e-4  # of the unit box, of central differences
 SAME = 1e-4  # relative: by how much a value may differ from the one that was predicted
@@ -32,8 +35,6 @@ def exact_slopes(space, wishes, u, choice, values, middles=None):
     slopes = np.full((count, len(wishes), free), np.nan)
     if not (space.is_alike and space.template.has_two_families) or count == 0 or free == 0:
         return slopes
-    # how wide the wall of a physical tube is, only its own sums along the depth tell
-    followed = FOLLOWING if space.is_source else tuple(name for name in FOLLOWING if name != "outer_radius")
     parts = np.zeros((free, OWN + free + 1, 1))  # along each that is free, and a load that holds something
     parts[np.arange(free), OWN + np.arange(free), 0] = space.high - space.low
     columns = space.columns(u, choice, [Dual(value, part) for value, part in zip(space.values(u).T, parts)])
@@ -44,7 +45,7 @@ def exact_slopes(space, wishes, u, choice, values, middles=None):
             slopes[:, k] = rows_of(columns, [wish.output], free + 1)[0, 1:-1].T
         elif wish.kind == "every":
             slopes[:, k] = 0.0
-        elif wish.output in (*SHAPE, *followed, *HELD) and wish.kind != "limit":
+        elif wish.output in (*NAMES, *FOLLOWING, *HELD) and wish.kind != "limit":
             states.setdefault(state_of(wish), []).append(k)
     jobs = [(state, own, some) for state, own in states.items() for some in _shares(values[:, own])]
 
@@ -80,8 +81,9 @@ def _state(space, state, outputs, columns, values, middles, some, free):
         design[state.kind] = Dual(values[:, 0], load)
     tube, sizes = space.template, _sizes(design, state, len(some), free)
 
-    known = None if middles is None else (middles, np.ones(len(middles), bool))
-    rows, _ = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, tube.is_thick, tube.threads, known)
+    limp = tube.is_loose or any(name in SLACK for name in outputs)  # only then ends of slack parts are looked for
+    known = None if middles is None else (middles, np.full(len(middles), limp))
+    rows, _ = differentiated(design, tube.energy, sizes, NAMES, ACCURACY, tube.is_thick, tube.threads, known)
     if held is not None:
         rows = _straight(tube, design, rows, free + 1) if space.is_source else rows
         target = (
@@ -89,12 +91,12 @@ def _state(space, state, outputs, columns, values, middles, some, free):
         )
         moved = np.zeros((free, 1)) if target is None or target.parts is None else target.parts[OWN:-1]
         wanted = 0.0 if target is None else target.value
-        own = rows[SHAPE.index(held)]
+        own = rows[NAMES.index(held)]
         same = np.abs(own[0] - wanted) <= SAME * np.maximum(np.abs(wanted), _least(held, design))
         found = np.where(same, (moved - own[1:-1]) / own[-1], np.nan)
         return np.repeat(found.T[:, None], len(outputs), axis=1)
     none = np.zeros((OWN, len(some)))
-    made = {name: Dual(row[0], np.concatenate([none, row[1:]])) for name, row in zip(SHAPE, rows)}
+    made = {name: Dual(row[0], np.concatenate([none, row[1:]])) for name, row in zip(NAMES, rows)}
     found = np.array([rows_of({"one": derived(name, made, design)}, ["one"], free + 1)[0, :-1] for name in outputs])
     same = np.abs(found[:, 0] - values.T) <= SAME * np.maximum(
         np.abs(values.T), [_least(name, design) for name in outputs]
@@ -140,7 +142,8 @@ def _straight(tube, design, rows, directions):
     """
     with np.errstate(all="ignore"):
         made, there = at_cylinder(Designs(tube, design, directions), rows.shape[-1])
-    return np.where(there, rows_of(made, SHAPE, directions), rows)
+    shape = np.where(there, rows_of(made, SHAPE, directions), rows[: len(SHAPE)])
+    return np.concatenate([shape, rows[len(SHAPE) :]])
 
 
 def _sizes(design, state, count, free):

@@ -3,25 +3,30 @@
 import numpy as np
 from numba import config
 
+from .along import places
 from .batch import OUTPUTS, kinds_of, walk_by_vectors
-from .problem import FORCE, MOONEY_RIVLIN, SOURCE, TORQUE, wall_columns
+from .problem import FORCE, INNER, MOONEY_RIVLIN, SOURCE, TORQUE, wall_columns
 
 FINENESS, SHARP = (1, 2, 4, 8, 16, 32), 1e-5  # pieces of parts; a bound that is taken where no more pieces are tried
+ONE = 1  # layer
 MENDED = 0.5  # of a bound: what twice as many pieces leave more of is no pieces' fault
+RESULTS = OUTPUTS + len(places.NUMBERS)
 SURE = 1e-8  # accuracy of states that are not known
 
 
-def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None):
-    """Values and bounds (n, 1 + directions, 5) of the outputs of ``problems`` (n, columns), each under one of the
-    ``pressures``, and of their derivatives along directions: ``changes`` (n, directions, columns + 1) are what the problem's
-    columns and the pressure change by.
+def differentiate(problems, pressures, changes, accuracy, middles=None, limp=None, surface=None):
+    """Values and bounds (n, 1 + directions, RESULTS) of the outputs and, behind them, the numbers of :mod:`.along.places`,
+    of ``problems`` (n, columns), each under one of the ``pressures``, and of their derivatives along directions: ``changes``
+    (n, directions, columns + 1) are what the problem's columns and the pressure change by.
 
     NaN where vectors have no answer. ``accuracy`` is that of derivatives, relative or by the size of the output.
     ``middles`` (n,): stretches of the middle, of states that are known; ``limp`` (n,): where some family of these goes slack
-    along a part. Of others that state is taken that vectors find.
+    along a part. Of others that state is taken that vectors find. ``surface``: squared radii of the
+    walls' inner surfaces (n,), which membranes' columns do not tell, and what they change by (n, directions); else those are
+    the fibers'.
     """
     count, directions = changes.shape[:2]
-    values, bounds = (np.full((count, directions + 1, OUTPUTS), np.nan) for _ in range(2))
+    values, bounds = (np.full((count, directions + 1, RESULTS), np.nan) for _ in range(2))
     if count == 0 or config.DISABLE_JIT:
         return values, bounds
     if middles is None:
@@ -31,12 +36,17 @@ def differentiate(problems, pressures, changes, accuracy, middles=None, limp=Non
     limp = np.ones(count, bool) if limp is None else limp
     if wall_columns(problems) == SOURCE:
         problems, changes = as_physical(problems), as_physical(changes, problems.shape[1])
+    inner = np.where(problems[:, INNER] > 0.0, problems[:, INNER], 1.0)
+    if surface is not None:
+        inner, changes = np.ascontiguousarray(surface[0]), changes.copy()
+        changes[..., INNER] = surface[1]
     loaded = (pressures > 0.0) | (problems[:, FORCE] != 0.0) | (problems[:, TORQUE] != 0.0)
     left = np.flatnonzero(np.isfinite(middles) & loaded)
     before = np.full(len(left), np.inf)
     for pieces in FINENESS:
         enough = accuracy if pieces < FINENESS[-1] else max(accuracy, SHARP)
-        found = along(problems[left], pressures[left], middles[left], limp[left], changes[left], pieces)
+        known = middles[left], inner[left], limp[left]
+        found = along(problems[left], pressures[left], known, changes[left], pieces)
         met = (found[2] <= enough) | ((found[2] > MENDED * before) & (found[2] <= SHARP))
         values[left[met]], bounds[left[met]] = found[0][met], found[1][met]
         left, before = left[~met], found[2][~met]
@@ -50,33 +60,35 @@ def as_physical(columns, at=None):
     of a problem come behind these, too.
     """
     at = columns.shape[-1] if at is None else at
-    return np.ascontiguousarray(np.insert(columns, [at, at], 0.0, axis=-1))
+    none = np.zeros((*columns.shape[:-1], 2))
+    return np.concatenate([columns[..., :at], none, columns[..., at:]], axis=-1)
 
 
-def along(problems, pressures, middles, limp, changes, pieces):
-    """Values and bounds as of :func:`differentiate`, of physical ``problems``, and the largest of these, scaled (n,); each
-    part of a tube is summed in so many ``pieces``.
+def along(problems, pressures, known, changes, pieces):
+    """Values and bounds as of :func:`differentiate`, of physical ``problems`` of which middles, inner surfaces, and which
+    are limp, are ``known``, and the largest of these, scaled (n,); each part of a tube is summed in so many ``pieces``.
     """
     from .lanes.chain import chain
 
-    told, doubts = answers(problems, pressures, middles, limp, pieces)
-    shape = len(problems), changes.shape[1] + 1, OUTPUTS
+    told, doubts = answers(problems, pressures, *known, pieces)
+    shape = len(problems), changes.shape[1] + 1, RESULTS
     values, bounds, missed = np.empty(shape), np.empty(shape), np.empty(len(problems))
     chain(problems, pressures, changes, told, doubts, values, bounds, missed)
     return values, bounds, missed
 
 
-def answers(problems, pressures, middles, limp, pieces):
-    """Values and bounds (n, 5, 1 + numbers + 1) of :func:`.lanes.responses.differentiate_lanes`."""
+def answers(problems, pressures, middles, inner, limp, pieces):
+    """Values and bounds (n, 11, 1 + numbers + 1) of :func:`.lanes.responses.differentiate_lanes`."""
     from .lanes import second
     from .lanes.responses import differentiate_lanes
     from .lanes.told import TOLD
 
-    told = np.zeros((2, len(problems), OUTPUTS, TOLD))
+    told, known = np.zeros((2, len(problems), RESULTS, TOLD)), np.array([middles, inner])
     order = np.lexsort((middles, limp))  # what shares a vector should need much the same work
     for _, _, (constants, layers), some in kinds_of(problems):
         absent = (second.SECOND, second.THIRD) if constants == MOONEY_RIVLIN else ()
+        absent += (second.INNER,) if layers == ONE else ()  # a membrane has no inside
         used = np.array([k for k in range(second.NUMBERS) if k not in absent])
-        given = problems, pressures, middles, limp, order[some[order]], constants, layers
+        given = problems, pressures, known, limp, order[some[order]], constants, layers
         differentiate_lanes(*given, used, pieces, told)
     return told[0], told[1]

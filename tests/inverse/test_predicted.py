@@ -187,6 +187,29 @@ def test_candidates_that_do_it_are_made_sure_of_on_their_own_way(monkeypatch):
     assert found.attrs["summary"].startswith("none of the designs that were looked at does it")
 
 
+ALONG = ("outer_radius", "largest_stretch", "least_tension_alpha", "least_tension_beta", "slack_alpha", "slack_beta")
+
+
+@pytest.mark.parametrize("model", ["source", "physical"])
+def test_slopes_of_what_is_largest_along_a_tube_are_exact(model):
+    """Differences tell the same, as exactly as they can."""
+    tube = fs.Actuator(**MORE, alpha=40, beta=5, model=model)  # a family is slack along a part, or would have to push
+    space = freedom.read(tube, {"beta": (3, 8), "wall": (1e-3, 1.5e-3)}, [])
+    wishes = [wish for name in ALONG for wish in fs.Goal(name, 0.1, pressure=5e4).wishes([])]
+    problem, u, choice = (
+        misfit.make(space, wishes, []),
+        np.random.default_rng(0).uniform(0.2, 0.8, size=(4, 2)),
+        np.zeros(4, int),
+    )
+    found, _ = problem.at(u, choice)
+    slopes = exact_slopes(space, wishes, u, choice, found.values, found.middles)
+    assert np.all(np.isfinite(slopes))
+    differences = problem._differences(wishes, u, choice, found)
+    for k, name in enumerate(ALONG):
+        size = np.max(np.abs(slopes[:, k])) + 1e-3 * np.max(np.abs(found.values[:, k])) + 1e-9
+        assert slopes[:, k] == pytest.approx(differences[:, k], rel=2e-3, abs=2e-3 * size), name
+
+
 # angles apart by five degrees, and swollen four and six times: no quick way from rest leads vectors there
 SWOLLEN = [
     ({"alpha": 77.84364, "beta": 72.74, "length": 0.2388795, "radius": 0.01135674, "wall": 3.873622e-4}, 105e3, "volume"),

@@ -7,6 +7,7 @@ import pytest
 
 import freesweep as fs
 from freesweep.derivative import asked, attach
+from freesweep.derivative.extremes import EXTREMES
 
 RUBBER = fs.MooneyRivlin(c10=0.11e6, c01=0.06e6)
 TUBE = {"alpha": 30, "beta": -50, "length": 0.12, "radius": 4.76e-3, "wall": 1.59e-3, "material": RUBBER}
@@ -99,6 +100,7 @@ def judge(way, state, names):
     for name in names:
         ending = f"_d_{name}"
         outputs = [one[2 : -len(ending)] for one in found.data_vars if one.startswith("d_") and one.endswith(ending)]
+        outputs = [one for one in outputs if one not in EXTREMES]  # of which the solver tells less
         assert len(outputs) == 5
         for output, difference in zip(outputs, differences(way, state, name, outputs)):
             exact, bound = float(found[f"d_{output}_d_{name}"]), float(found[f"d_{output}_d_{name}_error"])
@@ -122,7 +124,7 @@ def test_vectors_tell_what_one_state_at_a_time_tells(way, monkeypatch):
         monkeypatch.undo()
     quick, slow = found
     derivatives = [name for name in quick if name.startswith("d_") and not name.endswith("_error")]
-    assert len(derivatives) == 5 * len(names)
+    assert len(derivatives) == 11 * len(names)
     for name in derivatives:
         assert np.all(np.abs(quick[name] - slow[name]) <= quick[f"{name}_error"] + slow[f"{name}_error"]), name
         assert np.all(np.isfinite(quick[name]))
@@ -141,7 +143,7 @@ def test_vectors_tell_of_physical_tubes_what_one_state_at_a_time_tells(way, monk
         monkeypatch.undo()
     quick, slow = found
     derivatives = [name for name in quick if name.startswith("d_") and not name.endswith("_error")]
-    assert len(derivatives) == 5 * (8 if way == "lock" else 11)
+    assert len(derivatives) == 11 * (8 if way == "lock" else 11)
     for name in derivatives:
         assert np.all(np.abs(quick[name] - slow[name]) <= quick[f"{name}_error"] + slow[f"{name}_error"]), name
         assert np.all(np.isfinite(quick[name]))
@@ -409,8 +411,11 @@ def test_a_tube_that_is_held_straight_has_derivatives_in_closed_form(pressure, w
     monkeypatch.setattr(asked, "UNSTRAINED", -1.0)
     other = solved("blocked_torque", state, derivatives="all")
     names = [name for name in found.data_vars if name.startswith("d_") and not name.endswith("_error")]
-    assert len(names) == 5 * 11
+    assert len(names) == 11 * 11
     for name in names:
+        if any(output in name for output in EXTREMES):  # all along as large
+            assert np.isnan(float(found[name]))
+            continue
         exact, bound = float(other[name]), float(other[f"{name}_error"]) + float(found[f"{name}_error"])
         assert float(found[name]) == pytest.approx(exact, abs=bound, rel=0.0)
 

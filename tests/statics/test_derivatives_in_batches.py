@@ -19,6 +19,7 @@ KINDS = (
     "membrane bonded loads", "thick bonded loads",
 )  # fmt: skip
 COUNT, ACCURACY, STEP, SCALES, PARTS = 150, 1e-10, 1.2e-3, (1.0, 0.1, 0.01), (0.25, 0.5, 1.0)
+OF_LAYERS = 4  # numbers that any tube has
 OF_BOUNDS, OF_CORNERS, CLOSE, TELLING = 6.0, 40.0, 1e-6, 1e-5  # as in the campaign of single states
 
 
@@ -66,15 +67,18 @@ def sizes_of(column, problems, pressures):
 
 
 def solved(problems, pressures):
-    """Values and bounds (n, OUTPUTS), NaN where vectors have none; and where a family goes slack along a part."""
+    """Values and bounds (n, outputs and what :mod:`freesweep.solver.along.places` tells), NaN where vectors have none; and
+    where a family goes slack along a part. A membrane's surfaces are not those of its one layer.
+    """
     found = walk_by_vectors(problems, np.arange(len(pressures) + 1), pressures, ACCURACY)
     there, shares = (found.status == 0)[:, None], found.values[:, OUTPUTS : OUTPUTS + 2]
-    own = (np.where(there, array[:, :OUTPUTS], np.nan) for array in (found.values, found.bounds))
+    most = found.values.shape[1] if problems.shape[1] > INNER and problems[0, INNER] > 0.0 else OUTPUTS + OF_LAYERS
+    own = (np.where(there, array[:, :most], np.nan) for array in (found.values, found.bounds))
     return *own, np.any((shares > 0.0) & (shares < 1.0), axis=1)
 
 
 def difference(column, problems, pressures, here, bounds):
-    """Differences along a column (n, OUTPUTS), and by how much they may err."""
+    """Differences along a column (n, outputs), and by how much they may err."""
     best, doubt, size = np.full(here.shape, np.nan), np.full(here.shape, np.inf), sizes_of(column, problems, pressures)
     for scale in SCALES:
         h, found, worst = STEP * scale * size * (0.3 if column == GAMMA else 1.0), {}, bounds
@@ -107,13 +111,15 @@ def test_derivatives_of_batches_are_what_differences_tell(kind):
     middles = np.ascontiguousarray(here[:, OUTPUTS - 1])
     values, bounds = differentiate(problems, pressures, changes, 1e-7, middles, limp)
     assert np.mean(np.isfinite(values[:, 0, 0])) > 0.98
+    there = np.isfinite(values[:, 0, 0])
+    assert np.mean(np.isfinite(values[there][:, :, : here.shape[1]])) > 0.98
     compared = telling = 0
     for k, column in enumerate(columns):
         told, doubt, least = difference(column, problems, pressures, here, near)
-        exact, bound = values[:, 1 + k], bounds[:, 1 + k]
+        exact, bound = (array[:, 1 + k, : told.shape[1]] for array in (values, bounds))
         judged = np.isfinite(told) & np.isfinite(exact)
-        compared += np.sum(judged)
-        telling += np.sum(judged & (doubt <= TELLING * np.maximum(np.abs(told), least)))
+        compared += np.sum(judged[:, :OUTPUTS])
+        telling += np.sum((judged & (doubt <= TELLING * np.maximum(np.abs(told), least)))[:, :OUTPUTS])
         wrong = judged & ~(np.abs(exact - told) <= np.maximum(CLOSE * np.abs(exact), bound) + doubt)
         assert not np.any(wrong), (column, np.argwhere(wrong))
     print(f"{kind}: {len(problems)} states, {compared} compared, {compared - telling} of them say nothing")

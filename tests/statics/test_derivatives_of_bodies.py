@@ -155,7 +155,8 @@ def judge(way, state, monkeypatch, names="all"):
             exact, bound = (found[f"d_{output}_d_{name}{end}"].item() for end in ("", "_error"))
             size = max(abs(exact), 1e-4 * abs(found[output].item()) / h)
             assert abs(exact - told) <= max(close * size, bound), (output, name)
-            assert bound <= 1e-5 * size, (output, name)
+            unchanged = exact == 0.0 and found[output].item() in (0.0, 1.0)  # a share, or a tension that is none
+            assert bound <= 1e-5 * size or unchanged, (output, name)
     return found
 
 

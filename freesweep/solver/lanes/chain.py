@@ -6,6 +6,7 @@ from ...jit import entry_point
 from ..problem import AREA, FORCE, GAMMA, INNER, LENGTH, RATIO, SECOND, THIRD, TORQUE, D, H
 from . import second
 from .told import OUTPUTS, TOLD
+from .told_extremes import RESULTS
 
 NONE = 1e-13  # of what an output is measured by: what stands for 0, of two families that cancel, too
 LITTLE, TURN = 1e-2, 0.5  # of the work of the loads, and of half a tube: what energy and twist are measured by at least
@@ -13,11 +14,11 @@ LITTLE, TURN = 1e-2, 0.5  # of the work of the loads, and of half a tube: what e
 
 @entry_point
 def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
-    """Turn what is ``told`` of rows (n, OUTPUTS, TOLD), and the ``doubts`` about it, to ``values`` and ``bounds`` (n, 1 +
-    directions, OUTPUTS) along directions: ``changes`` (n, directions, columns + 1) of the problem's columns and the
+    """Turn what is ``told`` of rows (n, RESULTS, TOLD), and the ``doubts`` about it, to ``values`` and ``bounds`` (n, 1 +
+    directions, RESULTS) along directions: ``changes`` (n, directions, columns + 1) of the problem's columns and the
     pressure. ``missed`` (n,): the largest bound, scaled as outputs are, or by what it belongs to.
     """
-    by, size, last, there = np.zeros(TOLD), np.zeros(OUTPUTS), problems.shape[1], np.zeros(TOLD, np.int64)
+    by, size, last, there = np.zeros(TOLD), np.ones(RESULTS), problems.shape[1], np.zeros(TOLD, np.int64)
     for row in range(len(problems)):
         one, largest = problems[row], 0.0
         pressure = 1.0 if pressures[row] == np.inf else pressures[row]
@@ -45,7 +46,7 @@ def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
                 if by[j] != 0.0:
                     there[count] = j
                     count += 1
-            for i in range(OUTPUTS):
+            for i in range(RESULTS):
                 value, bound = 0.0, NONE * size[i]
                 for n in range(count):
                     j = there[n]
@@ -53,5 +54,5 @@ def chain(problems, pressures, changes, told, doubts, values, bounds, missed):
                     bound += abs(by[j]) * doubts[row, i, j]
                 values[row, k, i], bounds[row, k, i] = value, bound
                 part = bound / max(size[i], abs(value))
-                largest = part if not part <= largest else largest
+                largest = part if i < OUTPUTS and not part <= largest else largest
         missed[row] = largest

@@ -20,9 +20,11 @@ import numpy as np
 
 from ...jit import kernel
 from ..either import select, some
+from .moved_extremes import FIELDS, SEEN
 from .moved_middle import DEPTH, LOADS, MIDDLE, OF_BEND, OF_LEVEL, OF_LOADS, OF_RISE, OF_Y, OWN
 from .pack import aligned
 from .second import BY_K, BY_T, NUMBERS, ROWS, by_numbers, settled_by
+from .slack_ends import MOST
 from .vector import get, put, spread
 
 COUNT, LAST_ONES = 20, 2  # Gauss' places of a part, which never lie on an end; of Legendre's coefficients
@@ -41,19 +43,29 @@ TINY = 1e-140
 
 class Sums(NamedTuple):
     """Scratch: ``rows`` (NUMBERS, ROWS, WIDTH) of a place, those of the ``middle`` (NUMBERS + 2, MIDDLE, WIDTH), and what is
-    ``summed`` (NUMBERS + 2, SUMS, WIDTH), of the numbers ``used``.
+    ``summed`` (NUMBERS + 2, SUMS, WIDTH), of the numbers ``used``; what is ``seen`` of fields (fields, SEEN, WIDTH); for
+    both families the length of parts that are ``odd`` (2, NUMBERS + 2, WIDTH), which are that (2, MOST + 2, WIDTH), and what
+    was summed ``before`` a part (NUMBERS + 2, WIDTH).
     """
 
     used: np.ndarray
     rows: np.ndarray
     middle: np.ndarray
     summed: np.ndarray
+    seen: np.ndarray
+    odd: np.ndarray
+    is_odd: np.ndarray
+    before: np.ndarray
 
 
 @kernel
 def make_sums(used):
     """Scratch of a vector."""
-    return Sums(used, aligned(NUMBERS, ROWS), aligned(NUMBERS + 2, MIDDLE), aligned(NUMBERS + 2, SUMS))
+    all_of_them = NUMBERS + 2
+    return Sums(
+        used, aligned(NUMBERS, ROWS), aligned(all_of_them, MIDDLE), aligned(all_of_them, SUMS), aligned(FIELDS, SEEN),
+        aligned(2, all_of_them), aligned(2, MOST + 2), aligned(1, all_of_them)[0],
+    )  # fmt: skip
 
 
 class Way(NamedTuple):

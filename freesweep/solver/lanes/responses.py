@@ -20,12 +20,17 @@ from ..problem import PHYSICAL
 from . import slack_ends
 from .meridian import DEEPEST, EVEN, LEAST_EVEN, Middle, deep, fallen, handed_on, look_down, middle_at
 from .moved import COUNT, PLACES, SUM, clear, close, make_sums, move_place, way_of
+from .moved_extremes import begin, see
 from .moved_middle import DEPTH, OWN, move_middle
+from .moved_slack import begin_part, begin_parts, end_part, tell_slack
 from .pack import COLUMNS, LENGTH, PRESSURE, aligned, enter, loads, lock
 from .quadrature import look_along
+from .rule import LAST
+from .rule import PLACES as RULE
 from .second import place_at
-from .sums import NARROW, find_ends, make_room
-from .told import LEFT, OUTPUTS, TOLD, tell
+from .sums import ALPHA, KIND, NARROW, along, find_ends, graded, make_room
+from .told import LEFT, TOLD, tell
+from .told_extremes import RESULTS, tell_extremes
 from .vector import WIDTH, bits, get, isnt, mask_of, put, select, some, spread
 
 PASSES = 6  # to a middle whose half has its length
@@ -64,30 +69,51 @@ def down(share, left, width, mid):
 
 
 @kernel
-def over_parts(parts, pieces, edges, mid, cell, load, own, scratch):
-    """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`.
-    Returns the lanes in which each part is of one kind.
+def look_for_ends(pieces, mid, cell, load, room):
+    """Bracket where families that may push would begin to, or stop it, to the room's ``ends``, along so many ``pieces``."""
+    near = nothing_yet(spread(0.0))
+    for lane in range(WIDTH):
+        room.counts[lane] = 0
+    for i in range(pieces):
+        left, right = graded(i, pieces), graded(i + 1, pieces)
+        near, _ = along(spread(left), spread(right), mid, cell, load, near, False, room.rows, room.scratch)
+        for family in range(2):
+            slack_ends.bracket(
+                left, right - left, RULE, room.rows[ALPHA + family], family, LAST, room.rows[KIND:], room.ends, room.counts,
+                room.starts,
+            )  # fmt: skip
+
+
+@kernel
+def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scratch):
+    """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`; by how much
+    families pull ``in_middle``. Returns the lanes in which each part is of one kind.
     """
-    valid, near = mask_of(-1), nothing_yet(spread(0.0))
+    valid, near, before = mask_of(-1), nothing_yet(spread(0.0)), spread(1.0)
     clear(own)
+    begin(own.seen)
+    begin_parts(own)
     for j in range(parts):
+        begin_part(own)
         first, width = deep(get(edges, j), mid.depth)[0], deep(get(edges, j + 1), mid.depth)[0]
         width = (width - first) / pieces
-        within = width > NARROW * mid.depth
+        within, kind, pull = width > NARROW * mid.depth, spread(-1.0), (spread(0.0), spread(0.0))
         for i in range(pieces):
-            kind = spread(-1.0)
             for k in range(COUNT):
                 depth, steep = down(PLACES[k], first + i * width, width, mid)
                 here = look_down(depth, steep, mid, cell, load, near, scratch)
                 at = here.at
                 near = handed_on(here.y, at, near, load.wall)
                 if k == 0:
-                    kind = at.kind
+                    kind, pull = at.kind, slack_ends.pulls(at, load)
                 valid = valid & (((at.room > 0.0) & (at.kind == kind)) | isnt(within))
                 place = place_at(here.y, here.beyond, at, cell, load)
                 way = way_of(k, within, depth, here.z, here.per_share, place, load, mid)
                 move_place(way, place, at, cell, load, mid, own)
+                see(here.y, before, at, inner, cell, load, own.seen)
+                before = here.y
             close(own)
+        end_part(j, within, pull, in_middle, own)
     return valid
 
 
@@ -110,7 +136,7 @@ def met_by(mid, far, slope, place, load, half, own, scratch):
 
 
 @kernel
-def seat(group, count, order, problems, pressures, middles, limp, columns, start):
+def seat(group, count, order, problems, pressures, known, limp, columns, start):
     """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too. Returns
     whether some family of one goes slack somewhere, and not everywhere.
     """
@@ -118,7 +144,7 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
     for lane in range(WIDTH):
         row = order[group + min(lane, count - 1)]
         enter(lane, problems[row], columns)
-        start[0, lane] = middles[row]
+        start[0, lane], start[1, lane] = known[0, row], known[1, row]
         ends = ends or limp[row]
         if pressures[row] == np.inf:
             lock(lane, columns)
@@ -128,46 +154,54 @@ def seat(group, count, order, problems, pressures, middles, limp, columns, start
 
 
 @entry_point
-def differentiate_lanes(problems, pressures, middles, limp, order, constants, layers, used, pieces, told):
-    """Values and bounds, ``told`` (2, rows, OUTPUTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
+def differentiate_lanes(problems, pressures, known, limp, order, constants, layers, used, pieces, told):
+    """Values and bounds, ``told`` (2, rows, RESULTS, TOLD), of the rows in the given ``order``, WIDTH at a time: of the
     outputs, of their derivatives by the numbers of :mod:`second`, and by the length of the half. Values are NaN where
     vectors cannot.
 
-    Row i is a physical problem under ``pressures[i]``, the stretch of whose middle is ``middles[i]``, about; ``limp`` tells
-    where some family goes slack along a part of it. ``used`` are the numbers that there are; others are told nothing.
-    Other arguments as of :func:`.free.solve_physical`.
+    Row i is a physical problem under ``pressures[i]``, of which are ``known`` (2, rows) the stretch of the
+    middle, about, and the squared radius of the wall's inner surface; ``limp`` tells where some family goes slack along a
+    part. ``used`` are the numbers that there are; others are told nothing. Other arguments as of
+    :func:`.free.solve_physical`.
     """
-    room, own, small, out = make_room(), make_sums(used), aligned(2, COLUMNS), aligned(2, OUTPUTS * TOLD)
+    room, own, small, out = make_room(), make_sums(used), aligned(2, COLUMNS), aligned(2, RESULTS * TOLD)
     columns, start, scratch, edges = small[0], small[1], room.scratch, room.edges
     for group in range(0, len(order), WIDTH):
         seats = min(WIDTH, len(order) - group)
-        searched = seat(group, seats, order, problems, pressures, middles, limp, columns, start)
+        searched = seat(group, seats, order, problems, pressures, known, limp, columns, start)
         cell, _, load = loads(columns, constants, PHYSICAL, layers)
-        y, half = get(start, 0), get(columns, LENGTH)
+        y, inner, half = get(start, 0), get(start, 1), get(columns, LENGTH)
         active, met = mask_of((1 << seats) - 1), mask_of(0)
-        searched = searched and may_go_slack(load.wall)
+        is_loose = may_go_slack(load.wall)
         for step in range(PASSES):
             (mid, far), parts, unsure = seated(y, cell, load, half, scratch), 1, spread(0.0)
             put(edges, 0, 0.0)
             put(edges, 1, 1.0)
             if searched:
-                _, seen, valid = look_along(pieces, mid, cell, load, room)
-                active = active & valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
+                if is_loose:
+                    _, seen, valid = look_along(pieces, mid, cell, load, room)
+                    active = active & valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
+                else:
+                    look_for_ends(pieces, mid, cell, load, room)
                 parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, edges, scratch)
-                active = active & (unsure < slack_ends.ENOUGH)
+                active = active & ((unsure < slack_ends.ENOUGH) | mask_of(0 if is_loose else -1))
             at = lagrangian.at_level(mid.y, mid.level, cell, load, nothing_yet(spread(0.0)))
             place = place_at(mid.y, spread(0.0), at, cell, load)
+            pull = slack_ends.pulls(at, load)
             slope = move_middle(mid, place, at, cell, load, half, own)
-            active = active & over_parts(parts, pieces, edges, mid, cell, load, own, scratch)
+            active = active & over_parts(parts, pieces, edges, mid, pull, inner, cell, load, own, scratch)
             better, off = met_by(mid, far, slope, place, load, half, own, scratch)
             met = active & (off < ALMOST)
             if step + 1 == PASSES or not some(active & (off > ENOUGH)):
-                tell(mid, far, off, unsure > 0.0, half, own, out)
+                loose = (unsure > 0.0) & mask_of(-1 if is_loose else 0)
+                doubts = tell(mid, far, off, loose, half, own, out)
+                tell_extremes(mid, at, doubts, inner, cell, load, own, out)
+                tell_slack(parts, room, mid, pull, doubts, cell, load, half, own, out)
                 break
             y = select(off > ENOUGH, better, y)
         for lane in range(seats):
             row = order[group + lane]
-            for i in range(OUTPUTS):
+            for i in range(RESULTS):
                 for j in range(TOLD):
                     k = TOLD * i + j
                     told[0, row, i, j] = out[0, k, lane] if (bits(met) >> lane) & 1 else np.nan

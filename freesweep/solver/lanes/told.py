@@ -31,7 +31,8 @@ CLOSE = 1e-10  # of the strain in the middle, that may be wrong
 def tell(mid, far, off, loose, half, own, out):
     """Write what is told: ``out`` (2, OUTPUTS TOLD, WIDTH), values and what they may miss. Where it is ``far`` to the middle
     it is uniform; ``off`` is by what share what hangs on the depth of the middle is wrong. Where ``loose``, a family
-    goes slack along the tube.
+    goes slack along the tube. Returns (where it is far, 1/(how half a tube grows with the depth), what is unsure, where
+    slack ends, by what share the depth is wrong).
     """
     depth = own.summed[DEPTH]
     per = 1.0 / select(far, 1.0, get(depth, SUM))
@@ -55,6 +56,7 @@ def tell(mid, far, off, loose, half, own, out):
     put(out[0], first + TOLD - 1, on)
     behind = select(far, BEHIND * abs(1.0 - mid.y) * mid.rate, 0.0)
     put(out[1], first + TOLD - 1, abs(on) * (of_depth + unsure + WRONG * off * mid.depth / hangs) + behind)
+    return far, per, unsure, ends, off / hangs
 
 
 @kernel

@@ -1,0 +1,181 @@
+"""How the largest and the least along a tube change, and the shares of it along which fibers are slack, on meshes.
+
+What is told of the middles of cells (outer radius, largest stretch, tensions) changes there as nodes move. Between pieces'
+ends it is smooth: a polynomial through a few cells tells it at any place. Where it is largest, it changes as it does at
+that very place: either its slope vanishes there, or it is an end, which stays. A share ends where a tension, seen from the
+side on which it pulls, meets zero: that place moves by what the tension changes, over its slope.
+"""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from ..description.families import FAMILIES, followed, given_by
+from .dual import Dual, maximum, sqrt
+from .physics import OWN
+from .twins import twin
+
+EXTREMES = (
+    "outer_radius", "largest_stretch", "least_tension_alpha", "least_tension_beta", "slack_alpha", "slack_beta",
+)  # fmt: skip
+OUTER, STRETCH, PULLS = 0, 1, 2  # rows of what is looked at; tensions come last
+STENCIL = 6  # cells of a polynomial
+TIED, TOGETHER = 1e-5, 1e-12  # relative: by how much another piece, or place, may have less, and be the largest as well
+HALVINGS, REAL = 60, 1e-9  # of the way to a root; what an imaginary part leaves
+
+
+@cache
+def _stretched():
+    """Squared largest stretch of a layer."""
+    from ..solver.along import places
+
+    return twin(places.principal_square)
+
+
+def fields(physics, y, place, share):
+    """Outer radius [m], largest stretch and tensions of both lines [N], of a locked shape [N/Pa], where the stretch is
+    ``y``: dual numbers. ``place``: G - 1, twist rate and these tensions there.
+    """
+    G_1, psi, tensions = place
+    inner, outer, fibers = physics.surfaces(share)
+    s = sqrt(G_1 + 1.0)
+    wide = sqrt(y * y * fibers * fibers + (outer * outer - fibers * fibers) / s)
+    layers = [_stretched()(y, G_1, psi, (rho / fibers) ** 2) for rho in (inner, outer)]
+    return wide, sqrt(maximum(*layers)), *tensions
+
+
+class Piece:
+    """A part of a mesh between two places, in which all is smooth: ``rows`` (fields, 1 + parameters, n) at places ``x``,
+    middles of ``cells``, and its ends where these stay, at the cells beside.
+    """
+
+    def __init__(self, x, rows, ends, cells):
+        self.x, self.rows, self.ends, self.cells = x, rows, ends, cells
+
+    def near(self, field, k):
+        """The polynomial through a field at the few of its places beside place k."""
+        count = min(STENCIL, len(self.x))
+        first = min(max(k - count // 2 + 1, 0), len(self.x) - count)
+        return Curve(self.x[first : first + count], self.rows[field][:, first : first + count])
+
+    def only(self, which):
+        """The part of it at some of its places."""
+        return Piece(self.x[which], self.rows[..., which], self.ends, self.cells[which])
+
+    def largest(self, field, sign):
+        """``sign`` times the field, where that is largest, (1 + parameters,); and how differently other places change that
+        have as much.
+        """
+        k = int(np.argmax(sign * self.rows[field, 0]))
+        curve, low, high = self.near(field, k), self.x[max(k - 1, 0)], self.x[min(k + 1, len(self.x) - 1)]
+        made = [sign * curve.at(place)[0] for place in (self.x[k], *curve.turns(low, high))]
+        best, own = max(made, key=lambda one: one[0]), sign * self.rows[field]
+        alike = own[:, own[0] >= best[0] - TOGETHER * abs(best[0])]
+        return best, np.max(np.abs(alike - best[:, None]), axis=1, initial=0.0)
+
+
+class Curve:
+    """The polynomial through ``rows`` (1 + parameters, m) at places ``x`` (m,)."""
+
+    def __init__(self, x, rows):
+        self.middle, self.size = x.mean(), np.ptp(x)
+        self.series = np.linalg.solve(np.vander((x - self.middle) / self.size, increasing=True), rows.T)
+
+    def at(self, x):
+        """Value and slope at a place, of each."""
+        t, powers = (x - self.middle) / self.size, np.arange(len(self.series))
+        return t**powers @ self.series, powers[1:] * t ** powers[:-1] / self.size @ self.series[1:]
+
+    def turns(self, low, high):
+        """Places between two others at which the slope of the value vanishes."""
+        steep = np.polynomial.polynomial.polyder(self.series[:, 0])
+        bent = np.any(steep[1:]) and np.all(np.isfinite(steep))
+        roots = np.polynomial.polynomial.polyroots(steep) if bent else np.zeros(0)
+        places = roots[np.abs(np.imag(roots)) < REAL].real * self.size + self.middle
+        return places[(places > low) & (places < high)]
+
+    def root(self, low, high):
+        """The place between two others, at which signs differ, where the value vanishes."""
+        sign = np.sign(self.at(low)[0][0])
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if np.sign(self.at(middle)[0][0]) == sign else (low, middle)
+        return 0.5 * (low + high)
+
+
+def largest(field, pieces, sign=1.0):
+    """What is largest along a mesh of a field, times a ``sign``, with its derivatives (1 + parameters,); and how differently
+    other pieces change that have nearly as much.
+    """
+    tops = [piece.largest(field, sign) for piece in pieces]
+    best = max(tops, key=lambda top: top[0][0])[0]
+    tied = [np.abs(one - best) + doubt for one, doubt in tops if one[0] >= best[0] - TIED * abs(best[0])]
+    return best, np.max(tied, axis=0)
+
+
+def slack_of_loose(field, taut, pieces, segments):
+    """Share of a mesh along which a loose family is slack, with its derivatives: ``field`` is that of its tension, ``taut``
+    (cells,).
+    """
+    pulls = [bool(taut[piece.cells[len(piece.cells) // 2]]) for piece in pieces]
+    total = np.zeros(pieces[0].rows.shape[1])
+    for piece, pulled in zip(pieces, pulls):
+        total[0] += 0.0 if pulled else piece.ends[1] - piece.ends[0]
+    for (before, one), (behind, other) in pairwise(zip(pieces, pulls)):
+        place = before.ends[1]
+        if one == other or np.any(segments == place):  # where profiles jump, it stays
+            continue
+        own = before if one else behind
+        own = own.only(taut[own.cells])  # a node may not be where it ends yet
+        value, slope = own.near(field, len(own.x) - 1 if one else 0).at(place)
+        total += (1.0 if one else -1.0) * value / slope[0]
+    return total
+
+
+def slack_of_bonded(field, pieces):
+    """The same of a bonded family, which would have to push there."""
+    total = np.zeros(pieces[0].rows.shape[1])
+    for piece in pieces:
+        pulled = piece.rows[field, 0] > 0.0
+        total[0] += (0.0 if pulled[-1] else piece.ends[1]) - (0.0 if pulled[0] else piece.ends[0])
+        for k in np.flatnonzero(pulled[1:] != pulled[:-1]):
+            curve = piece.near(field, k)
+            place = curve.root(piece.x[k], piece.x[k + 1])
+            value, slope = curve.at(place)
+            moved = -value / slope[0]
+            moved[0] = place
+            total += -moved if pulled[k] else moved
+    return total
+
+
+def extremes(physics, pieces, segments, whole):
+    """What :data:`EXTREMES` name, dual numbers over the meshes, and in which doubt each is, (extremes, 1 + parameters,
+    meshes), from the ``pieces`` of each mesh; ``segments`` are where profiles jump, the tube ``whole`` times as long.
+    """
+    tube, count = physics.tube, pieces[0][0].rows.shape[1]
+    lines, given = len(followed(tube)), given_by(tube)
+    table = np.zeros((len(pieces), len(EXTREMES), 2, count))
+    for found, own in zip(table, pieces):
+        found[0], found[1] = largest(OUTER, own), largest(STRETCH, own)
+        for k, family in enumerate(FAMILIES):
+            if lines == 0 or family not in given:
+                continue
+            line = k if lines == 2 else 0
+            if tube.is_loose:
+                found[4 + k, 0] = whole * slack_of_loose(PULLS + line, physics.settled[2 + line], own, segments)
+            else:
+                found[4 + k, 0] = whole * slack_of_bonded(PULLS + line, own)
+            if not tube.is_loose or found[4 + k, 0, 0] == 0.0:
+                least, found[2 + k, 1] = largest(PULLS + line, own, -1.0)
+                found[2 + k, 0] = -least / (1.0 if lines == 2 else len(given))
+    made = np.moveaxis(table, 0, -1)
+    none = np.zeros((OWN, len(pieces)))
+    numbers = [Dual(one[0, 0], np.concatenate([none, one[0, 1:]])) for one in made]
+    return dict(zip(EXTREMES, numbers)), made[:, 1]
+
+
+def unknown(parameters, meshes):
+    """As of :func:`extremes`, of what is not known."""
+    doubts = np.full((len(EXTREMES), 1 + parameters, meshes), np.nan)
+    return {name: Dual(doubts[0, 0], np.full((OWN + parameters, meshes), np.nan)) for name in EXTREMES}, doubts

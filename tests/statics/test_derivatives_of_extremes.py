@@ -1,0 +1,132 @@
+"""Derivatives of what is largest and least along a tube, and of the shares of it along which fibers are slack: by scaling
+laws, by differences of the solver as far as its bounds tell, and where there is nothing to be told.
+"""
+
+import numpy as np
+import pytest
+
+import freesweep as fs
+from freesweep.derivative import asked, attach
+from freesweep.derivative.extremes import EXTREMES
+
+RUBBER = fs.MooneyRivlin(c10=0.11e6, c01=0.06e6)
+TUBE = {"alpha": 30, "beta": -50, "length": 0.12, "radius": 4.76e-3, "wall": 1.59e-3, "material": RUBBER}
+LOADS = {"pressure": 5e4, "force": 1.0, "torque": 4e-3}
+TWISTED = {"alpha": 40, "beta": 5, "model": "physical"}  # some of whose threads are slack
+# powers of a length and of a stress in each parameter, and output
+LENGTHS = {"length": 1, "radius": 1, "wall": 1, "force": 2, "torque": 3, "outer_radius": 1}
+LENGTHS |= {"least_tension_alpha": 2, "least_tension_beta": 2}
+STRESSES = dict.fromkeys(("c10", "c01", "pressure", "force", "torque", "least_tension_alpha", "least_tension_beta"), 1)
+KINDS = {
+    "source": {},
+    "physical": {"model": "physical"},
+    "slack": TWISTED,
+    "pushed": {"alpha": 40, "beta": 5},
+    "varying": {"alpha": [(0, 25), (1, 40)]},
+    "jump": {"model": "physical", "wall": [(0, 1e-3), (0.5, 1e-3), (0.5, 1.5e-3), (1, 1.5e-3)]},
+    "body": {"taper": 0.2, "bulge": 0.1},
+}
+
+
+def found_of(changes, **more):
+    return fs.inflate(fs.Actuator(**TUBE | changes), **LOADS, x=[0.0], **more)
+
+
+@pytest.fixture(params=[True, False], ids=["vectors", "meshes"])
+def by_vectors(request, monkeypatch):
+    monkeypatch.setattr(attach, "is_worth_vectors", lambda *_: request.param)
+    return request.param
+
+
+@pytest.mark.parametrize("powers", [LENGTHS, STRESSES], ids=["lengths", "stresses"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_extremes_scale_as_lengths_and_stresses_do(kind, powers, by_vectors, monkeypatch):
+    """A homogeneous function's derivatives add up to its own multiple (Euler)."""
+    changes = KINDS[kind]
+    if by_vectors:
+        if any(name in changes for name in ("taper", "wall")) or kind == "varying":
+            pytest.skip("vectors do not tell what varies")
+        monkeypatch.setattr(asked.Asked, "state", None)
+    found = found_of(changes, derivatives="all")
+    assert int(found["status"]) == 0
+    sizes = {"length": 0.12, "radius": 4.76e-3, "wall": 1.59e-3, "c10": RUBBER.c10, "c01": RUBBER.c01} | LOADS
+    for output in EXTREMES:
+        total = bound = 0.0
+        for name, size in sizes.items():
+            if powers.get(name):
+                if kind == "jump" and name == "wall":  # whose profile is scaled, and not moved
+                    return
+                total += powers[name] * size * float(found[f"d_{output}_d_{name}"])
+                bound += powers[name] * size * float(found[f"d_{output}_d_{name}_error"])
+        exact = powers.get(output, 0) * float(found[output])
+        assert abs(total - exact) <= bound + powers.get(output, 0) * float(found[f"{output}_error"]), output
+        assert bound <= 1e-4 * (abs(exact) or 1.0), output
+
+
+@pytest.mark.parametrize(("kind", "name", "step"), [
+    ("source", "alpha", 0.05), ("physical", "wall", 2e-6), ("slack", "pressure", 50.0), ("pushed", "beta", 0.02),
+    pytest.param("varying", "alpha", 0.05, marks=pytest.mark.long),
+    pytest.param("body", "taper", 1e-3, marks=pytest.mark.long),
+])  # fmt: skip
+def test_extremes_change_as_differences_tell(kind, name, step):
+    changes = KINDS[kind]
+    found = found_of(changes, derivatives=name)
+    at = LOADS.get(name, (TUBE | changes).get(name))
+
+    def moved(by):
+        value = [(x, one + by) for x, one in at] if isinstance(at, list) else at + by
+        own = changes if name in LOADS else changes | {name: value}
+        loads = LOADS | ({name: value} if name in LOADS else {})
+        return fs.inflate(fs.Actuator(**TUBE | own), **loads, x=[0.0], accuracy=1e-10)
+
+    far, near = [[moved(side * part * step) for side in (1.0, -1.0)] for part in (1.0, 0.5)]
+    changing = 0
+    for output in EXTREMES:
+        slopes = [
+            float(one[output] - other[output]) / (2.0 * part * step) for (one, other), part in ((far, 1.0), (near, 0.5))
+        ]
+        told = (4.0 * slopes[1] - slopes[0]) / 3.0
+        doubt = abs(told - slopes[1]) + 4.0 * max(float(one[f"{output}_error"]) for one in near) / step
+        exact, bound = (float(found[f"d_{output}_d_{name}{end}"]) for end in ("", "_error"))
+        assert abs(exact - told) <= bound + doubt, output
+        changing += exact != 0.0
+    assert changing >= 3
+
+
+def test_shares_that_are_none_or_all_do_not_change(by_vectors):
+    found = found_of({}, derivatives="alpha")
+    for family in ("alpha", "beta"):
+        assert float(found[f"slack_{family}"]) == 0.0
+        assert float(found[f"d_slack_{family}_d_alpha"]) == 0.0
+
+
+def test_tension_of_slack_threads_does_not_change(by_vectors):
+    found = found_of(TWISTED, derivatives="pressure")
+    some = [family for family in ("alpha", "beta") if 0.0 < float(found[f"slack_{family}"]) < 1.0]
+    assert some
+    for family in some:
+        assert float(found[f"d_least_tension_{family}_d_pressure"]) == 0.0
+        assert abs(float(found[f"d_slack_{family}_d_pressure"])) > 1e-9
+
+
+def test_a_family_that_is_not_there_has_no_derivative_but_zero(by_vectors):
+    found = found_of({"beta": None, "model": "physical"}, derivatives="pressure")
+    assert float(found["d_least_tension_beta_d_pressure"]) == float(found["d_slack_beta_d_pressure"]) == 0.0
+    assert float(found["d_least_tension_alpha_d_pressure"]) != 0.0
+
+
+def test_a_locked_shape_s_tensions_are_per_pressure():
+    found = fs.lock(fs.Actuator(**TUBE), x=[0.0], derivatives="all")
+    assert found["d_least_tension_alpha_d_beta"].attrs["units"] == "N/Pa/degree"
+    assert float(found["d_least_tension_alpha_d_c10"]) == 0.0
+    exact = 2.0 * float(found["least_tension_alpha"])  # an area
+    total = sum(TUBE[name] * float(found[f"d_least_tension_alpha_d_{name}"]) for name in ("length", "radius", "wall"))
+    assert total == pytest.approx(exact, rel=1e-6)
+
+
+def test_a_cylinder_that_is_largest_all_along_has_none():
+    state = {"alpha": 40, "beta": -40, "wall": [(0, 1e-3), (1, 2e-3)]}
+    tube = fs.Actuator(**TUBE | state)
+    found = fs.blocked_force(tube, 5e4, x=[0.0], derivatives="pressure")
+    exact, bound = (float(found[f"d_largest_stretch_d_pressure{end}"]) for end in ("", "_error"))
+    assert np.isnan(exact) or bound >= abs(exact) or float(found["largest_stretch"]) > 1.0 + 1e-9
