@@ -8,19 +8,16 @@ Where an output is held, the load that holds it is one unknown more on each mesh
 under given loads leaves missing (:mod:`freesweep.solver.numerics.held`).
 """
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import LinAlgError, solve_banded
 
 from .dual import Dual
-from .extremes import Piece, extremes, fields, unknown
 from .physics import BY_V, BY_Y, OWN
 
 ITERATIONS, HALVINGS = 40, 30
 SMALL, SETTLED = 1e-7, 1e-12  # relative steps: after the first one the next is rounding
-INSIDE = 1e-9  # of half a cell: the profiles at its end
 MIN_ROOM = 0.02  # of the room of any cell that a step must leave, as in the solver's
 
 
@@ -82,7 +79,7 @@ class Sums(NamedTuple):
     right: np.ndarray  # likewise
 
 
-def _full(number, count, cells):
+def full(number, count, cells):
     """Value and parts of a number over all cells: (1 + count, cells)."""
     out = np.zeros((1 + count, cells))
     if not isinstance(number, Dual):
@@ -103,7 +100,7 @@ def _by_right(rows, step):
     return 0.5 * rows[..., 1 + BY_Y, :] + rows[..., 1 + BY_V, :] / step
 
 
-def _cells(physics, meshes, y):
+def cells_of(physics, meshes, y):
     """Stretch and slope in the cells as dual numbers, and by how much the tube's length scales the mesh."""
     seeds = np.zeros((2, OWN + len(physics.parameters), 1))
     seeds[0, BY_Y], seeds[1, BY_V] = 1.0, 1.0
@@ -117,10 +114,10 @@ def sums(physics, meshes, y) -> Sums:
     """Sum over the cells of the meshes."""
     count, n = OWN + len(physics.parameters), len(meshes.step)
     step = meshes.step * physics.length.value
-    stretch, slope, scale = _cells(physics, meshes, y)
+    stretch, slope, scale = cells_of(physics, meshes, y)
     room, L_y, L_v = physics.local(stretch, slope, meshes.share)
-    half = _full(0.5 * step * scale * L_y, count, n)
-    flux = _full(L_v, count, n)
+    half = full(0.5 * step * scale * L_y, count, n)
+    flux = full(L_v, count, n)
     left, right = half - flux, half + flux
     hessian = np.zeros((3, len(meshes.x)))
     hessian[0, meshes.left + 1] = _by_right(left, step)
@@ -190,7 +187,7 @@ def equilibrium(physics, meshes, y, hold=None):
         moved, step = responses(found, meshes)
         if hold is not None:
             hold = hold._replace(load=hold.load + fraction * more)
-            more = hold.missing(_outputs(physics, meshes, y, moved, step))
+            more = hold.missing(outputs_after(physics, meshes, y, moved, step))
             step = step + meshes.at_nodes(more) * moved[0]
         size = np.maximum(np.maximum.reduceat(np.abs(step) / y, first), np.abs(more) / unit)
         if not np.all(np.isfinite(size)):
@@ -204,75 +201,7 @@ def equilibrium(physics, meshes, y, hold=None):
     raise NotFound
 
 
-def outputs(physics, meshes, y, ends, segments):
-    """The outputs in SI units and degrees, dual numbers over the meshes with their derivatives by the parameters of
-    ``physics``, and the doubts of :func:`.extremes.extremes`: between ``ends`` all is smooth, where ``segments`` meet
-    profiles jump. Raises :class:`NotFound`.
-    """
-    found = sums(physics, meshes, y)
-    moved, step = responses(found, meshes)
-    made = _outputs(physics, meshes, y, moved, step)
-    try:
-        with np.errstate(all="ignore"):
-            pieces = _pieces(physics, meshes, y, (found, moved, step), ends, segments)
-            along, doubts = extremes(physics, pieces, segments, 2.0 if meshes.free else 1.0)
-    except NotFound:  # where fibers settle at an end
-        along, doubts = unknown(len(physics.parameters), len(meshes.starts))
-    return made | along, doubts
-
-
-def _pieces(physics, meshes, y, answers, ends, segments):
-    """The :class:`.extremes.Piece` of each mesh between ``ends``, with what :func:`.extremes.fields` tells; those ends are
-    places of it, too, where ``segments`` meet. ``answers``: sums, how nodes move, and the last step.
-    """
-    found, moved, step = answers
-    stretch, slope, _ = _cells(physics, meshes, y)
-    count = OWN + len(physics.parameters)
-    seen = fields(physics, stretch, physics.place(stretch, slope, meshes.share), meshes.share)
-    rows = np.stack([_full(one, count, len(meshes.step)) for one in seen])
-    fluxes = np.stack([found.left, found.right])
-    rows = _carried(physics, meshes, np.concatenate([rows, fluxes]), moved, step)
-    cells, nodes, parts = [], [], []
-    for mesh in range(len(meshes.starts)):
-        x, first = meshes.x[meshes.nodes(mesh)], meshes.cells(mesh).start
-        at = [int(np.argmin(np.abs(x - end))) for end in ends]
-        for a, b in pairwise(at):
-            cells += [first + a, first + b - 1]
-            nodes += [meshes.starts[mesh] + a, meshes.starts[mesh] + b]
-            parts.append((mesh, slice(first + a, first + b), (x[a], x[b])))
-    cells, nodes = np.array(cells), np.array(nodes)
-    at_ends = _at_nodes(physics, meshes, y, (rows[-2:], moved, step), cells, nodes)
-    pieces = [[] for _ in meshes.starts]
-    for k, (mesh, own, (low, high)) in enumerate(parts):
-        stay = [end for end, place in ((0, low), (1, high)) if np.any(segments == place)]
-        told = np.insert(rows[:-2, :, own], [0, own.stop - own.start], at_ends[..., 2 * k : 2 * k + 2], axis=-1)
-        x = np.concatenate([[low], meshes.share[own], [high]])
-        beside = np.clip(np.arange(own.start - 1, own.stop + 1), own.start, own.stop - 1)
-        keep = slice(0 if 0 in stay else 1, None if 1 in stay else -1)
-        pieces[mesh].append(Piece(x[keep], told[..., keep], (low, high), beside[keep]))
-    return pieces
-
-
-def _at_nodes(physics, meshes, y, answers, cells, nodes):
-    """What :func:`.extremes.fields` tells of nodes, (fields, 1 + parameters, nodes), by the flux through them, which a cell
-    beside each tells: its first node, or its last one, in turn.
-    """
-    fluxes, moved, step = answers
-    none = np.zeros((OWN, len(nodes)))
-
-    def number(values):
-        return Dual(values[0], np.concatenate([none, values[1:]]))
-
-    flux = np.where(np.arange(len(nodes)) % 2 == 0, fluxes[0][:, cells], fluxes[1][:, cells])
-    all_moved = np.vstack([y + step, moved])[:, nodes]
-    share = meshes.x[nodes] + INSIDE * (meshes.share[cells] - meshes.x[nodes])
-    stretch = number(all_moved)
-    here, count = physics.in_cells(cells), OWN + len(physics.parameters)
-    seen = fields(here, stretch, here.at_flux(stretch, number(flux), share), share)
-    return np.stack([_full(one, count, len(nodes)) for one in seen])[:, [0, *range(1 + OWN, 1 + count)]]
-
-
-def _carried(physics, meshes, rows, moved, step):
+def carried(physics, meshes, rows, moved, step):
     """``rows`` (..., 1 + parts, cells) of cells, as nodes move with each parameter, after a ``step``: (..., 1 + parameters,
     cells).
     """
@@ -284,16 +213,16 @@ def _carried(physics, meshes, rows, moved, step):
     return found
 
 
-def _outputs(physics, meshes, y, moved, step):
+def outputs_after(physics, meshes, y, moved, step):
     """The outputs, as far as they change in proportion to it, after a ``step``, and how they change as the nodes ``moved``
     with each parameter, in cells of which the sums were asked last.
     """
     count, n = OWN + len(physics.parameters), len(meshes.step)
     width = meshes.step * physics.length.value
-    stretch, slope, scale = _cells(physics, meshes, y)
+    stretch, slope, scale = cells_of(physics, meshes, y)
     integrands = physics.integrands(stretch, slope, meshes.share)
-    rows = np.stack([_full(width * scale * q, count, n) for q in integrands])
-    totals = meshes.total(_carried(physics, meshes, rows, moved, step))
+    rows = np.stack([full(width * scale * q, count, n) for q in integrands])
+    totals = meshes.total(carried(physics, meshes, rows, moved, step))
 
     def number(values):
         return Dual(values[0], np.concatenate([np.zeros((OWN, values.shape[1])), values[1:]]))

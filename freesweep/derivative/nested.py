@@ -8,7 +8,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from . import grid
-from .equilibrium import Meshes, NotFound, equilibrium, outputs, sums
+from .equilibrium import Meshes, NotFound, equilibrium, sums
+from .outputs import outputs
 from .physics import Physics
 
 LEVELS = 4  # meshes, each with twice the cells of the one before, that are solved at once
