@@ -83,6 +83,8 @@ def carry(walks, kind, told):
     """Uniform ``stretches`` of the :class:`Walks`: NaN from where no quick way leads on; and ``likeness``. What needs no
     solving at all is ``told``. Each lane goes on by itself: the next load is its own, or, at the end, another problem's.
     """
+    if len(walks.order) == 0:  # as where it is called to be compiled
+        return
     columns, found, seats = aligned(1, COLUMNS)[0], aligned(1, 2)[0], np.zeros((LEADS + 1, WIDTH), np.int64)
     u, t, step, near = spread(1.0), spread(0.0), spread(first_guess.FIRST_STEP), nothing_yet(spread(0.0))
     at_end = near
