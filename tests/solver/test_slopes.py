@@ -7,7 +7,8 @@ import pytest
 from sloped import KINDS, PARAMETERS, batch, compared, problems_of, told
 
 from freesweep.derivative.request import SHAPE
-from freesweep.solver.batch import uniform, walk_all, walk_by_vectors
+from freesweep.solver.batch import OUTPUTS, uniform, walk_all, walk_by_vectors
+from freesweep.solver.problem import INNER
 from freesweep.solver.slopes import along, as_physical, differentiate
 from freesweep.solver.status import OK
 
@@ -17,10 +18,11 @@ GROWTH = {"deformed_length": 1, "rotation": 0, "mid_radius": 1, "volume": 3, "st
 
 
 def known(rows, pressures):
-    """Middles, where families go slack along a part, and the rows that have a state."""
+    """Middles, where families may go slack, or push, along a part, and the rows that have a state."""
     found = walk_by_vectors(rows, np.arange(len(rows) + 1), pressures, 1e-8)
     shares = found.values[:, 5:7]
-    return found.values[:, 4].copy(), np.any((shares > 0.0) & (shares < 1.0), axis=1), found.status == OK
+    may = np.any((shares > 0.0) & (shares < 1.0), axis=1) | (shares.shape[1] == 0)  # of the source's none are told
+    return found.values[:, 4].copy(), may, found.status == OK
 
 
 @pytest.mark.parametrize("kind", ["source", "physical", "thick", "loose membrane"])
@@ -90,16 +92,22 @@ def test_bounds_of_derivatives_hold(kind):
     changes = np.zeros((len(rows), 12, 14))
     for k, column in enumerate((0, 1, 2, 3, 4, 6, 7, 8, 11, 13)):
         changes[:, k, column] = 1.0
-    state = [array[there] for array in (rows, pressures, middles, limp, changes)]
-    coarse, bounds, missed = along(*state, 1)
-    fine, doubts, _ = along(*state, 8)
+    inner = np.where(rows[:, INNER] > 0.0, rows[:, INNER], 1.0)
+    rows, pressures, middles, inner, limp, changes = (
+        array[there] for array in (rows, pressures, middles, inner, limp, changes)
+    )
+    coarse, bounds, missed = along(rows, pressures, (middles, inner, limp), changes, 1)
+    fine, doubts, _ = along(rows, pressures, (middles, inner, limp), changes, 8)
     both = np.isfinite(coarse[:, 0, 0]) & np.isfinite(fine[:, 0, 0])
     assert np.count_nonzero(both) > 0.99 * len(both)
     apart, unsure = np.abs(coarse - fine)[both][:, 1:], (bounds + doubts)[both][:, 1:]
     rounding = 1e-11 * np.max(np.abs(fine[both][:, 1:]), axis=1, keepdims=True)
-    broken = apart > unsure + rounding
-    assert np.mean(broken) < 2e-3
-    assert np.all(apart <= 100.0 * (unsure + rounding))
+    assert np.all(np.isfinite(apart[..., :OUTPUTS]))
+    known_there = np.isfinite(apart)  # not all that is largest along a tube has a derivative
+    assert np.mean(known_there) > 0.9
+    apart, allowed = apart[known_there], (unsure + rounding)[known_there]
+    assert np.mean(apart > allowed) < 2e-3
+    assert np.all(apart <= 100.0 * allowed)
     assert np.median(missed[both]) < 2e-6
 
 
