@@ -1,17 +1,18 @@
 """What the machine itself can do: multiplications and additions per second, and what one cell of the solver's mesh costs.
 
-The peak is that of a loop of fused multiply-adds on independent vector registers, nothing else. A Newton pass is what the
+The peak is that of a loop of multiply-adds on independent vector registers, nothing else. A Newton pass is what the
 solver repeats: on each cell the density and its derivatives, their assembly, and the factors of a tridiagonal matrix.
 """
 
 import time
 
 import numpy as np
-from llvmlite import binding, ir
+from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
 from ..jit import kernel
+from ..solver.lanes.vector import WIDTH
 from ..solver.load import Load
 from ..solver.numerics import newton
 from ..solver.physics import lagrangian
@@ -26,9 +27,8 @@ EXTRA = 36  # flops of a cell beside its density: newton.assemble, factor, subst
 
 
 def vector_width() -> int:
-    """Doubles in one register of this machine."""
-    features = binding.get_host_cpu_features()
-    return 8 if features.get("avx512f") else 4 if features.get("avx") else 2
+    """Doubles in one register of the processor that is compiled for: vectors of designs take two."""
+    return WIDTH // 2
 
 
 @intrinsic
@@ -47,7 +47,8 @@ def multiply_add_loop(typingctx, count, factor, term):
             return value
 
         factors, terms = spread(factor), spread(term)
-        fma = builder.module.declare_intrinsic(f"llvm.fma.v{width}f64", (), ir.FunctionType(vector, [vector] * 3))
+        # fused where the target's processor fuses
+        fma = builder.module.declare_intrinsic(f"llvm.fmuladd.v{width}f64", (), ir.FunctionType(vector, [vector] * 3))
         before, loop = builder.block, builder.append_basic_block("loop")
         after = builder.append_basic_block("after")
         builder.branch(loop)
