@@ -98,6 +98,22 @@ def difference(column, problems, pressures, here, bounds):
     return best, doubt, 1e-3 * np.abs(here) / size[:, None]
 
 
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if "single" in kind])
+def test_vectors_know_where_a_single_loose_family_goes_slack(kind):
+    """The one that is not there lacks endlessly much of being taut, and counts for nothing."""
+    problems, pressures = sample(kind, np.random.default_rng(77))
+    values, _, limp = solved(problems, pressures)
+    there = np.isfinite(values[:, 0])
+    assert np.count_nonzero(limp & there) > 30
+    problems, pressures, limp = problems[there], pressures[there], limp[there]
+    middles, none = (
+        np.ascontiguousarray(values[there, OUTPUTS - 1]),
+        np.zeros((len(problems), 1, problems.shape[1] + 1)),
+    )
+    found, _ = differentiate(problems, pressures, none, 1e-7, middles, limp)
+    assert np.all(np.isfinite(found[:, 0, :OUTPUTS]))
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_derivatives_of_batches_are_what_differences_tell(kind):

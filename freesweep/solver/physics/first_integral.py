@@ -178,6 +178,7 @@ def level_where_slack(y, level, cell, load, near):
         lack_a, lack_b = lacking(y, G_1, psi, H, D, gg, wall)
         bends = K_GG, -W_Gp, -W_pp - 2.0 * y * y * (a + b)
         push_a, push_b = pushes(y, (max(lack_a, 0.0), max(lack_b, 0.0)), (ta, tb), alpha | beta, t, bends)
+        push_b = push_b if has_two_families(wall) else -lack_b  # what is not there never pulls
     a = select(alpha, a + select(both, 0.0, more), push_a)
     b = select(beta, b + select(both, 0.0, more), push_b)
     G = 1.0 + G_1
