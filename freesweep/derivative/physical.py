@@ -1,18 +1,11 @@
 """The physical tube's density over all cells of a mesh, as dual numbers: a thick wall, threads that cannot push, or both.
 
-Where meridional stretch G and twist rate psi settle (:mod:`freesweep.solver.physics.relaxed`), with multipliers a and b
-of both families::
-
-    T/(2 s) - W_G = a + b,    m - W_psi = 2 y^2 (a (t_a + psi) + b (t_b + psi)),
-    g = 0 or multiplier = 0   of each family,    g = G + y^2 (t + psi)^2 - gamma^2 (1 + t^2)
-
-Newton's method solves that in all cells at once; a taut family whose multiplier is negative goes slack, a slack one beyond
-its reach taut. One more step, in dual numbers, gives all first derivatives of the four; bonded fibers stay taut.
+Where cells settle is told by :mod:`settled`; a taut family whose multiplier is negative goes slack, a slack one beyond its
+reach taut. One more step, in dual numbers, gives all first derivatives of the four; bonded fibers stay taut.
 """
 
 from copy import copy
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,15 +13,12 @@ from ..description.families import followed
 from .dual import Dual, maximum, select, sqrt, value_of
 from .equilibrium import NotFound
 from .physics import Physics
+from .settled import NO_ROOM, Local, Settled, equations, jacobian, newton
 from .twins import twin
 
-STEPS, CHANGES = 60, 30
+CHANGES = 30
 FIRST_CELLS = 48  # in which the kernel tells where they settle; their neighbours begin there
-SETTLED = 1e-13  # of what is sought
-SHORT = 0.1  # share of the way to the edge of the domain that a step in G leaves
-ROUNDED = 1e-7  # of G: a shorter way to the edge is rounding; from a longer one steps grow until they settle
 BEYOND = 1e-12  # by which a family may be beyond its reach, or a multiplier negative, of the load
-NO_ROOM = 1e-30
 
 
 @cache
@@ -55,67 +45,6 @@ def walls():
     changes = tuple(map(twin, (body.as_tube, body.of_partials, body.of_integrals, body.of_multipliers)))
     narrowest = twin(wall.narrowest, lies_inside=lies_inside, select=select)
     return twin(wall.energy, points=points, needs_most=needs_most), narrowest, twin(physical.place), changes
-
-
-class Settled(NamedTuple):
-    """Where cells at places ``share`` settle: the four unknowns, (4, cells), and which families are taut."""
-
-    share: np.ndarray
-    four: np.ndarray
-    alpha: np.ndarray
-    beta: np.ndarray
-
-    def at(self, share):
-        """A first guess in other cells."""
-        if np.array_equal(share, self.share):
-            return self
-        known, own = np.unique(self.share, return_index=True)  # of several meshes
-        near = own[np.clip(np.searchsorted(0.5 * (known[1:] + known[:-1]), share), 0, len(known) - 1)]
-        four = np.stack([np.interp(share, known, row[own]) for row in self.four])
-        return Settled(share, four, self.alpha[near], self.beta[near])
-
-
-class Local(NamedTuple):
-    """A cell's numbers, values only or dual ones."""
-
-    y: object
-    p: object
-    f: object
-    m: object
-    t_a: object
-    t_b: object
-    gg: object
-    area: object
-    rubber: tuple
-    wall: tuple
-
-
-def equations(local, s, four, w_G, w_p):
-    """The four equations' left sides."""
-    G_1, psi, a, b = four
-    y2 = local.y * local.y
-
-    def reach(t):
-        return G_1 + 1.0 + y2 * (t + psi) * (t + psi) - local.gg * (1.0 + t * t)
-
-    first = (local.p * y2 + local.f) / (2.0 * s) - w_G - a - b
-    second = local.m - w_p - 2.0 * y2 * (a * (local.t_a + psi) + b * (local.t_b + psi))
-    return first, second, reach(local.t_a), reach(local.t_b)
-
-
-def jacobian(y, T, s, four, tangents, taut, second):
-    """Their derivatives by the four, (cells, 4, 4); a slack family's last equation is that its multiplier is 0. ``tangents``
-    of both families, whether they are ``taut``; ``second`` derivatives of the wall's energy by G and psi.
-    """
-    (_, psi, a, b), (t_a, t_b), (alpha, beta), (w_GG, w_Gp, w_pp) = four, tangents, taut, second
-    out = np.zeros((len(psi), 4, 4))
-    twice = 2.0 * y * y
-    by_a, by_b = twice * (t_a + psi), twice * (t_b + psi)
-    out[:, 0, 0], out[:, 0, 1], out[:, 0, 2], out[:, 0, 3] = -0.25 * T / s**3 - w_GG, -w_Gp, -1.0, -1.0
-    out[:, 1, 0], out[:, 1, 1], out[:, 1, 2], out[:, 1, 3] = -w_Gp, -w_pp - twice * (a + b), -by_a, -by_b
-    out[:, 2, 0], out[:, 2, 1], out[:, 2, 2] = alpha, alpha * by_a, ~alpha
-    out[:, 3, 0], out[:, 3, 1], out[:, 3, 3] = beta, beta * by_b, ~beta
-    return out
 
 
 class PhysicalTube(Physics):
@@ -154,7 +83,7 @@ class PhysicalTube(Physics):
             if self.is_locked:  # threads bear it all: where one is slack, only the other's pull tells the twist
                 pull = 0.5 * T / np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
                 four[2], four[3] = np.where(alpha & ~beta, pull, four[2]), np.where(beta & ~alpha, pull, four[3])
-            four = self._newton(plain, v, low, four, alpha, beta)
+            four = newton(energy, plain, v, low, four, (alpha, beta))
             if not self.tube.is_loose:
                 break
             W = energy(Dual(y), Dual(four[0]), Dual(four[1]), weighed, rubber, wall)
@@ -188,32 +117,6 @@ class PhysicalTube(Physics):
             load = Load(gamma, own, layers, 0.0, 0.0, float(plain.m[j]), 1.0)
             _, four[0, k], four[1, k], taut[0, k], taut[1, k] = place(float(y[j]), float(v[j]), float(T[j]), cell, load)
         return Settled(share[some], four, taut[0], taut[1])
-
-    def _newton(self, plain, v, low, four, alpha, beta):
-        energy, own = walls()[0], (plain.area, plain.rubber, plain.wall)
-        for _ in range(STEPS):
-            W = energy(Dual(plain.y), Dual(four[0]), Dual(four[1]), *own)
-            w = [np.broadcast_to(one.value if isinstance(one, Dual) else one, v.shape) for one in W]
-            s = np.sqrt(np.maximum(1.0 + four[0] - v * v, NO_ROOM))
-            left = equations(plain, s, four, w[2], w[3])
-            wrong = np.stack(
-                [left[0], left[1], np.where(alpha, left[2], four[2]), np.where(beta, left[3], four[3])], axis=1
-            )
-            T = plain.p * plain.y**2 + plain.f
-            matrix = jacobian(plain.y, T, s, four, (plain.t_a, plain.t_b), (alpha, beta), w[7:10])
-            try:
-                step = -np.linalg.solve(matrix, wrong[..., None])[..., 0].T
-            except np.linalg.LinAlgError:
-                raise NotFound from None
-            before, way = four[0], four[0] - low
-            four = four + step
-            four[0] = np.maximum(four[0], low + SHORT * way)
-            moved = max(np.max(np.abs(four[0] - before) / (way + ROUNDED * (1.0 + before))), np.max(np.abs(step[1])))
-            if not np.isfinite(moved):
-                raise NotFound
-            if moved < 1e-8:
-                return four
-        raise NotFound
 
     def local(self, y, v, share):
         """As of :class:`Physics`."""

@@ -32,11 +32,6 @@ def largest_stretch(alpha, beta, stretch, fiber_extension=1.0, energy="full"):
     return largest_principal(*membrane(alpha, beta, stretch, fiber_extension, energy))
 
 
-def first_invariant(alpha, beta, stretch, fiber_extension=1.0, energy="full"):
-    """I1 - 3 of the wall [-]; arguments as of :func:`largest_stretch`."""
-    return invariant(*membrane(alpha, beta, stretch, fiber_extension, energy))
-
-
 def membrane(alpha, beta, stretch, fiber_extension, energy):
     """How a membrane with bonded fibers is strained at slope 0; a twist without energy strains nothing."""
     stretch = np.asarray(stretch, float)

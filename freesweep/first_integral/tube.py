@@ -27,12 +27,8 @@ PANELS, MOST_PANELS = 10, 320  # doubled until results change by less than TOLER
 TOLERANCE = 1e-12  # relative
 ROUNDING = 1e-12  # relative, of every result
 
+# the uniform tube turns back on the way to a load; the shape, between end and middle
 SOLVED, NO_GUIDE, NOT_MONOTONE = 0, 1, 2
-REASONS = (
-    "solved",
-    "the uniform tube turns back on the way to this load",
-    "the shape does not run from the ends to the middle without turning back",
-)
 
 
 class Judged(NamedTuple):
