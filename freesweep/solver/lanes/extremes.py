@@ -2,11 +2,11 @@
 
 By the angle of which a place is the cosine, places lie evenly, and what is smooth along the tube is smooth, and even about
 both ends. Beside the largest place goes a polynomial through five of them; by what it rises more, or less, than a parabola
-through three it may be wrong, and by a little of what bends it.
+through three it may be wrong, and by a little of what bends it. At an end it is as high as there: nothing slopes.
 """
 
 from ...jit import kernel
-from .vector import HUGE, get, select, spread
+from .vector import HUGE, get, isnt, select, spread
 
 CAUTION, BENT = 6.0, 0.2  # times what two curves differ by, and times the fourth difference
 
@@ -36,7 +36,8 @@ def rises(before, here, after, slope, bend, third, fourth):
     on = min(max(on, -1.0), 1.0)
     lift = on * (slope + on * (bend / 2.0 + on * (third / 6.0 + on * fourth / 24.0)))
     lift = select(bent, max(lift, 0.0), simple)
-    return lift, select(peak, CAUTION * abs(lift - simple) + BENT * abs(fourth), 0.0)
+    sloping = peak & isnt(bent & (before == after))
+    return lift, select(sloping, CAUTION * abs(lift - simple) + BENT * abs(fourth), 0.0)
 
 
 @kernel

@@ -37,7 +37,8 @@ SHALLOW, DEPTHS = 0.01, 30.0
 class Middle(NamedTuple):
     """Uniform stretch u, rate of the layer, depth of the middle, q, 1/(1 + q^2); stretch and level there, and how x
     grows with the depth; first and second derivative of R - T by y; sqrt(G), twist rate and energy of the wall;
-    and by how much y^2 sqrt(G) and those are more where the tube is uniform, behind the deepest layer.
+    by how much y^2 sqrt(G) and those are more where the tube is uniform, behind the deepest layer; and what the middle
+    hands on.
     """
 
     u: float
@@ -54,6 +55,7 @@ class Middle(NamedTuple):
     psi: float
     energy: float
     uniform: tuple
+    near: tuple
 
 
 class Uniform(NamedTuple):
@@ -132,7 +134,7 @@ def middle(uniform, depth, cell, load, scratch):
     return Middle(
         u, rate_of(uniform), depth, q, whole, y, level, sqrt(max(-T / (s * mean_yy), 0.0)), rise,
         -(own_yy + 2.0 * rise * s_y) / s, s, psi, energy,
-        behind(u, s_u, psi_u, energy_u, y, s, psi, energy),
+        behind(u, s_u, psi_u, energy_u, y, s, psi, energy), near,
     )  # fmt: skip
 
 
@@ -165,6 +167,7 @@ def middle_at(y, cell, load, half, scratch):
     return Middle(
         y - gap, select(driven, 1.0 / select(driven, per_depth, 1.0), rate), depth, q, whole, y, level, per_depth, rise,
         -(L_yy + rise * near[7] / s) / s, s, psi, energy, behind(u, sqrt(1.0 + G_u), psi_u, energy_u, y, s, psi, energy),
+        near,
     ), driven, rise / least - 1.0  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from ..physics import lagrangian
 from ..physics.wall import may_go_slack
 from .meridian import fallen
 from .pack import OUTPUTS
-from .vector import get, put, select, spread
+from .vector import get, put, select, some, spread
 
 SUMS = DX, LENGTH, VOLUME, TWIST, ENERGY = range(5)
 # behind the SUMS: lengths without a pull of both families, the largest of four rows, and what the length summed up to any
@@ -73,12 +73,12 @@ def finish(mid, miss, moved, placed, behind, cell, load, half, middle_limp, doub
         max(max(errors[0] / scale[0], errors[1] / scale[1]), max(errors[2] / scale[2], errors[3] / scale[3])), errors[4]
     )
     record(out, 0, outputs, errors, floor)
-    tell_places(mid, miss, placed, cell, load, half, (middle_limp, doubts, unsure), numbers, out, load.wall)
+    tell_places(mid, miss, behind, placed, cell, load, half, (middle_limp, doubts, unsure), numbers, out, load.wall)
     return largest
 
 
 @kernel
-def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
+def tell_places(mid, miss, behind, moved, cell, load, half, seen, numbers, out, wall):
     """Write the numbers of a physical tube's places; of what is ``seen`` of slack families: (limp in the middle, lengths in
     doubt, by how much an end may be off).
     """
@@ -89,9 +89,10 @@ def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
     share_a = (get(sums, SLACK) + select(middle_limp[0], miss, 0.0)) / half
     share_b = (get(sums, SLACK + 1) + select(middle_limp[1], miss, 0.0)) / half
     doubt = (get(missed, DX) + STEEPEST * unsure * mid.depth / mid.rate) / half
-    least_a, least_b = places.pulls(pulled(-get(sums, WORST), load), pulled(-get(sums, WORST + 1), load), cell, load)
+    worst = worst_of(mid, behind, cell, load, sums)
+    least_a, least_b = places.pulls(pulled(0.0 - worst[0], load), pulled(0.0 - worst[1], load), cell, load)
     off_a, off_b = places.pulls(get(missed, WORST), get(missed, WORST + 1), cell, load)
-    outer, strain = sqrt(get(sums, WORST + 2)), sqrt(get(sums, WORST + 3))
+    outer, strain = sqrt(worst[2]), sqrt(worst[3])
     faint, least, none = (FLOOR * places.ROUNDING + moved) * size, spread(places.ROUNDING), spread(0.0)
     record(
         out, OUTPUTS,
@@ -103,6 +104,31 @@ def tell_places(mid, miss, moved, cell, load, half, seen, numbers, out, wall):
             0.5 * get(missed, WORST + 3) / strain + 3.0 * moved * (strain - 1.0),
         ),
         (least, least, none, none, places.ROUNDING * outer, places.ROUNDING * strain),
+    )  # fmt: skip
+
+
+@kernel
+def worst_of(mid, behind, cell, load, sums):
+    """The largest of what each place tells, WORST and on: that of the ``sums``, or, where something lies ``behind`` the
+    deepest layer, of the uniform tube there.
+    """
+    most = get(sums, WORST), get(sums, WORST + 1), get(sums, WORST + 2), get(sums, WORST + 3)
+    deep = behind > 0.0
+    if not some(deep):
+        return most
+    there = told_of(mid.u, lagrangian.at_level(mid.u, mid.level, cell, load, mid.near), cell, load)
+    return (
+        select(deep, max(most[0], there[0]), most[0]), select(deep, max(most[1], there[1]), most[1]),
+        select(deep, max(most[2], there[2]), most[2]), select(deep, max(most[3], there[3]), most[3]),
+    )  # fmt: skip
+
+
+@kernel
+def told_of(y, at, cell, load):
+    """Of a place of a physical tube what families push by, and the squares of outer radius and of the wall's stretch."""
+    return (
+        0.0 - pulled(at.a, load), 0.0 - pulled(at.b, load), places.outer_square(y, at.G_1, cell, load.wall),
+        places.strain_square(y, at.G_1, at.psi, cell, load.wall),
     )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from ..physics import lagrangian
 from ..physics.lagrangian import ROUNDING
 from ..problem import PHYSICAL, SOURCE
 from . import slack_ends
+from .first_guess import kept
 from .free import seat_states
 from .meridian import DEEPEST, Middle, handed_on, look, middle, middle_at, uniform_at
 from .outputs import DX, LENGTH, TWIST, by_depth
@@ -42,6 +43,7 @@ def chosen(given, one, other):
         select(given, one.level, other.level), select(given, one.per_depth, other.per_depth),
         select(given, one.rise, other.rise), select(given, one.bend, other.bend), select(given, one.s, other.s),
         select(given, one.psi, other.psi), select(given, one.energy, other.energy), one.uniform,
+        kept(given, one.near, other.near),
     )  # fmt: skip
 
 

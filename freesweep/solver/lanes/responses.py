@@ -54,7 +54,7 @@ def seated(y, cell, load, half, scratch):
     return Middle(
         select(far, y, mid.u), rate, depth, q, 1.0 / (1.0 + q * q), y, mid.level,
         select(far, 1.0 / rate, mid.per_depth), select(far, 0.0, mid.rise), mid.bend, mid.s, mid.psi, mid.energy,
-        mid.uniform,
+        mid.uniform, mid.near,
     ), far  # fmt: skip
 
 

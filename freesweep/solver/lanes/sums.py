@@ -16,7 +16,7 @@ from ..physics.wall import may_go_slack
 from . import pushed, slack_ends
 from .extremes import highest, widest
 from .meridian import CERTAIN, handed_on, look
-from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WITHIN, WORST, pulled
+from .outputs import DX, ENERGY, LENGTH, SLACK, TWIST, VOLUME, WITHIN, WORST, told_of
 from .pack import OUTPUTS, aligned
 from .rule import LAST, PLACES, missed_within, summed
 from .vector import HUGE, WIDTH, get, isnt, mask_of, put, select, spread
@@ -91,10 +91,11 @@ def look_at(y, at, k, cell, load, rows, wall):
     """Of a physical tube the pulls, and the squares of its outer radius and of the wall's stretch, at one place."""
     if len(wall) == 1:
         return
-    put(rows[PUSH_ALPHA], k, -pulled(at.a, load))
-    put(rows[PUSH_BETA], k, -pulled(at.b, load))
-    put(rows[SQUARE], k, places.outer_square(y, at.G_1, cell, load.wall))
-    put(rows[STRAIN], k, places.strain_square(y, at.G_1, at.psi, cell, load.wall))
+    told = told_of(y, at, cell, load)
+    put(rows[PUSH_ALPHA], k, told[0])
+    put(rows[PUSH_BETA], k, told[1])
+    put(rows[SQUARE], k, told[2])
+    put(rows[STRAIN], k, told[3])
 
 
 @kernel
