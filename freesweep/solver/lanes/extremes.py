@@ -2,7 +2,8 @@
 
 By the angle of which a place is the cosine, places lie evenly, and what is smooth along the tube is smooth, and even about
 both ends. Beside the largest place goes a polynomial through five of them; by what it rises more, or less, than a parabola
-through three it may be wrong, and by a little of what bends it. At an end it is as high as there: nothing slopes.
+through three it may be wrong, and by a little of what bends it. At an end that is a peak beyond doubt, as the curve bends
+down by more than what bends it, nothing slopes: it is as high as there.
 """
 
 from ...jit import kernel
@@ -36,8 +37,8 @@ def rises(before, here, after, slope, bend, third, fourth):
     on = min(max(on, -1.0), 1.0)
     lift = on * (slope + on * (bend / 2.0 + on * (third / 6.0 + on * fourth / 24.0)))
     lift = select(bent, max(lift, 0.0), simple)
-    sloping = peak & isnt(bent & (before == after))
-    return lift, select(sloping, CAUTION * abs(lift - simple) + BENT * abs(fourth), 0.0)
+    unsure = peak & isnt((before == after) & (-bend > abs(fourth)))
+    return lift, select(unsure, CAUTION * abs(lift - simple) + BENT * abs(fourth), 0.0)
 
 
 @kernel
