@@ -114,6 +114,22 @@ def test_vectors_know_where_a_single_loose_family_goes_slack(kind):
     assert np.all(np.isfinite(found[:, 0, :OUTPUTS]))
 
 
+@pytest.mark.parametrize("kind", ["physical loads", "physical single loads"])
+def test_a_derivative_does_not_hang_on_who_shares_its_vector(kind):
+    problems, pressures = sample(kind, np.random.default_rng(5))
+    values, _, limp = solved(problems, pressures)
+    there = np.isfinite(values[:, 0])
+    problems, pressures, limp = problems[there], pressures[there], limp[there]
+    middles, columns = np.ascontiguousarray(values[there, OUTPUTS - 1]), columns_of(kind, problems)
+    changes = np.zeros((len(problems), len(columns), problems.shape[1] + 1))
+    changes[:, np.arange(len(columns)), columns] = 1.0
+    together = differentiate(problems, pressures, changes, 1e-7, middles, limp)
+    for part in np.array_split(np.random.default_rng(1).permutation(len(problems)), len(problems) // 15 + 1):
+        few = differentiate(problems[part], pressures[part], changes[part], 1e-7, middles[part], limp[part])
+        for one, all_of_them in zip(few, together):
+            assert np.array_equal(one, all_of_them[part], equal_nan=True)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_derivatives_of_batches_are_what_differences_tell(kind):

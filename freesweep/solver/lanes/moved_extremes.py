@@ -52,14 +52,14 @@ def begin(seen):
 
 
 @kernel
-def see(y, before, at, inner, cell, load, seen):
-    """Look at a place; ``before`` is the stretch of the one before it."""
+def see(within, y, before, at, inner, cell, load, seen):
+    """Look at a place, in the lanes that have it; ``before`` is the stretch of the one before it."""
     told = values(y, at, inner, cell, load)
     for field in range(FIELDS):
         row, value = seen[field], told[field]
-        more, coming = value > get(row, BEST), get(row, COMING) > 0.5
+        more, coming = within & (value > get(row, BEST)), within & (get(row, COMING) > 0.5)
         put(row, BEHIND, select(more | coming, y, get(row, BEHIND)))
-        put(row, COMING, select(more, 1.0, spread(0.0)))
+        put(row, COMING, select(more, 1.0, select(within, 0.0, get(row, COMING))))
         put(row, BEST, select(more, value, get(row, BEST)))
         put(row, BEFORE, select(more, before, get(row, BEFORE)))
         put(row, AT, select(more, y, get(row, AT)))
@@ -158,7 +158,8 @@ def place_where(field, ends, mid, inner, cell, load, seen):
     slack = inside & (best == 0.0) if field < OUTER else isnt(fine)  # it pulls nowhere there
     going = inside & isnt(slack)
     if some(going):
-        far, last = select(going, get(row, BEFORE), 1.0), select(going, get(row, BEHIND), 1.0)
+        behind = select(get(row, COMING) > 0.5, mid.y, get(row, BEHIND))
+        far, last = select(going, get(row, BEFORE), 1.0), select(going, behind, 1.0)
         of_far = steepness(field, place_of(far, mid.level, near, cell, load)[1], inner, cell[2])
         of_last = steepness(field, place_of(last, mid.level, near, cell, load)[1], inner, cell[2])
         going, small = going & (of_far * of_last < 0.0), CLOSE * abs(mid.y - 1.0)

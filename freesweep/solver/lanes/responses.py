@@ -85,6 +85,14 @@ def look_for_ends(pieces, mid, cell, load, room):
 
 
 @kernel
+def none_but(lanes, counts):
+    """Others than these ``lanes``, as bits, have no ends, whoever their neighbours are."""
+    for lane in range(WIDTH):
+        if not (lanes >> lane) & 1:
+            counts[lane] = 0
+
+
+@kernel
 def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scratch):
     """Sum all parts between the ``edges``, each in so many ``pieces``, to our ``own`` :class:`.moved.Sums`; by how much
     families pull ``in_middle``. Returns the lanes in which each part is of one kind.
@@ -110,7 +118,7 @@ def over_parts(parts, pieces, edges, mid, in_middle, inner, cell, load, own, scr
                 place = place_at(here.y, here.beyond, at, cell, load)
                 way = way_of(k, within, depth, here.z, here.per_share, place, load, mid)
                 move_place(way, place, at, cell, load, mid, own)
-                see(here.y, before, at, inner, cell, load, own.seen)
+                see(within, here.y, before, at, inner, cell, load, own.seen)
                 before = here.y
             close(own)
         end_part(j, within, pull, in_middle, own)
@@ -138,14 +146,14 @@ def met_by(mid, far, slope, place, load, half, own, scratch):
 @kernel
 def seat(group, count, order, problems, pressures, known, limp, columns, start):
     """Put the next ``count`` rows in the given ``order`` into the lanes; those that are left take the last one, too. Returns
-    whether some family of one goes slack somewhere, and not everywhere.
+    of which some family goes slack somewhere, and not everywhere, as bits.
     """
-    ends = False
+    ends = 0
     for lane in range(WIDTH):
         row = order[group + min(lane, count - 1)]
         enter(lane, problems[row], columns)
         start[0, lane], start[1, lane] = known[0, row], known[1, row]
-        ends = ends or limp[row]
+        ends |= (1 if limp[row] else 0) << lane
         if pressures[row] == np.inf:
             lock(lane, columns)
         else:
@@ -177,12 +185,14 @@ def differentiate_lanes(problems, pressures, known, limp, order, constants, laye
             (mid, far), parts, unsure = seated(y, cell, load, half, scratch), 1, spread(0.0)
             put(edges, 0, 0.0)
             put(edges, 1, 1.0)
-            if searched:
+            if searched != 0:
                 if is_loose:
                     _, seen, valid = look_along(pieces, mid, cell, load, room)
-                    active = active & valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
+                    fine = valid & (seen.doubts[0] + seen.doubts[1] == 0.0)
+                    active = active & (fine | isnt(mask_of(searched)))
                 else:
                     look_for_ends(pieces, mid, cell, load, room)
+                none_but(searched, room.counts)
                 parts, unsure = find_ends(mid, cell, load, active, room.ends, room.counts, room.starts, edges, scratch)
                 active = active & ((unsure < slack_ends.ENOUGH) | mask_of(0 if is_loose else -1))
             at = lagrangian.at_level(mid.y, mid.level, cell, load, nothing_yet(spread(0.0)))
