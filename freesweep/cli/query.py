@@ -176,11 +176,16 @@ def _shown(units):
     return SHOWN.get(units, (units.removeprefix("1"), 1.0))
 
 
-def _flag(found, name, value):
-    """A flag in words: none, alpha family, stable."""
+def _flag(found, name, record):
+    """A flag in words: none, alpha family, stable; of what has no result there is none."""
+    from ..query.family import FAMILIES
+    from ..status import STATUSES, VALUED
+
     about = found[name].attrs
+    own = next((family.answer_status for family in FAMILIES.values() if family.flag == name), "status")
     words = dict(zip(about["flag_values"], about["flag_meanings"].split()))
-    return words[value].replace("_", " ")
+    told = [STATUSES[value].meaning for value in VALUED]
+    return words[record[name]].replace("_", " ") if record.get(own, told[0]) in told else "-"
 
 
 def _table(found):
@@ -207,7 +212,7 @@ def _table(found):
             error = record[f"{name}_error"] * shown[name][1]
             rows.append((name, f"{cell(record, name)} {shown[name][0]}", "-" if error != error else f"{error:.1e}"))
         rows += [(name, record[name], "") for name in statuses]
-        rows += [(name, _flag(found, name, record[name]), "") for name in flags]
+        rows += [(name, _flag(found, name, record), "") for name in flags]
         lines = aligned(rows)
     else:
         varying = [name for name in found.coords if name in records[0] and found[name].ndim]
@@ -217,7 +222,7 @@ def _table(found):
         for record in records:
             given = [f"{record[name] * shown[name][1]:.6g}" if name != "design" else record[name] for name in varying]
             rows.append([*given, *(cell(record, name) for name in values), *(record[name] for name in statuses),
-                         *(_flag(found, name, record[name]) for name in flags)])  # fmt: skip
+                         *(_flag(found, name, record) for name in flags)])  # fmt: skip
         lines = aligned(rows)
     seen = sorted({record[name] for record in records for name in statuses} - {"ok"})
     told = (one for one in STATUSES if one.meaning in seen)

@@ -127,6 +127,19 @@ def test_a_query_answers_in_the_units_of_its_question(capsys):
     assert float(shown["rotation"]) == pytest.approx(found.rotation.item() / 57.29578, rel=1e-4)
 
 
+def test_what_is_refused_is_neither_unstable_nor_taut(capsys):
+    asked = ("--alpha", "33", "--beta", "-40", "--length", "150 mm", "--radius", "5 mm", "--pressure", "100 kPa")
+    for more, flags in (((), ("-", "-")), (("--refine",), ("stable", "none"))):
+        assert run("query", ATLAS, *asked, *more) == DONE
+        told = capsys.readouterr().out
+        assert re.search(r"^ +status +(\S+)", told, re.M)[1] == ("ok" if more else "not_interpolable")
+        assert (
+            re.search(r"^ +stable +(\S+)", told, re.M)[1],
+            re.search(r"^ +slack_fiber +(\S+)", told, re.M)[1],
+        ) == flags
+        assert "none up to the largest pressure" in told
+
+
 def test_single_actuators_answer_in_the_units_of_the_question(capsys):
     sizes = ["--alpha", "30", "--beta", "-30", "--length", "7.5 in", "--radius", "5 mm", "--wall", "1 mm"]
     assert run("inflate", *sizes, "--c10", "0.1 MPa", "--pressure", "0", "10 psi", "--force", "1 lbf") == DONE
