@@ -1,5 +1,6 @@
 """States of a buckled tube: those of its branch at the pressures asked for, what is told of them, and how exactly."""
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -78,8 +79,8 @@ def walk(asked, rows, pressures, accuracy, stations, found):
                 least = there.pressure, doubt_of_turn(there.look) + (stands_out + SURE) * there.pressure
             low, high = sorted((here.pressure, there.pressure))
             for i in [i for i, p in waiting.items() if low <= p <= high]:
-                states = state_at(asked, here, length, pieces, waiting[i])
-                if write(asked, states, i, accuracy, stations, found):
+                states = stable(refined(asked, here, length, pieces, waiting[i]))
+                if write(told_of(asked, states, accuracy, stations), i, found):
                     found.least[i] = least
                     del waiting[i]
         point = there
@@ -98,11 +99,11 @@ def lost(asked, point):
 
 
 def doubts(look):
-    """By how much each condition may be off (3,)."""
-    told, out = look.told, np.empty(3)
-    out[LEVEL] = NOISE * np.abs(told[:, waves.LEVEL]).max()
-    out[HALF] = told[:, waves.DOUBT].sum()
-    out[TURN] = told[:, waves.BOUNDS + 2].sum()
+    """By how much each condition may be off (w + 1,)."""
+    told, out = look.told, np.empty(len(look.miss))
+    out[LEVEL:] = NOISE * np.abs(told[:, waves.LEVEL]).max()
+    out[HALF] = look.counts @ told[:, waves.DOUBT]
+    out[TURN] = look.counts @ told[:, waves.BOUNDS + 2]
     return out
 
 
@@ -129,16 +130,16 @@ def scales_of(asked, look):
     pressure, force = look.pair.pressure, asked.problem[FORCE]
     work = abs(pressure * volume) + abs(force * length) + abs(torque * turn)
     load = max(pressure, abs(force), abs(torque))
-    floors = look.told[:, waves.FLOORS : waves.FLOORS + TORQUE].sum(axis=0)
+    floors = look.counts @ look.told[:, waves.FLOORS : waves.FLOORS + TORQUE]
     scales = asked.half, volume, max(0.5, abs(turn)), max(abs(energy), FAINT * work), load
     return np.array(scales), np.array([*floors, FLOOR * ROUNDING * load])
 
 
-def state_at(asked, here, length, pieces, pressure):
-    """``(pieces, look, how far off its numbers may be (3,), bounds (5,))`` of the stable state at a pressure on a step,
-    finer and finer; nothing where there is none.
+def refined(asked, here, length, pieces, pressure):
+    """``(pieces, look, how far off its numbers may be (w + 1,), bounds (5,))`` of the state at a pressure on a step, finer and
+    finer; nothing where there is none.
     """
-    along, number, before = np.zeros(4), np.log(pressure), None
+    along, number, before = 0.0 * here.toward, np.log(pressure), None
     along[PRESSURE] = 1.0
     point = at_pressure(asked, here, length, pieces, pressure)
     if point is None:
@@ -149,23 +150,40 @@ def state_at(asked, here, length, pieces, pressure):
         if solved is None:
             continue
         look, left = solved
-        if look.unstable:
-            return
         pair, slopes = look.pair, look.slopes[:, :PRESSURE]
         size = np.abs(slopes).max(axis=1)
         shifts = np.abs(np.linalg.inv(slopes / size[:, None])) @ (doubts(look) / size) + np.abs(left[:PRESSURE])
         bounds = np.abs(look.rises[:, :PRESSURE]) @ shifts
-        bounds[:TORQUE] += look.told[:, waves.BOUNDS : waves.BOUNDS + TORQUE].sum(axis=0)
+        bounds[:TORQUE] += look.counts @ look.told[:, waves.BOUNDS : waves.BOUNDS + TORQUE]
         bounds[TORQUE] += FLOOR * ROUNDING * abs(look.values[TORQUE])
         if before is not None:
             yield fine, look, shifts, bounds + np.abs(look.values - before)
         before = look.values
 
 
-def write(asked, states, i, accuracy, stations, found):
-    """Write the first of the ``states``, finer and finer, that is as accurate as asked for, or the last that is known at
-    all, to row i; whether there is one.
+def stable(states):
+    """Those of the states, up to the first that is not."""
+    return itertools.takewhile(lambda state: not state[1].unstable, states)
+
+
+class State(NamedTuple):
+    """Numbers and bounds (NUMBERS,), of physical tubes those of :mod:`..along.places` behind them; status, families that would
+    have to push, unstable directions, profiles (FIELDS, stations).
     """
+
+    values: np.ndarray
+    bounds: np.ndarray
+    status: int
+    slack: int
+    unstable: int
+    profiles: np.ndarray
+
+
+def told_of(asked, states, accuracy, stations):
+    """The first :class:`State` of the ``states``, finer and finer, that is as accurate as asked for, or the last that is known
+    at all; None where none is.
+    """
+    found = None
     for pieces, look, shifts, bounds in states:
         scales, floors = scales_of(asked, look)
         largest = np.max((bounds - floors) / scales)
@@ -173,23 +191,34 @@ def write(asked, states, i, accuracy, stations, found):
             continue
         every = np.unique(np.append(stations, asked.half))
         fields, drawn = shape(asked, look, every, accuracy)
-        for k in range(PRESSURE):
-            change = np.zeros(4)
+        along, missed = look.along
+        for k in range(len(shifts)):
+            change = np.zeros(len(look.pair.numbers))
             change[k] = shifts[k]
             beside = asked.look(look.pair.moved(change), pieces)
             moved = shape(asked, beside, every, accuracy)[0] if beside is not None else np.full_like(fields, np.nan)
             fields[VALUES:] += np.abs(moved[:VALUES] - fields[:VALUES])
+            missed += np.abs(beside.along[0] - along) if beside is not None else np.nan
         own, middle = fields[:, np.searchsorted(every, stations)], fields[:, np.searchsorted(every, asked.half)]
-        found.profiles[i] = own
-        found.values[i] = *look.values[:TORQUE], middle[0], look.values[TORQUE]
-        found.bounds[i] = *bounds[:TORQUE], middle[VALUES], bounds[TORQUE]
-        found.slack[i] = int(look.told[0, waves.SLACK]) | int(look.told[1, waves.SLACK])
-        found.stable[i] = 1
         exact = drawn and max(largest, middle[VALUES], worst_of(own, asked.half)) <= accuracy
-        found.status[i] = OK if exact else INACCURATE
+        slack = np.bitwise_or.reduce(look.told[:, waves.SLACK].astype(int))
+        found = State(
+            np.array([*look.values[:TORQUE], middle[0], look.values[TORQUE], *along]),
+            np.array([*bounds[:TORQUE], middle[VALUES], bounds[TORQUE], *missed]),
+            OK if exact else INACCURATE, slack, look.unstable, own,
+        )  # fmt: skip
         if exact:
             break
-    return found.stable[i] == 1
+    return found
+
+
+def write(state, i, found):
+    """Write a stable state to row i; whether there is one."""
+    if state is None or state.unstable:
+        return False
+    found.values[i], found.bounds[i], found.profiles[i] = state.values, state.bounds, state.profiles
+    found.status[i], found.slack[i], found.stable[i] = state.status, state.slack, 1
+    return True
 
 
 def worst_of(fields, half):
@@ -204,12 +233,13 @@ def worst_of(fields, half):
 
 def shape(asked, look, stations, accuracy):
     """``(FIELDS at the stations, whether each wave alone is as accurate)``: each wave is a free tube, and its own mirror
-    image.
+    image; they stand along the tube in the ``order`` of what is asked.
     """
     fields, good, start, passed = np.empty((FIELDS, len(stations))), True, 0.0, np.zeros(2)
-    pair, ends = look.pair, 2.0 * look.told[:, waves.X]
-    for wave, end in enumerate(ends):
-        own = stations <= ends[0] if wave == 0 else stations > ends[0]
+    pair = look.pair
+    for wave in asked.order:
+        end, last = 2.0 * look.told[wave, waves.X], wave == asked.order[-1]
+        own = ((stations > start) | (start == 0.0)) & ((stations <= start + end) | last)
         x = stations[own] - start
         mirrored = x > 0.5 * end
         x, index = np.unique(np.clip(np.where(mirrored, end - x, x), 0.0, 0.5 * end), return_inverse=True)
