@@ -15,7 +15,7 @@ from .on_step import parts
 from .states import SURE, doubt_of_turn, refined, told_of
 from .waves import CENTER, DEEP_ENOUGH, PRESSURE, SIDES, Waves
 
-SHARES = 2.0 ** np.arange(-7, 0)  # of the loads, at which a branch is entered: the less of them, the less steep are fronts
+LEAST_SHARE, TRIES = 1.0 / 128.0, 14  # of the loads, at which a branch is entered: the less of them, the less steep are fronts
 STATIONS = np.linspace(0.0, 1.0, 129) ** 2  # of half a tube, at which its shape is looked at: necks are at its end
 LEAST_NECK = 1e-2  # of the body's height: waves have hardly a digit of less
 DEPTHS = 6.0, 12.0  # of a middle that is deep: two places tell how its wave grows with the depth
@@ -27,14 +27,15 @@ FAINT, SURE_LIMIT = 1e-3, 1e-2  # a wave that is next to none; how far off a lim
 
 class Held(Waves):
     """Waves of a tube whose rotation is held at none, while pressure, force and fiber extension - 1 rise in proportion, to
-    the pressure ``most``: a body on the first of the ``sides``, with necks on the other one.
+    the pressure ``most``: a body on the first of the ``sides``, with necks on the other one. The torque counts in a
+    ``unit``, to the other loads.
     """
 
     counts, order, centered = np.array([1.0, 2.0]), (1, 0), False
 
-    def __init__(self, problem, most, sides):
+    def __init__(self, problem, most, sides, unit):
         super().__init__(problem, 0.0)
-        self.most, self.sides = most, sides
+        self.most, self.sides, self.unit = most, sides, unit
 
     def train(self, numbers):
         return super().train(numbers)._replace(sides=self.sides, centered=False)
@@ -43,7 +44,7 @@ class Held(Waves):
         p = np.exp(numbers[PRESSURE])
         share = p / self.most
         f = share * self.problem[FORCE]
-        return p, f, 1.0 + share * (self.problem[GAMMA] - 1.0), numbers[CENTER] * max(p, abs(f))
+        return p, f, 1.0 + share * (self.problem[GAMMA] - 1.0), numbers[CENTER] * self.unit * max(p, abs(f))
 
 
 def at_share(problem, share):
@@ -63,11 +64,14 @@ def enter(problem, pressure, share, seed):
     neck = np.argmin(outward * y)
     if outward * (1.0 - y[neck]) < LEAST_NECK * abs(values[4] - 1.0):
         return None
-    asked, p = Held(problem, pressure, SIDES[[side, 1 - side]]), share * pressure
+    p = share * pressure
+    number = torque / max(p, share * abs(problem[FORCE]))
+    unit = max(abs(number), 1.0)
+    asked = Held(problem, pressure, SIDES[[side, 1 - side]], unit)
     after = neck + np.argmax(outward * (y[neck:] - 1.0) > 0.0)
     part = (y[after] - 1.0) / (y[after] - y[after - 1])
     crossing = asked.half * (STATIONS[after] - part * (STATIONS[after] - STATIONS[after - 1]))
-    train = asked.train([0.0, 0.0, torque / max(p, share * abs(problem[FORCE])), np.log(p)])
+    train = asked.train([0.0, 0.0, number / unit, np.log(p)])
     train = seated(asked, train, 0, values[4], asked.half - crossing)
     train = seated(asked, train, 1, y[neck], 0.5 * crossing)
     along = np.zeros(len(train.numbers))
@@ -144,13 +148,19 @@ def held_of(problem, pressure, find, accuracy, stations):
 
     It is entered at the least share of the loads at which there are necks.
     """
-    for share in SHARES:
+    low, share, high = 0.0, LEAST_SHARE, np.inf
+    for _ in range(TRIES):
         seed = find(at_share(problem, share), share * pressure, 0.5 * problem[LENGTH] * STATIONS)
-        if seed.status[0] not in (OK, INACCURATE):  # nor do meshes go farther
+        if seed.status[0] in (OK, INACCURATE):
+            entered = enter(problem, pressure, share, seed)
+            if entered is not None:
+                return settled(*entered, accuracy, stations)
+            low = share
+        else:
+            high = share
+        share = min(2.0 * low, 1.0) if high == np.inf else 0.5 * (low + high)
+        if not low < share < high:
             break
-        entered = enter(problem, pressure, share, seed)
-        if entered is not None:
-            return settled(*entered, accuracy, stations)
     return PENDING, None
 
 

@@ -88,7 +88,8 @@ class Train(NamedTuple):
         """By how much the numbers are changed to see what that changes."""
         load = DEEP_STEP if self.deep.any() else SHALLOW_STEP
         middles = np.where(self.deep, DEEP_STEP * np.maximum(self.numbers[:CENTER], 1.0), SHALLOW_STEP)
-        return np.array([*middles, min(OFF_CENTER * load, SLIGHT) * self.aside, load])
+        torque = min(OFF_CENTER * load, SLIGHT) if self.centered else load
+        return np.array([*middles, torque * self.aside, load])
 
     def about(self, numbers, wave):
         """Stretch and depth by which the middle of a wave is asked about, of other numbers."""
