@@ -6,22 +6,20 @@ Fronts between body and neck, which get steeper all the way, need no mesh.
 
 import numpy as np
 
-from ..lanes import waves
+from ..held.sought import valued
 from ..problem import FORCE, GAMMA, LENGTH
 from ..stability import PUSHED
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
-from .branch import ALONG, Point, follow, toward
-from .on_step import parts
-from .states import SURE, doubt_of_turn, refined, told_of
-from .waves import CENTER, DEEP_ENOUGH, PRESSURE, SIDES, Waves
+from .branch import ALONG, Point, toward
+from .held_branch import reach, seated
+from .told import SURE, doubt_of_turn, refined, told_of
+from .waves import CENTER, PRESSURE, SIDES, Waves
 
-LEAST_SHARE, TRIES = 1.0 / 128.0, 14  # of the loads, at which a branch is entered: the less of them, the less steep are fronts
+# of the loads, at which a branch is entered: the less of them, the less steep are fronts; how often an interval is halved
+LEAST_SHARE, HALVINGS = 1.0 / 128.0, 4
 STATIONS = np.linspace(0.0, 1.0, 129) ** 2  # of half a tube, at which its shape is looked at: necks are at its end
 LEAST_NECK = 1e-2  # of the body's height: waves have hardly a digit of less
-DEPTHS = 6.0, 12.0  # of a middle that is deep: two places tell how its wave grows with the depth
 ALIKE = 1e-4  # scaled: by what a state may differ from that of meshes
-PAST_CORNER, CORNERS = (1e-3, 4e-3, 1.6e-2), 20  # of the loads' logarithm; how many corners are passed
-STRAY = 0.1  # of the way past a corner: how far off a middle may be
 FAINT, SURE_LIMIT = 1e-3, 1e-2  # a wave that is next to none; how far off a limit may be
 
 
@@ -88,87 +86,36 @@ def enter(problem, pressure, share, seed):
     return asked, Point(look, toward(look, along))
 
 
-def seated(asked, train, wave, stretch, length):
-    """The train with the middle of a wave that has about that stretch, and is about so long."""
-    numbers, deep, uniform = train.numbers.copy(), train.deep.copy(), train.uniform.copy()
-    loads = asked.loads(numbers)
-    told = asked.ask(np.array([[*loads, stretch, depth] for depth in (np.nan, *DEPTHS)]), ALONG)
-    numbers[wave] = np.log(abs(stretch - 1.0))
-    if not told[0, waves.DEPTH] < DEEP_ENOUGH:
-        slope = (DEPTHS[1] - DEPTHS[0]) / (told[2, waves.X] - told[1, waves.X])
-        depth = DEPTHS[1] + slope * (length - told[2, waves.X])
-        if depth > DEEP_ENOUGH:
-            numbers[wave], deep[wave], uniform[wave] = depth, True, told[2, waves.UNIFORM]
-    return train._replace(numbers=numbers, deep=deep, uniform=uniform)
-
-
-def reach(asked, point):
-    """``(step, None)``, on which all loads are come to, or ``(None, (Point, by how much it stands out))`` where they turn
-    before; ``(None, None)`` where the branch is lost.
-    """
-    for _ in range(CORNERS):
-        for step in follow(asked, point):
-            for here, length, there, pieces, stands_out in parts(asked, *step):
-                if there.pressure >= asked.most:
-                    return (here, length, there, pieces), None
-                if stands_out is not None:
-                    return None, (there, stands_out)
-            point = there
-        point = past_corner(asked, point)
-        if point is None:
-            break
-    return None, None
-
-
-def past_corner(asked, point):
-    """The next :class:`Point` behind a place where a family goes slack in a deep middle, along whose layer the depth is
-    another one then; None where there is none.
-    """
-    look, along = point.look, np.zeros(len(point.toward))
-    along[PRESSURE] = 1.0
-    by_load = point.toward / look.pair.weights
-    for part in PAST_CORNER:
-        change = part * by_load / abs(by_load[PRESSURE])
-        guess = look.pair.moved(change)
-        for wave in np.flatnonzero(guess.deep):
-            guess = seated(asked, guess, wave, look.told[wave, waves.UNIFORM], look.told[wave, waves.X])
-        solved = asked.solve(guess, along, guess.numbers[PRESSURE], ALONG)
-        if solved is None:
-            continue
-        there = solved[0]
-        if np.all(np.abs(there.told[:, 4] - look.told[:, 4]) < STRAY * np.abs(look.told[:, 4] - 1.0)):
-            ahead = toward(there, along * np.sign(by_load[PRESSURE]))
-            return Point(there, ahead)
-    return None
-
-
 def held_of(problem, pressure, find, accuracy, stations):
-    """``(status, State or None)`` of the tube whose rotation is held at none, PENDING where waves do not tell; ``find`` tells
-    states by meshes, of a problem under a pressure, with profiles at stations.
+    """``(status, State or None)`` of the tube whose rotation is held at none, PENDING where waves do not tell; ``find``
+    tells states by meshes, of a problem under a pressure, with profiles at stations.
 
-    It is entered at the least share of the loads at which there are necks.
+    The branch is entered at about the least share of the loads at which there are necks. Where none comes before meshes
+    have trouble, what gives it is no neck.
     """
-    low, share, high = 0.0, LEAST_SHARE, np.inf
-    for _ in range(TRIES):
+    low, share, high, halvings = 0.0, LEAST_SHARE, np.inf, 0
+    while halvings <= HALVINGS and low < share < high:
         seed = find(at_share(problem, share), share * pressure, 0.5 * problem[LENGTH] * STATIONS)
-        if seed.status[0] in (OK, INACCURATE):
+        if valued(seed.status[0]):
             entered = enter(problem, pressure, share, seed)
             if entered is not None:
                 return settled(*entered, accuracy, stations)
+        if seed.status[0] == OK:
             low = share
+        elif seed.status[0] == INACCURATE:
+            break
         else:
             high = share
+        halvings += high < np.inf
         share = min(2.0 * low, 1.0) if high == np.inf else 0.5 * (low + high)
-        if not low < share < high:
-            break
     return PENDING, None
 
 
 def settled(asked, point, accuracy, stations):
     """The same, of the branch through a :class:`Point`."""
-    step, turned = reach(asked, point)
-    if step is not None:
-        here, length, _, pieces = step
+    last, turned = reach(asked, point)
+    if last is not None:
+        here, length, _, pieces = last
         state = told_of(asked, refined(asked, here, length, pieces, asked.most), accuracy, stations)
         return (PENDING if state is None else state.status), state
     if turned is not None:

@@ -1,13 +1,13 @@
 """A tube as waves: one number for each, and two for the load; one condition less.
 
-A tube that is the same all along has one level of its first integral. Where it passes y = 1 inside, it is free tubes, swollen
-ones and thinned ones, of one level and under one load; those of one kind are alike. A number for the middle of each kind, one
-for the torque and one for how much of the other loads there is tell it. Conditions hold: all lengths add up to the tube's,
-all twists to what is held, and levels are the same. Fronts that are steep beyond any mesh, and parts that are long and
-uniform, are ordinary here.
+A tube that is the same all along has one level of its first integral. Where it passes y = 1 inside, it is free tubes,
+swollen ones and thinned ones, of one level and under one load; those of one kind are alike. A number for the middle of each
+kind, one for the torque and one for how much of the other loads there is tell it. Conditions hold: all lengths add up to the
+tube's, all twists to what is held, and levels are the same. Fronts that are steep beyond any mesh, and parts that are long
+and uniform, are ordinary here.
 
-A buckled tube is one wave of each kind; its torque is told by its center (:mod:`..lanes.waves`). A held tube that is its own
-mirror image is one wave, or a body and a neck towards each end; its torque is told by itself.
+A buckled tube is one wave of each kind; its torque is told by its center (:mod:`..lanes.waves`). A held tube that is its
+own mirror image is a body and a neck towards each end (:mod:`.held`); its torque is told by itself.
 
 Conditions are smooth but for rounding: their slopes are told by differences.
 """
@@ -21,82 +21,16 @@ from ..batch import MIDDLE, OUTPUTS, kinds_of
 from ..lanes import waves
 from ..lanes.sums import TOLD
 from ..problem import FORCE, GAMMA, LENGTH
+from .train import CENTER, PRESSURE, Train
 
 HALF, TURN, LEVEL = range(3)  # conditions: of half the length, of half the twist, and of levels
-CENTER, PRESSURE = -2, -1  # among the numbers, behind those of the middles
-TORQUE = 4  # among the values, behind length, volume, twist and energy
 SIDES = np.array([1.0, -1.0])  # of a swollen wave, and of a thinned one
-# for slopes: little of a deep middle's length is known better than to 1e-8 of a layer
-SHALLOW_STEP, DEEP_STEP = 1e-6, 3e-5
-OFF_CENTER = 100.0  # times more is the center moved, of the way from it to the middles
+TORQUE = 4  # among the values, behind length, volume, twist and energy
 DEEP_ENOUGH, TOO_SHALLOW = 3.0, 1.5  # depths from which on a middle is told by its depth, and by its stretch again
 # Newton's steps: their number, where they end; end, if they no longer get shorter; are lost
 TRIES, CLOSE, STILL, FAR = 12, 1e-10, 1e-4, 1.0
-SHORTER, SLIGHT = 0.3, 1e-3
-DEPTHS, MANY = 3.0, 10.0  # weight of a depth, which counts by itself from there on
+SHORTER = 0.3
 COUNTED = [waves.X, 2, waves.LEVEL]  # in the conditions, of what is told
-
-
-
-class Train(NamedTuple):
-    """A train of waves of w kinds: its ``numbers`` (w + 2,), which kinds are ``deep`` (w,), whose number is the depth of the
-    middle, not the logarithm of its distance from 1, those about the ``uniform`` stretch (w,); the ``sides`` (w,) on
-    which they are; and whether the torque is told by its center.
-    """
-
-    numbers: np.ndarray
-    deep: np.ndarray
-    uniform: np.ndarray
-    sides: np.ndarray
-    centered: bool
-
-    def moved(self, change):
-        """The train whose numbers differ by so much."""
-        return self._replace(numbers=self.numbers + change)
-
-    @property
-    def pressure(self):
-        """Of which the number is the logarithm."""
-        return float(np.exp(self.numbers[PRESSURE]))
-
-    @property
-    def apart(self):
-        """How far the middles are from 1 (w,), at most 1."""
-        shallow = np.exp(np.where(self.deep, 0.0, self.numbers[:CENTER]))
-        return np.minimum(np.where(self.deep, np.abs(self.uniform - 1.0), shallow), 1.0)
-
-    @property
-    def near(self):
-        """How far the nearest of the middles is from 1."""
-        return np.min(self.apart)
-
-    @property
-    def aside(self):
-        """How far off a torque's number makes much of a difference: to the nearest middle a center's, to the farthest one
-        its own.
-        """
-        return self.near if self.centered else np.max(self.apart)
-
-    @property
-    def weights(self):
-        """By which changes of the numbers count as alike."""
-        middles = np.where(self.deep, DEPTHS / np.maximum(self.numbers[:CENTER], MANY), 1.0)
-        return np.array([*middles, 5.0 / self.aside, 5.0])
-
-    @property
-    def steps(self):
-        """By how much the numbers are changed to see what that changes."""
-        load = DEEP_STEP if self.deep.any() else SHALLOW_STEP
-        middles = np.where(self.deep, DEEP_STEP * np.maximum(self.numbers[:CENTER], 1.0), SHALLOW_STEP)
-        torque = min(OFF_CENTER * load, SLIGHT) if self.centered else load
-        return np.array([*middles, torque * self.aside, load])
-
-    def about(self, numbers, wave):
-        """Stretch and depth by which the middle of a wave is asked about, of other numbers."""
-        number = numbers[wave]
-        if self.deep[wave]:
-            return self.uniform[wave], number
-        return 1.0 + self.sides[wave] * np.exp(number), np.nan
 
 
 class Look(NamedTuple):
@@ -144,7 +78,11 @@ class Look(NamedTuple):
         each, missed = np.split(self.told[:, waves.ALONG :], 2, axis=1)
         parts = self.counts * self.told[:, waves.X]
         parts = parts / parts.sum()
-        numbers = [*(parts @ each[:, :LEAST_ALPHA]), *each[:, LEAST_ALPHA:OUTER].min(axis=0), *each[:, OUTER:].max(axis=0)]
+        numbers = [
+            *(parts @ each[:, :LEAST_ALPHA]),
+            *each[:, LEAST_ALPHA:OUTER].min(axis=0),
+            *each[:, OUTER:].max(axis=0),
+        ]
         return np.array([numbers, [*(parts @ missed[:, :LEAST_ALPHA]), *missed[:, LEAST_ALPHA:].max(axis=0)]])
 
     def given(self, weights):
@@ -160,7 +98,7 @@ class Waves:
 
     def __init__(self, problem, target):
         self.problem, self.half, self.turn = problem, 0.5 * problem[LENGTH], 0.5 * target
-        (_, _, self.kind, _), = kinds_of(problem[None])
+        ((_, _, self.kind, _),) = kinds_of(problem[None])
 
     def part(self, share):
         """The same tube with that share of its fiber extension and of the rotation held."""
@@ -180,7 +118,7 @@ class Waves:
         """Rows (n, ...) of what is told of halves of waves."""
         physical = len(self.kind) > 1
         told = np.full((len(given), waves.COUNT + (2 * (TOLD - OUTPUTS) if physical else 0)), np.nan)
-        measure = waves.measure_physical if physical else waves.measure_waves
+        measure = waves.measure_physical_waves if physical else waves.measure_waves
         measure(self.problem, given, self.centered, *self.kind, pieces, told)
         return told
 
@@ -205,8 +143,12 @@ class Waves:
         values = np.array([*sums[0], each[0, 0, waves.TORQUE]])
         slopes, rises = np.zeros((kinds + 1, kinds + 2)), np.zeros((5, kinds + 2))
         for wave in range(kinds):
-            slopes[:LEVEL, wave] = counts[wave] * (counted[wave, 1, :LEVEL] - counted[wave, 2, :LEVEL]) / (2.0 * steps[wave])
-            rises[:TORQUE, wave] = counts[wave] * (each[wave, 1, :TORQUE] - each[wave, 2, :TORQUE]) / (2.0 * steps[wave])
+            slopes[:LEVEL, wave] = (
+                counts[wave] * (counted[wave, 1, :LEVEL] - counted[wave, 2, :LEVEL]) / (2.0 * steps[wave])
+            )
+            rises[:TORQUE, wave] = (
+                counts[wave] * (each[wave, 1, :TORQUE] - each[wave, 2, :TORQUE]) / (2.0 * steps[wave])
+            )
         for k, at in ((CENTER, 3), (PRESSURE, 5)):
             slopes[:LEVEL, k] = (both[at] - both[at + 1]) / (2.0 * steps[k])
             slopes[LEVEL:, k] = (levels[:, at] - levels[:, at + 1]) / (2.0 * steps[k])

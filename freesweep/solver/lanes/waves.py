@@ -141,6 +141,6 @@ def measure_waves(problem, given, centered, constants, pieces, told):
 
 
 @entry_point
-def measure_physical(problem, given, centered, constants, layers, pieces, told):
+def measure_physical_waves(problem, given, centered, constants, layers, pieces, told):
     """:func:`measure_many` of physical tubes."""
     measure_many(problem, given, centered, Kind(constants, PHYSICAL, layers), pieces, told)
