@@ -53,8 +53,8 @@ def hold_all(
     force while its rotation is; arguments as of :func:`.held.held_states.hold_many`, ``tube`` its (course, edges, places).
 
     Vectors of designs serve where tubes do not vary. Their numbers do not depend on which designs share a vector; those
-    of meshes alone (``lanes=False``) differ by less than the bounds; what is not settled by vectors and so
-    many ``meshes`` stays PENDING.
+    of meshes alone (``lanes=False``) differ by less than the bounds. Where few meshes do not settle that no rotation is
+    held, waves go on (:mod:`.by_waves.held`). What nothing settles, no more than so many ``meshes``, stays PENDING.
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     count, along = len(pressures), len(NUMBERS) if wall_columns(problems) == PHYSICAL else 0
@@ -63,7 +63,8 @@ def hold_all(
         room_for(count, OUTPUTS + along), np.full((count, FIELDS, len(stations)), np.nan),
         Beside(np.full(count, np.nan), np.full((count, 2), np.nan), np.full(count, np.nan)),
     )  # fmt: skip
-    if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
+    vectors = lanes and len(tube[0]) == 0 and not config.DISABLE_JIT
+    if vectors:
         owners = np.repeat(np.arange(len(problems)), np.diff(first))
         own, unknown = np.ascontiguousarray(problems[owners]), FORCE if kind == HELD_LENGTH else TORQUE
         hold_by_load(own, np.ascontiguousarray(pressures), 0.5 * targets[owners], unknown, accuracy, found, soon)
@@ -71,7 +72,7 @@ def hold_all(
             _draw(own, pressures, unknown, stations, accuracy, found, soon)
     if meshes:
         given = problems, targets, kind, first, pressures, tube, accuracy
-        if lanes and kind == HELD_ROTATION and len(tube[0]) == 0 and meshes > FEW:
+        if vectors and kind == HELD_ROTATION and meshes > FEW:
             _mesh(*given, FEW, stations, found, soon)
             _find_waves(*given, stations, found, soon)
         _mesh(*given, meshes, stations, found, soon)
@@ -97,7 +98,9 @@ def _find_waves(problems, targets, kind, first, pressures, tube, accuracy, stati
     owners = np.repeat(np.arange(len(problems)), np.diff(first))
     for i in np.flatnonzero((found.status == PENDING) & (targets[owners] == 0.0) & (pressures > 0.0)):
         with np.errstate(all="ignore"):  # of what is no tube nothing can be told
-            found.status[i], state = held_of(problems[owners[i]], pressures[i], find, accuracy, stations)
+            found.status[i], state, found.paths[i] = held_of(
+                problems[owners[i]], pressures[i], find, accuracy, stations
+            )
         if state is None:
             continue
         values, bounds = state.values, state.bounds

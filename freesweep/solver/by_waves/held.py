@@ -6,7 +6,8 @@ Fronts between body and neck, which get steeper all the way, need no mesh.
 
 import numpy as np
 
-from ..held.sought import valued
+from ...interpret import foretell
+from ..held.sought import FROM_REST, valued
 from ..problem import FORCE, GAMMA, LENGTH
 from ..stability import PUSHED
 from ..status import BEYOND_LIMIT, COMPRESSED, INACCURATE, OK, PENDING
@@ -34,6 +35,7 @@ class Held(Waves):
     def __init__(self, problem, most, sides, unit):
         super().__init__(problem, 0.0)
         self.most, self.sides, self.unit = most, sides, unit
+        foretell(self.measure)
 
     def train(self, numbers):
         return super().train(numbers)._replace(sides=self.sides, centered=False)
@@ -87,8 +89,9 @@ def enter(problem, pressure, share, seed):
 
 
 def held_of(problem, pressure, find, accuracy, stations):
-    """``(status, State or None)`` of the tube whose rotation is held at none, PENDING where waves do not tell; ``find``
-    tells states by meshes, of a problem under a pressure, with profiles at stations.
+    """``(status, State or None, by which way meshes came to the branch)`` of the tube whose rotation is held at none,
+    PENDING where waves do not tell; ``find`` tells states by meshes, of a problem under a pressure, with profiles at
+    stations.
 
     The branch is entered at about the least share of the loads at which there are necks. Where none comes before meshes
     have trouble, what gives it is no neck.
@@ -99,7 +102,7 @@ def held_of(problem, pressure, find, accuracy, stations):
         if valued(seed.status[0]):
             entered = enter(problem, pressure, share, seed)
             if entered is not None:
-                return settled(*entered, accuracy, stations)
+                return *settled(*entered, accuracy, stations), seed.paths[0]
         if seed.status[0] == OK:
             low = share
         elif seed.status[0] == INACCURATE:
@@ -108,11 +111,11 @@ def held_of(problem, pressure, find, accuracy, stations):
             high = share
         halvings += high < np.inf
         share = min(2.0 * low, 1.0) if high == np.inf else 0.5 * (low + high)
-    return PENDING, None
+    return PENDING, None, FROM_REST
 
 
 def settled(asked, point, accuracy, stations):
-    """The same, of the branch through a :class:`Point`."""
+    """Status and State, or None, of the branch through a :class:`Point`."""
     last, turned = reach(asked, point)
     if last is not None:
         here, length, _, pieces = last

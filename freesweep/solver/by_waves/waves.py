@@ -99,6 +99,9 @@ class Waves:
     def __init__(self, problem, target):
         self.problem, self.half, self.turn = problem, 0.5 * problem[LENGTH], 0.5 * target
         ((_, _, self.kind, _),) = kinds_of(problem[None])
+        physical = len(self.kind) > 1
+        self.measure = waves.measure_physical_waves if physical else waves.measure_waves
+        self.columns = waves.COUNT + (2 * (TOLD - OUTPUTS) if physical else 0)
 
     def part(self, share):
         """The same tube with that share of its fiber extension and of the rotation held."""
@@ -116,10 +119,8 @@ class Waves:
 
     def ask(self, given, pieces):
         """Rows (n, ...) of what is told of halves of waves."""
-        physical = len(self.kind) > 1
-        told = np.full((len(given), waves.COUNT + (2 * (TOLD - OUTPUTS) if physical else 0)), np.nan)
-        measure = waves.measure_physical_waves if physical else waves.measure_waves
-        measure(self.problem, given, self.centered, *self.kind, pieces, told)
+        told = np.full((len(given), self.columns), np.nan)
+        self.measure(self.problem, given, self.centered, *self.kind, pieces, told)
         return told
 
     def look(self, pair, pieces):
