@@ -19,6 +19,7 @@ from .waves import CENTER, PRESSURE, SIDES, Waves
 # of the loads, at which a branch is entered: the less of them, the less steep are fronts; how often an interval is halved
 LEAST_SHARE, HALVINGS = 1.0 / 128.0, 4
 STATIONS = np.linspace(0.0, 1.0, 129) ** 2  # of half a tube, at which its shape is looked at: necks are at its end
+TALL = 3.0  # times the fibers' extension, to which a body without necks is otherwise alike
 LEAST_NECK = 1e-2  # of the body's height: waves have hardly a digit of less
 ALIKE = 1e-4  # scaled: by what a state may differ from that of meshes
 FAINT, SURE_LIMIT = 1e-3, 1e-2  # a wave that is next to none; how far off a limit may be
@@ -94,18 +95,20 @@ def held_of(problem, pressure, find, accuracy, stations):
     stations.
 
     The branch is entered at about the least share of the loads at which there are necks. Where none comes before meshes
-    have trouble, what gives it is no neck.
+    have trouble, what gives it is no neck: nor does one come soon where a body alone is much higher than fibers extend, as
+    it may be where they are slack.
     """
-    low, share, high, halvings = 0.0, LEAST_SHARE, np.inf, 0
+    low, share, high, halvings, tall = 0.0, LEAST_SHARE, np.inf, 0, False
     while halvings <= HALVINGS and low < share < high:
-        seed = find(at_share(problem, share), share * pressure, 0.5 * problem[LENGTH] * STATIONS)
+        part = at_share(problem, share)
+        seed = find(part, share * pressure, 0.5 * problem[LENGTH] * STATIONS)
         if valued(seed.status[0]):
             entered = enter(problem, pressure, share, seed)
             if entered is not None:
                 return *settled(*entered, accuracy, stations), seed.paths[0]
         if seed.status[0] == OK:
-            low = share
-        elif seed.status[0] == INACCURATE:
+            low, tall = share, abs(seed.states.values[0, 4] - 1.0) > TALL * (part[GAMMA] - 1.0)
+        elif seed.status[0] == INACCURATE or tall:
             break
         else:
             high = share
