@@ -219,7 +219,8 @@ def _held(kind, rows, own, accuracy, followed, thorough):
     tube, error = followed
     meshes = thorough or len(tube[0]) > 0
     accuracy -= SENSITIVITY * error
-    found = hold_batch.hold_all(*asked, tube, accuracy, lanes=thorough != MESHES, soon=meshes, meshes=meshes)
+    many = hold_batch.EVERY if meshes else 0
+    found = hold_batch.hold_all(*asked, tube, accuracy, lanes=thorough != MESHES, soon=meshes, meshes=many)
     found.status[found.status == PENDING] = NOT_CONVERGED
     own = slice(hold_batch.OUTPUTS - 1, None)  # the stretch in the middle, and what is known along the tube
     values = np.column_stack([found.loads, found.states.values[:, own]])

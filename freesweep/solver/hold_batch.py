@@ -12,15 +12,15 @@ from .along.places import NUMBERS
 from .along.profile import FIELDS
 from .batch import NOTHING, OUTPUTS, draw
 from .halves import one_by_one
-from .held.held_states import hold_many
-from .held.sought import HELD_LENGTH
+from .held.held_states import EVERY, FEW, hold_many
+from .held.sought import HELD_LENGTH, HELD_ROTATION
 from .held_by_load import States, hold_by_load, room_for
 from .lanes.meridian import DEEPEST
 from .problem import FORCE, PHYSICAL, TORQUE, wall_columns
 from .status import INACCURATE, OK, PENDING
 
 HOLDER = OUTPUTS  # column of the force or torque among a held state's numbers; behind it those of :mod:`.along.places`
-STATUS = 11  # place among the arguments of hold_many
+STATUS = 12  # place among the arguments of hold_many
 
 
 class Beside(NamedTuple):
@@ -47,13 +47,14 @@ class Holds(NamedTuple):
 
 
 def hold_all(
-    problems, targets, kind, first, pressures, tube, accuracy, stations=NOTHING, lanes=True, soon=False, meshes=True
+    problems, targets, kind, first, pressures, tube, accuracy, stations=NOTHING, lanes=True, soon=False, meshes=EVERY
 ) -> Holds:
     """Hold each problem at its target (k,) under each of its pressures, keeping its torque while its length is held, its
     force while its rotation is; arguments as of :func:`.held.held_states.hold_many`, ``tube`` its (course, edges, places).
 
     Vectors of designs serve where tubes do not vary. Their numbers do not depend on which designs share a vector; those
-    of meshes alone (``lanes=False``) differ by less than the bounds; without ``meshes``, what vectors leave stays PENDING.
+    of meshes alone (``lanes=False``) differ by less than the bounds. Where few meshes do not settle that no rotation is
+    held, waves go on (:mod:`.by_waves.held`). What nothing settles, no more than so many ``meshes``, stays PENDING.
     ``soon``: a few states need not wait for the compiler (:mod:`freesweep.interpret`).
     """
     count, along = len(pressures), len(NUMBERS) if wall_columns(problems) == PHYSICAL else 0
@@ -62,16 +63,51 @@ def hold_all(
         room_for(count, OUTPUTS + along), np.full((count, FIELDS, len(stations)), np.nan),
         Beside(np.full(count, np.nan), np.full((count, 2), np.nan), np.full(count, np.nan)),
     )  # fmt: skip
-    if lanes and len(tube[0]) == 0 and not config.DISABLE_JIT:
+    vectors = lanes and len(tube[0]) == 0 and not config.DISABLE_JIT
+    if vectors:
         owners = np.repeat(np.arange(len(problems)), np.diff(first))
         own, unknown = np.ascontiguousarray(problems[owners]), FORCE if kind == HELD_LENGTH else TORQUE
         hold_by_load(own, np.ascontiguousarray(pressures), 0.5 * targets[owners], unknown, accuracy, found, soon)
         if len(stations):
             _draw(own, pressures, unknown, stations, accuracy, found, soon)
     if meshes:
-        for call in _calls(problems, targets, kind, first, pressures, tube, accuracy, stations, found):
-            run(hold_many, np.count_nonzero(call[STATUS] == PENDING), soon, *call)
+        given = problems, targets, kind, first, pressures, tube, accuracy
+        if vectors and kind == HELD_ROTATION and meshes > FEW:
+            _mesh(*given, FEW, stations, found, soon)
+            _find_waves(*given, stations, found, soon)
+        _mesh(*given, meshes, stations, found, soon)
     return found
+
+
+def _mesh(problems, targets, kind, first, pressures, tube, accuracy, most, stations, found, soon):
+    """Hold what is left by meshes, so many of each state at ``most``."""
+    for call in _calls(problems, targets, kind, first, pressures, tube, accuracy, most, stations, found):
+        run(hold_many, np.count_nonzero(call[STATUS] == PENDING), soon, *call)
+
+
+def _find_waves(problems, targets, kind, first, pressures, tube, accuracy, stations, found, soon):
+    """Tell what is left by waves, where no rotation is held."""
+    from .by_waves.held import held_of
+
+    def find(problem, pressure, places):
+        return hold_all(
+            problem[None], np.zeros(1), kind, np.array([0, 1]), np.array([pressure]), tube, accuracy, places, soon=soon,
+            meshes=FEW,
+        )  # fmt: skip
+
+    owners = np.repeat(np.arange(len(problems)), np.diff(first))
+    for i in np.flatnonzero((found.status == PENDING) & (targets[owners] == 0.0) & (pressures > 0.0)):
+        with np.errstate(all="ignore"):  # of what is no tube nothing can be told
+            found.status[i], state, found.paths[i] = held_of(
+                problems[owners[i]], pressures[i], find, accuracy, stations
+            )
+        if state is None:
+            continue
+        values, bounds = state.values, state.bounds
+        found.loads[i], found.load_bounds[i] = values[HOLDER], bounds[HOLDER]
+        found.states.values[i], found.states.bounds[i] = np.delete(values, HOLDER), np.delete(bounds, HOLDER)
+        found.states.slack[i], found.profiles[i] = state.slack, state.profiles
+        found.stable[i] = state.unstable == 0
 
 
 def _draw(problems, pressures, unknown, stations, accuracy, found, soon):
@@ -91,7 +127,7 @@ def _draw(problems, pressures, unknown, stations, accuracy, found, soon):
     found.profiles[rows, half:] += found.beside.parts[rows, None, None] * changed
 
 
-def _calls(problems, targets, kind, first, pressures, tube, accuracy, stations, found):
+def _calls(problems, targets, kind, first, pressures, tube, accuracy, most, stations, found):
     """Arguments of :func:`hold_many`: of all problems at once, or of each that has to be solved whole; what it finds is
     kept.
     """
@@ -105,7 +141,7 @@ def _calls(problems, targets, kind, first, pressures, tube, accuracy, stations, 
         count = len(left)
         values, bounds = np.full((2, count, states.values.shape[1] + 1), np.nan)
         yield (
-            problems[own], walls, starts, pressures[rows], others[rows], targets[rows], kind, whole, accuracy,
+            problems[own], walls, starts, pressures[rows], others[rows], targets[rows], kind, whole, accuracy, most,
             values, bounds, found.status[rows], found.stable[rows], states.slack[rows], found.paths[rows],
             stations, found.profiles[rows],
         )  # fmt: skip

@@ -7,7 +7,7 @@ from freesweep import Actuator, MooneyRivlin, closed_form
 from freesweep.held_states import _problems
 from freesweep.solver.by_waves.branch import begin, critical, follow
 from freesweep.solver.by_waves.on_step import at_pressure, parts
-from freesweep.solver.by_waves.states import shape
+from freesweep.solver.by_waves.told import shape
 from freesweep.solver.by_waves.waves import PRESSURE, TORQUE, Waves
 from freesweep.solver.load import Load
 from freesweep.solver.physics import lagrangian

@@ -37,7 +37,7 @@ def test_held_meshes_keep_their_bounds(block):
     drawn, rng = draw(256, 6, block, PHYSICAL), np.random.default_rng(block)
     problems, pressures = drawn.problems(PHYSICAL), np.ascontiguousarray(drawn.pressures[:, 1])
     targets = rng.uniform(0.7, 1.3, len(problems)) * problems[:, LENGTH]
-    known, ways, exact, told = held(problems, targets, pressures, meshes=False)
+    known, ways, exact, told = held(problems, targets, pressures, meshes=0)
     rows = np.flatnonzero(known)
     assert len(rows) > 60
     found, others, values, bounds = held(problems[rows], targets[rows], pressures[rows], lanes=False)

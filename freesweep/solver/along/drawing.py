@@ -9,7 +9,7 @@ import numpy as np
 from ...jit import kernel
 from ..load import by
 from ..numerics import base_mesh, held, nested, newton
-from ..numerics.finest import LEFT, MESHES, NO_MESH, load_of
+from ..numerics.finest import LEFT, MESHES, load_of
 from ..numerics.properties_along import fill
 from ..of_tube import of_tube
 from .profile import at_stations
@@ -21,7 +21,7 @@ def draw(stations, base, doublings, tube, load, fine, nodes, work, accuracy, pro
     met, finer = False, True
     while finer and not met:
         met = at_stations(stations, base, doublings, tube, load, fine, nodes, profile) <= accuracy
-        finer = not met and doublings < nested.MAX_DOUBLINGS and fine[3, LEFT] != NO_MESH
+        finer = not met and doublings < nested.MAX_DOUBLINGS
         if finer:
             finer = refine(base, doublings, tube, load, accuracy, fine, work)
             doublings += 1

@@ -1,4 +1,6 @@
-"""The branch of buckled states, from where it leaves the straight tube, step by step in the numbers of :mod:`waves`."""
+"""Branches of waves, step by step in the numbers of :mod:`waves`; that of buckled states from where it leaves the straight
+tube.
+"""
 
 from typing import NamedTuple
 
@@ -7,7 +9,7 @@ import numpy as np
 from ..by_middle.many import PIECES
 from ..lanes import waves
 from ..problem import GAMMA, LENGTH, H
-from .waves import PRESSURE, Look, Pair
+from .waves import Look
 
 AMPLITUDES = 3e-3, 1e-3, 3e-4, 1e-4, 3e-5  # of the smaller wave, tried in turn: steep fibers soon leave the sine
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP, MOST_STEPS = 0.05, 0.5, 1e-6, 2000
@@ -23,7 +25,7 @@ ROUGH = 1e-4  # of the length: sums that are known no better need more pieces
 
 
 class Point(NamedTuple):
-    """A place of the branch: the look at it, and the direction (4,) in which it goes on, by weights."""
+    """A place of the branch: the look at it, and the direction (w + 2,) in which it goes on, by weights."""
 
     look: Look
     toward: np.ndarray
@@ -39,7 +41,7 @@ def critical(asked):
     """
     problem = asked.problem
     center = problem[GAMMA] / np.sqrt(1.0 + 2.0 * asked.turn / (problem[H] * problem[LENGTH]))
-    told = asked.ask(np.array([[p, center, center, np.nan] for p in (1.0, 2.0)]), 1)
+    told = asked.ask(np.array([[p, *asked.loads([center, 0.0])[1:], center, np.nan] for p in (1.0, 2.0)]), 1)
     lost = (
         told[:, waves.BEND] + told[:, waves.STIFFNESS] * (2.0 * np.pi / problem[LENGTH]) ** 2
     )  # linear in the pressure
@@ -75,7 +77,7 @@ def straighten(straight, small):
     _, pressure, _ = critical(straight)
     for amplitude in AMPLITUDES if pressure > 0.0 else ():
         number = np.log(amplitude)
-        pair = Pair(np.array([number, number, 1.0, np.log(pressure)]), np.zeros(2, bool), np.ones(2))
+        pair = straight.train([number, number, 1.0, np.log(pressure)])
         solved = straight.solve(pair, along, number, ALONG)
         if solved is not None:
             return Point(solved[0], toward(solved[0], along))
@@ -161,8 +163,6 @@ def follow(asked, point):
             length = min(LONGER * length, LARGEST_STEP)
         pair = asked.retold(ahead.look)
         if pair is not ahead.look.pair:
-            along = np.zeros(4)
-            along[PRESSURE] = 1.0
             look = asked.look(pair, pieces)
             if look is not None:
                 ahead = Point(look, toward(look, ahead.toward))

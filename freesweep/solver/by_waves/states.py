@@ -1,30 +1,21 @@
-"""States of a buckled tube: those of its branch at the pressures asked for, what is told of them, and how exactly."""
+"""States of a buckled tube: those of its branch at the pressures asked for."""
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
 
-from ..along.profile import FIELDS, VALUES
-from ..batch import draw
-from ..by_middle.many import PIECES
-from ..lanes import waves
-from ..lanes.meridian import DEEPEST
-from ..lanes.outputs import FLOOR
-from ..numerics.error_bounds import TINY
-from ..physics.membrane import ROUNDING
-from ..problem import FORCE, LENGTH
-from ..problem import TORQUE as OWN_TORQUE
+from ..along.profile import FIELDS
+from ..problem import FORCE
 from ..stability import PUSHED
-from ..status import COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, INVALID, NOT_CONVERGED, OK
-from .branch import ALONG, begin, critical, follow
-from .on_step import at_pressure, parts
-from .waves import HALF, LEVEL, PRESSURE, TORQUE, TURN, Waves
+from ..status import COMPRESSED, HELD_IMPOSSIBLE, INVALID, NOT_CONVERGED
+from .branch import begin, critical, follow
+from .on_step import parts
+from .told import SURE, doubt_of_turn, refined, told_of
+from .waves import PRESSURE, Waves
 
 FARTHEST = 2.5  # times the larger of the pressure asked for and the critical one: a branch that far seldom comes back
 NUMBERS = 6  # length, volume, twist, energy of half the tube, stretch in the middle, torque
-NOISE, SURE = 1e-14, 1e-9  # of a level, its rounding; how well a pressure is known, whatever the waves
-OWN_SHARE = 0.3  # of the accuracy: what profiles of known waves may miss
-ROUGH, FAINT = 1e-2, 1e-9  # a scaled bound of what is not known; the least energy, of the work of the loads
 
 
 class Buckled(NamedTuple):
@@ -78,8 +69,8 @@ def walk(asked, rows, pressures, accuracy, stations, found):
                 least = there.pressure, doubt_of_turn(there.look) + (stands_out + SURE) * there.pressure
             low, high = sorted((here.pressure, there.pressure))
             for i in [i for i, p in waiting.items() if low <= p <= high]:
-                states = state_at(asked, here, length, pieces, waiting[i])
-                if write(asked, states, i, accuracy, stations, found):
+                states = stable(refined(asked, here, length, pieces, waiting[i]))
+                if write(told_of(asked, states, accuracy, stations), i, found):
                     found.least[i] = least
                     del waiting[i]
         point = there
@@ -97,15 +88,6 @@ def lost(asked, point):
     return COMPRESSED if part + force < PUSHED * max(part, abs(force)) else NOT_CONVERGED
 
 
-def doubts(look):
-    """By how much each condition may be off (3,)."""
-    told, out = look.told, np.empty(3)
-    out[LEVEL] = NOISE * np.abs(told[:, waves.LEVEL]).max()
-    out[HALF] = told[:, waves.DOUBT].sum()
-    out[TURN] = told[:, waves.BOUNDS + 2].sum()
-    return out
-
-
 def doubt_of_beginning(point):
     """How far off the pressure is at which there is no smaller wave, where the logarithm of that falls forever."""
     small = np.argmin(point.look.pair.numbers[:2])
@@ -113,115 +95,15 @@ def doubt_of_beginning(point):
     return point.pressure * abs(by_number[PRESSURE] / by_number[small])
 
 
-def doubt_of_turn(look):
-    """How far off a pressure at which the branch turns may be: it alone answers for what the conditions miss."""
-    slopes = look.slopes / look.pair.weights
-    slopes = slopes / np.abs(slopes).max(axis=1)[:, None]
-    missed = doubts(look) / np.abs(look.slopes / look.pair.weights).max(axis=1)
-    left = np.linalg.svd(slopes[:, :PRESSURE])[0][:, -1]
-    by_pressure = abs(left @ slopes[:, PRESSURE]) * look.pair.weights[PRESSURE]
-    return look.pair.pressure * (np.abs(left) @ missed) / by_pressure
+def stable(states):
+    """Those of the states, up to the first that is not."""
+    return itertools.takewhile(lambda state: not state[1].unstable, states)
 
 
-def scales_of(asked, look):
-    """By what bounds of the values count (5,), and how much of them is rounding."""
-    length, volume, turn, energy, torque = look.values
-    pressure, force = look.pair.pressure, asked.problem[FORCE]
-    work = abs(pressure * volume) + abs(force * length) + abs(torque * turn)
-    load = max(pressure, abs(force), abs(torque))
-    floors = look.told[:, waves.FLOORS : waves.FLOORS + TORQUE].sum(axis=0)
-    scales = asked.half, volume, max(0.5, abs(turn)), max(abs(energy), FAINT * work), load
-    return np.array(scales), np.array([*floors, FLOOR * ROUNDING * load])
-
-
-def state_at(asked, here, length, pieces, pressure):
-    """``(pieces, look, how far off its numbers may be (3,), bounds (5,))`` of the stable state at a pressure on a step,
-    finer and finer; nothing where there is none.
-    """
-    along, number, before = np.zeros(4), np.log(pressure), None
-    along[PRESSURE] = 1.0
-    point = at_pressure(asked, here, length, pieces, pressure)
-    if point is None:
-        return
-    pair = point.look.pair
-    for fine in PIECES[PIECES.index(ALONG) :]:
-        solved = asked.solve(pair, along, number, fine)
-        if solved is None:
-            continue
-        look, left = solved
-        if look.unstable:
-            return
-        pair, slopes = look.pair, look.slopes[:, :PRESSURE]
-        size = np.abs(slopes).max(axis=1)
-        shifts = np.abs(np.linalg.inv(slopes / size[:, None])) @ (doubts(look) / size) + np.abs(left[:PRESSURE])
-        bounds = np.abs(look.rises[:, :PRESSURE]) @ shifts
-        bounds[:TORQUE] += look.told[:, waves.BOUNDS : waves.BOUNDS + TORQUE].sum(axis=0)
-        bounds[TORQUE] += FLOOR * ROUNDING * abs(look.values[TORQUE])
-        if before is not None:
-            yield fine, look, shifts, bounds + np.abs(look.values - before)
-        before = look.values
-
-
-def write(asked, states, i, accuracy, stations, found):
-    """Write the first of the ``states``, finer and finer, that is as accurate as asked for, or the last that is known at
-    all, to row i; whether there is one.
-    """
-    for pieces, look, shifts, bounds in states:
-        scales, floors = scales_of(asked, look)
-        largest = np.max((bounds - floors) / scales)
-        if not largest <= ROUGH:
-            continue
-        every = np.unique(np.append(stations, asked.half))
-        fields, drawn = shape(asked, look, every, accuracy)
-        for k in range(PRESSURE):
-            change = np.zeros(4)
-            change[k] = shifts[k]
-            beside = asked.look(look.pair.moved(change), pieces)
-            moved = shape(asked, beside, every, accuracy)[0] if beside is not None else np.full_like(fields, np.nan)
-            fields[VALUES:] += np.abs(moved[:VALUES] - fields[:VALUES])
-        own, middle = fields[:, np.searchsorted(every, stations)], fields[:, np.searchsorted(every, asked.half)]
-        found.profiles[i] = own
-        found.values[i] = *look.values[:TORQUE], middle[0], look.values[TORQUE]
-        found.bounds[i] = *bounds[:TORQUE], middle[VALUES], bounds[TORQUE]
-        found.slack[i] = int(look.told[0, waves.SLACK]) | int(look.told[1, waves.SLACK])
-        found.stable[i] = 1
-        exact = drawn and max(largest, middle[VALUES], worst_of(own, asked.half)) <= accuracy
-        found.status[i] = OK if exact else INACCURATE
-        if exact:
-            break
-    return found.stable[i] == 1
-
-
-def worst_of(fields, half):
-    """The largest of the scaled bounds of profiles."""
-    if not fields.shape[1]:
-        return 0.0
-    scales = np.ones((VALUES, 1))
-    scales[1], scales[2] = half, max(1.0, np.abs(fields[2]).max())
-    scales[5:] = max(np.abs(fields[5:VALUES]).max(), TINY)
-    return np.max(fields[VALUES:] / scales)
-
-
-def shape(asked, look, stations, accuracy):
-    """``(FIELDS at the stations, whether each wave alone is as accurate)``: each wave is a free tube, and its own mirror
-    image.
-    """
-    fields, good, start, passed = np.empty((FIELDS, len(stations))), True, 0.0, np.zeros(2)
-    pair, ends = look.pair, 2.0 * look.told[:, waves.X]
-    for wave, end in enumerate(ends):
-        own = stations <= ends[0] if wave == 0 else stations > ends[0]
-        x = stations[own] - start
-        mirrored = x > 0.5 * end
-        x, index = np.unique(np.clip(np.where(mirrored, end - x, x), 0.0, 0.5 * end), return_inverse=True)
-        problem = asked.problem.copy()
-        problem[LENGTH], problem[OWN_TORQUE] = end, look.values[TORQUE]
-        depth = min(pair.numbers[wave], DEEPEST)
-        middle = (look.told[wave, waves.UNIFORM], depth) if pair.deep[wave] else (look.told[wave, 4], np.nan)
-        drawn = np.empty((1, FIELDS, len(x)))
-        states = problem[None], np.array([0]), np.array([pair.pressure]), np.array([middle]), np.array([0])
-        good = len(x) == 0 or (bool(draw(*states, x, OWN_SHARE * accuracy, drawn, True)[0]) and good)
-        drawn, totals = drawn[0][:, index], 2.0 * look.told[wave, [0, 2]]
-        drawn[1:3] = passed[:, None] + np.where(mirrored, totals[:, None] - drawn[1:3], drawn[1:3])
-        fields[:, own] = drawn
-        start, passed = start + end, passed + totals
-    return fields, good
+def write(state, i, found):
+    """Write a stable state to row i; whether there is one."""
+    if state is None or state.unstable:
+        return False
+    found.values[i], found.bounds[i], found.profiles[i] = state.values, state.bounds, state.profiles
+    found.status[i], found.slack[i], found.stable[i] = state.status, state.slack, 1
+    return True

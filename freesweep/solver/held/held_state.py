@@ -24,7 +24,7 @@ from ..physics import lagrangian
 from ..physics.wall import may_go_slack
 from ..status import BEYOND_LIMIT, COMPRESSED, NOT_CONVERGED, OK, PENDING
 from . import ways
-from .settle import finish, settle, with_neck
+from .settle import finish, settle
 from .sought import (  # noqa: F401
     FROM_FREE,
     FROM_REST,
@@ -57,19 +57,14 @@ def find(problem, asked, tube, accuracy, room):
     if sought.stands:
         end = first_way(room, tube, sought)
         came_to = end.status == OK
-        found, end = settle(room, tube, end, sought, FROM_REST, accuracy)
-        alike = not (sought.varies or may_go_slack(load.wall))
-        if not valued(found.status) and not found.sure and found.status != COMPRESSED and alike:
-            necked = with_neck(room, tube, end, sought, accuracy)
-            if valued(necked.status):
-                return necked
+        found = settle(room, tube, end, sought, FROM_REST, accuracy)
     lost = (sought.wanted != sought.natural or not found.sure) and not (came_to and found.status == NOT_CONVERGED)
     if found.status == COMPRESSED or (lost and not valued(found.status)):
         snaps = True
         for pull in PULLS:
             if snaps:
                 end = ways.from_free(room, tube, sought.with_pressure, sought.unit, borne(pull, sought), sought.wanted)
-                again, _ = settle(room, tube, end, sought, FROM_FREE, accuracy)
+                again = settle(room, tube, end, sought, FROM_FREE, accuracy)
                 done = valued(again.status)
                 found = again if done else found
                 snaps = not done and (pull != 0.0 or (end.status == BEYOND_LIMIT and not end.path.held.any))

@@ -32,6 +32,7 @@ from .held_state import find
 from .sought import HELD_ROTATION, Asked, Found, failed, load_of, unit_of, valued
 from .ways import cylinder_multiplier
 
+FEW, EVERY = 2, 99  # meshes that are tried
 FINER, FINEST = 4, 6144  # times the cells of the base mesh, up to so many: some layers are thin
 ENDED = 1e-2  # relative difference of a limit's place: where two meshes agree so well, the branch ends there
 THINNEST_LAYER = 100.0  # times it fits into a cell of an even base mesh; thinner ones need a finer mesh from the start
@@ -83,9 +84,10 @@ def first_factor(problem, asked, tube):
 
 
 @kernel
-def find_on_some_mesh(problem, asked, tube, accuracy, room):
-    """As :func:`find`, on finer base meshes where one does not do: where the solver fails, misses the accuracy, or meets an
-    end of the way that is not certain. Returns also the tube and the room that were used.
+def find_on_some_mesh(problem, asked, tube, accuracy, most, room):
+    """As :func:`find`, on finer base meshes, so many at ``most``, where one does not do: where the solver fails, misses the
+    accuracy, or meets an end of the way that is not certain; PENDING where finer ones may tell. Returns also the tube and
+    the room that were used.
 
     Where the accuracy is missed on all of them, the first mesh's state stands. Among unstable states branches lie close to
     each other, and a mesh that sees too little of them leads astray: such a state is given where two meshes lead to it.
@@ -99,9 +101,12 @@ def find_on_some_mesh(problem, asked, tube, accuracy, room):
     doubtful = valued(found.status) and found.unstable > 0 and not straight
     settled = found.status == OK or found.status == COMPRESSED or found.sure
     first_tube = tube
-    finer = 1
+    finer, meshes = 1, 1
     while (doubtful or not settled) and FINER * finer * factor * base <= FINEST:
+        if meshes >= most or (most < EVERY and not valued(found.status)):
+            return failed(PENDING, found.load), tube, room
         finer *= FINER
+        meshes += 1
         finer_tube, finer_room = made_finer(first_tube, finer), make_room(finer * factor * base, half, True, count)
         again = find(problem, asked, finer_tube, accuracy, finer_room)
         same = valued(found.status) and valued(again.status) and alike(room.space.out, finer_room.space.out)
@@ -210,8 +215,8 @@ def ends_last(problem, wall, tube):
 
 
 @kernel
-def hold(states, i, problem, asked, tube, accuracy, room):
-    """Hold one state."""
+def hold(states, i, problem, asked, tube, accuracy, most, room):
+    """Hold one state, on so many meshes at ``most``."""
     wall, turned = wall_of(problem, asked.walls), asked.kind == HELD_ROTATION
     natural = asked.target == (0.0 if turned else (0.5 if tube.half else 1.0) * problem[LENGTH])
     if not ends_last(problem, wall, tube):
@@ -221,21 +226,22 @@ def hold(states, i, problem, asked, tube, accuracy, room):
     elif turned and not (turns(tube.course) or may_go_slack(wall)):
         states.status[i] = HELD_IMPOSSIBLE
     else:
-        found, tube, room = find_on_some_mesh(problem, asked, tube, accuracy, room)
+        found, tube, room = find_on_some_mesh(problem, asked, tube, accuracy, most, room)
         record(states, i, found, tube, room.space, accuracy)
 
 
 @entry_point
 def hold_many(
-    problems, walls, first, pressures, others, targets, kind, given, accuracy, values, bounds, status, stable, slack, paths,
-    stations, profiles,
+    problems, walls, first, pressures, others, targets, kind, given, accuracy, most, values, bounds, status, stable, slack,
+    paths, stations, profiles,
 ):  # fmt: skip
     """Held states of designs, each for pressures, the load that is not unknown, and what is held (``kind`` HELD_LENGTH, or
     HELD_ROTATION).
 
     ``problems``, ``first`` and ``pressures`` are those of :func:`..free.free_states.follow_many`, ``given`` its tube. The
     n-th entries of ``pressures``, ``others`` and ``targets`` belong together; those whose status is not PENDING are
-    passed over, and where no value is found none is written. ``targets`` are in radii (deformed length) or radians, of
+    passed over, and where no value is found none is written; it stays PENDING where so many meshes as ``most`` do not
+    settle it. ``targets`` are in radii (deformed length) or radians, of
     the whole tube; a tube that is the same all along is solved by half. ``values`` and ``bounds`` are (n, 6): length,
     volume, twist, energy of half the tube, stretch in the middle, multiplier; of physical tubes (n, 12), if the numbers
     of :mod:`..along.places` are asked for. ``paths`` (n,) takes the way by which a state was found.
@@ -255,4 +261,4 @@ def hold_many(
         for i in range(first[k], first[k + 1]):
             if status[i] == PENDING:
                 asked = Asked(walls, pressures[i], others[i], (0.5 if alike else 1.0) * targets[i], kind)
-                hold(states, i, problems[k], asked, tube, accuracy, room)
+                hold(states, i, problems[k], asked, tube, accuracy, most, room)

@@ -1,7 +1,6 @@
 """What the end of a way gives: the state there on nested meshes, the one before a turn, or none; and how it stands."""
 
 from ...jit import kernel
-from ..constant import necked_shape, necked_tube
 from ..free.fold import locate
 from ..load import loaded
 from ..numerics import error_bounds, nested, newton
@@ -14,10 +13,11 @@ from ..of_tube import of_tube
 from ..stability import pushed, unstable_directions
 from ..status import BEYOND_LIMIT, COMPRESSED, HELD_IMPOSSIBLE, INACCURATE, NOT_CONVERGED, OK
 from . import near_turn, ways
-from .sought import FROM_REST, Found, failed, valued
+from .sought import Found, valued
 from .ways import EVERY, held_at
 
 ROUNDED = 1e-12  # relative
+ROUNDED_OFF, SHALLOWEST = 1e-9, 1e-6  # a neck's height that may be rounding, and its share of the body's that is none
 NEAR = 0.05  # of the way behind its end: as far it is looked for a turn where no mesh holds the state
 
 
@@ -31,12 +31,12 @@ def lower(room, tube, end, start, load, sought):
 
 @kernel
 def settle(room, tube, end, sought, path, accuracy):
-    """The state at the ``end`` of a way, or before its turn, on finer meshes; and where its branch was left at last."""
+    """The state at the ``end`` of a way, or before its turn, on finer meshes."""
     load, track = sought.load, room.track
     if end.status == OK and sought.with_pressure.p != load.p:
         end = lower(room, tube, end, sought.with_pressure, load, sought)
         if end.status == NOT_CONVERGED and end.here[0] > 1.0 - NEAR:
-            return Found(COMPRESSED, 0, 0, load, end.here[0], False, path), end
+            return Found(COMPRESSED, 0, 0, load, end.here[0], False, path)
     found = Found(end.status, 0, 0, load, end.here[0], False, path)
     if end.status == OK:
         found = on_meshes(room, tube, end, sought, path, accuracy)
@@ -47,11 +47,11 @@ def settle(room, tube, end, sought, path, accuracy):
         n = len(track.x) - 1
         own = fill(tube.course, tube.edges, track.x, n, n, tube.cells)
         if pushed(track.y[: n + 1], own, load_at(end.path, track.y, n, end.here[0])):
-            return Found(COMPRESSED, 0, 0, load, end.here[0], True, path), end
+            return Found(COMPRESSED, 0, 0, load, end.here[0], True, path)
         found = at_turn(room, tube, end, sought, path, accuracy)
     if valued(found.status) and not found.load.p + found.load.f > 0.0:  # at the clamped ends, where y = 1
-        return Found(COMPRESSED, 0, 0, load, 1.0, True, path), end
-    return found, end
+        return Found(COMPRESSED, 0, 0, load, 1.0, True, path)
+    return found
 
 
 @kernel
@@ -95,14 +95,15 @@ def on_meshes(room, tube, end, sought, path, accuracy):
 
 
 @kernel
-def with_neck(room, tube, end, sought, accuracy):
-    """The state of a tube with a neck, from a mesh's shape where the last way to it was left."""
-    if not leads_to(end.path, sought):
-        return failed(NOT_CONVERGED, sought.load)
-    status, doublings, now = necked_tube.solve(
-        room, tube, sought.cell, end.path, min(end.here[0], 1.0), sought.scale, accuracy
-    )
-    return Found(status, 1, doublings, now, 1.0, True, FROM_REST)
+def shaped(y):
+    """Whether half a tube has a neck, the other side of the end's radius than the middle; or is a wave, and surely without
+    one.
+    """
+    outward = 1.0 if y[len(y) - 1] > 1.0 else -1.0
+    body, neck = abs(y[len(y) - 1] - 1.0), 0.0
+    for i in range(len(y)):
+        neck = max(neck, outward * (1.0 - y[i]))
+    return neck > ROUNDED_OFF and neck > SHALLOWEST * body, neck <= ROUNDED_OFF < body
 
 
 @kernel
@@ -113,8 +114,7 @@ def finish(room, tube, sought, found):
     size = (2.0 if tube.half else 1.0) * max(abs(sought.wanted), abs(sought.natural))
     count = base << found.doublings
     x, y = space.fine[0], space.fine[1, : count + 1]
-    necked, least = not sought.varies and necked_shape.depth_of(y) > 0.0, necked_shape.ROUNDED_OFF
-    is_wave = not sought.varies and abs(y[necked_shape.neck_of(y)] - 1.0) <= least < abs(y[count] - 1.0)
+    necked, is_wave = shaped(y) if not sought.varies else (False, False)
     unstable, rounding = unstable_directions(
         x, space.fine[1], count, base, tube, found.load, sought.unit, size, is_wave, space.work
     )  # fmt: skip

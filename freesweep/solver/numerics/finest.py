@@ -1,7 +1,7 @@
 """The three finest meshes of a solved state, as the solver leaves them in scratch of shape (5, > 2 n): (x, y) of the last in
 rows 0, 1, of the two before, one behind the other, in rows 2, 4. Row 3 holds, for each of them, by how much its pressure,
 force and torque differ from the load at last: where something is held, the multiplier changes from mesh to mesh; and the
-relative error that Newton's last steps left, or NO_MESH where the meshes are curves that a quadrature has traced.
+relative error that Newton's last steps left.
 """
 
 from ...jit import kernel
@@ -9,7 +9,6 @@ from ..load import under
 
 MESHES = 3
 LEFT = 3 * MESHES  # the place of that error
-NO_MESH = -1.0
 
 
 @kernel
