@@ -19,6 +19,7 @@ from .description.strain import largest_principal
 FAMILIES = ("alpha", "beta")
 # of the length: what stands for both sides of a place where segments meet, and places in layers, thin at low pressures
 NEAR = np.append(1e-10, np.geomspace(1e-6, 0.8 / (STATIONS - 1), 40))
+ROUNDING = 1e-14  # of a share, a sum of lengths
 UNEVEN = 10.0  # times as far as on the other side of a station: no parabola is laid through the three
 
 
@@ -180,7 +181,8 @@ def _share(name, tension, somewhere, x):
     part = np.where(closes, np.clip(np.nan_to_num(close_at), 0.0, 1.0), part)
     doubt = np.where(opens | closes, np.maximum(part, 1.0 - part), 0.0)
     unknown = np.isnan(tension).any(axis=-1)
+    share = np.where(np.all(part == 1.0, axis=-1), 1.0, np.clip(np.sum(part * widths, axis=-1), 0.0, 1.0))  # sums round
     return {
-        name: np.where(unknown, np.nan, part @ widths),
-        f"{name}_error": np.where(unknown, np.nan, doubt @ widths),
+        name: np.where(unknown, np.nan, share),
+        f"{name}_error": np.where(unknown, np.nan, doubt @ widths + ROUNDING * share),
     }

@@ -400,3 +400,17 @@ def test_held_at_its_free_length_or_rotation_a_tube_of_one_family_is_the_free_on
                 continue
             allowed = 3.0 * (state[f"{name}_error"] + free[f"{name}_error"]) + 1e-6 * np.abs(free[name]).max()
             assert np.all(np.abs(state[name] - free[name]) <= allowed), name
+
+
+@pytest.mark.parametrize("fibers", ["loose", "bonded"])
+@pytest.mark.parametrize("extension", [1.02, 1.03])
+def test_extended_fibers_of_one_steep_family_meet_clamped_ends_whichever_way_they_wind(fibers, extension):
+    """Two families could not: a single one turns. To one side it had been called invalid."""
+    left, right = (
+        inflate(tube(beta=beta, length=0.02, fibers=fibers, fiber_extension=extension), 8e5, x=0.0)
+        for beta in (-79.3, 79.3)
+    )
+    assert int(left.status) == int(right.status) == OK
+    for name in ("deformed_length", "rotation", "outer_radius"):
+        sign = -1.0 if name == "rotation" else 1.0
+        assert float(left[name]) == pytest.approx(sign * float(right[name]), rel=1e-6), name
