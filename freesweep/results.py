@@ -8,6 +8,7 @@ from . import status
 from .atlas.schema import PROFILES, attributes
 from .description.families import beyond_a_point, told, told_slack
 from .description.revolution import wall_volume_inside as wall_volume_of_body
+from .description.stations import shares_of
 from .description.strain import warn_beyond_range
 from .scaling import ALONG, OF_MEMBRANES, OUTPUTS, SLACK, output_scales, wall_volume_inside
 from .worst_places import strained_layers, with_own, worst_places
@@ -75,7 +76,8 @@ def near_stations(tube, stations, whole):
 
     Of a tube that is the same all along, half was solved (unless the ``whole``): a station belongs to its nearer end.
     """
-    near = stations if whole else np.clip(np.minimum(stations, tube.length - stations), 0.0, None)
+    near = np.clip(np.minimum(stations, tube.length - stations), 0.0, None)
+    near = shares_of(tube, stations) * tube.length if whole else near
     return np.unique(near / tube.fiber_surface, return_inverse=True)
 
 
@@ -83,7 +85,7 @@ def profiles(tube, fields, values, bounds, stations):
     """Profiles along x and their bounds from the kernels' fields; where only half was solved (``fields`` says so), the far
     half mirrors.
     """
-    share = stations / tube.length
+    share = shares_of(tube, stations)
     alpha, beta = tube.lines(share)
     r = tube.fiber_surface
     fields, whole = fields

@@ -14,6 +14,7 @@ from .description.loads import each_once, read_load, read_stations, warn_of_load
 from .description.profiles import ProfileError
 from .description.quantities import Names, Quantities
 from .description.splines import SENSITIVITY, follow, widened
+from .description.stations import shares_of
 from .results import dataset, near_stations
 from .scaling import problem_rows
 from .thick_wall import thin_wall_attributes
@@ -176,7 +177,7 @@ def _solve(tube, loads, stations, accuracy):
 
 def undeformed(tube, stations, whole):
     """Fields of the undeformed tube: stretch 1, the stations themselves, no twist, no tension, no error."""
-    alpha, beta = tube.lines(stations / tube.length)
+    alpha, beta = tube.lines(shares_of(tube, stations))
     # half of a tube was solved: the far half's position is mirrored back later
     far = (stations > 0.5 * tube.length) & (not whole)
     near = np.where(far, tube.length - stations, stations) / tube.fiber_surface

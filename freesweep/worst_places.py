@@ -12,13 +12,15 @@ undeformed length, and how hard they would push.
 
 import numpy as np
 
-from .description.families import given_by
 from .description.loads import STATIONS
+from .description.stations import breaks_of, shares_of
 from .description.strain import largest_principal
 
 FAMILIES = ("alpha", "beta")
-NEAR = np.geomspace(1e-6, 0.8 / (STATIONS - 1), 40)  # of the length: places in layers, thin at low pressures
-CURVED = 1.0 / 8.0  # of a second difference: by how much a smooth curve passes the largest of its samples
+# of the length: what stands for both sides of a place where segments meet, and places in layers, thin at low pressures
+NEAR = np.append(1e-10, np.geomspace(1e-6, 0.8 / (STATIONS - 1), 40))
+ROUNDING = 1e-14  # of a share, a sum of lengths
+UNEVEN = 10.0  # times as far as on the other side of a station: no parabola is laid through the three
 
 
 def with_own(tube, stations):
@@ -28,21 +30,14 @@ def with_own(tube, stations):
 
 def _own(tube):
     """Evenly spaced stations, and ever closer ones toward the places from which layers begin: clamped ends, of a tube that
-    is the same all along the near one, and where profiles jump. Of physical tubes kernels find the worst.
+    is the same all along the near one, and where profiles jump or bend, these too. Of thick walls kernels find the worst.
     """
     even = np.linspace(0.0, tube.length, STATIONS)
-    if tube.is_thick or tube.threads > 0.0:
+    if tube.is_thick:
         return even
-    begins = np.concatenate([[0.0], *_jumps(tube), [1.0]]) if tube.varies else np.zeros(1)
+    begins = breaks_of(tube) if tube.varies else np.zeros(1)
     near = np.concatenate([begins[:, None] - NEAR, begins[:, None] + NEAR], axis=1).ravel()
     return np.union1d(even, tube.length * near[(near > 0.0) & (near < 1.0)])
-
-
-def _jumps(tube):
-    """Places x/l where the profile of angles or wall jumps, of each an array."""
-    # what has no pairs, a callable, has no jumps
-    pairs = [getattr(tube.profile(name), "x", np.zeros(1)) for name in (*given_by(tube), "wall")]
-    return [x[1:][np.diff(x) == 0.0] for x in pairs]
 
 
 def worst_places(tube, profiles, stations, slack_fiber) -> dict:
@@ -52,13 +47,13 @@ def worst_places(tube, profiles, stations, slack_fiber) -> dict:
     own = np.searchsorted(stations, _own(tube))
     x = stations[own]
     part = {name: array[..., own] for name, array in profiles.items()}
-    found = {}
+    along, found = (x, _apart(tube, x)), {}
     for name, function in (("outer_radius", _outer_radius), ("largest_stretch", _largest_stretch)):
-        found |= _largest(name, *_with_error(function, tube, part, x / tube.length))
+        found |= _largest(name, *_with_error(function, tube, part, shares_of(tube, x)), *along)
     for bit, family in enumerate(FAMILIES, 1):
         tension, error = part[f"fiber_tension_{family}"], part[f"fiber_tension_{family}_error"]
         top = _top(-tension)
-        least = _largest(f"least_tension_{family}", -tension, top, _taken(error, top)[..., 0])
+        least = _largest(f"least_tension_{family}", -tension, top, _taken(error, top)[..., 0], *along)
         found |= {name: value if name.endswith("_error") else -value for name, value in least.items()}
         found |= _share(f"slack_{family}", tension, (slack_fiber & bit) > 0, x)
     return found
@@ -106,7 +101,7 @@ def strained_layers(tube, profiles, stations) -> list:
     """``(meridional, hoop, shear)`` of the layers that a tube's model strains, of a thick wall the first and the last, along
     ``profiles`` (name -> array over loads and ``stations``); a twist that has no energy strains nothing.
     """
-    share = stations / tube.length
+    share = shares_of(tube, stations)
     inner = _inner(tube, share)
     thick = inner, inner + tube.profile("wall").at(share)
     at = [profiles[name] for name in ("deformed_radius", "alpha_deformed", "beta_deformed")]
@@ -140,12 +135,31 @@ def _taken(array, place):
     return np.take_along_axis(array, place, axis=-1)
 
 
-def _largest(name, value, top, error):
-    """The largest along the last axis, at ``top`` with this ``error``, and what its samples may miss."""
-    near = np.clip(top - 1 + np.arange(-2, 4), 0, value.shape[-1] - 1)
-    missed = CURVED * np.max(np.abs(np.diff(_taken(value, near), n=2, axis=-1)), axis=-1)
-    inside = (top[..., 0] > 0) & (top[..., 0] < value.shape[-1] - 1)  # at an end nothing lies beyond
-    return {name: _taken(value, top)[..., 0], f"{name}_error": error + np.where(inside, missed, 0.0)}
+def _apart(tube, x):
+    """Which stations [m] but the first and the last have a neighbour on the other side of a jump or bend, or lie on it."""
+    breaks = tube.length * breaks_of(tube)[1:-1]
+    return np.any((x[:-2, None] <= breaks) & (breaks < x[2:, None]), axis=1)
+
+
+def _largest(name, value, top, error, x, apart):
+    """The largest along the last axis, near ``top`` with this ``error``: that of the parabola through three stations ``x``,
+    and what a curve may pass it by, as its bend changes about there, at a corner by all of it.
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        bends = np.where(apart, 0.0, np.diff(value, n=2, axis=-1))
+        near = _taken(bends, np.clip(top - 1 + np.arange(-2, 3), 0, len(x) - 3))
+        missed = np.minimum(np.max(np.abs(np.diff(near, axis=-1)), axis=-1), 0.5 * np.max(np.abs(near), axis=-1))
+        at = np.clip(top, 1, len(x) - 2) + np.arange(-1, 2)
+        widths, steps = np.diff(x[at], axis=-1), np.diff(_taken(value, at), axis=-1)
+        rise, fall = np.moveaxis(steps / widths, -1, 0)
+        before, behind = np.moveaxis(widths, -1, 0)
+        slope, bend = (rise * behind + fall * before) / (before + behind), (rise - fall) / (before + behind)
+        above = 0.25 * slope * slope / bend
+        even = np.maximum(before, behind) < UNEVEN * np.minimum(before, behind)
+        smooth = (top[..., 0] == at[..., 1]) & np.logical_not(apart[at[..., 1] - 1]) & even & (bend > 0.0)
+    inside = (top[..., 0] > 0) & (top[..., 0] < len(x) - 1)  # at an end nothing lies beyond
+    value = _taken(value, top)[..., 0] + np.where(smooth, above, 0.0)
+    return {name: value, f"{name}_error": error + np.where(inside, missed, 0.0)}
 
 
 def _share(name, tension, somewhere, x):
@@ -167,7 +181,8 @@ def _share(name, tension, somewhere, x):
     part = np.where(closes, np.clip(np.nan_to_num(close_at), 0.0, 1.0), part)
     doubt = np.where(opens | closes, np.maximum(part, 1.0 - part), 0.0)
     unknown = np.isnan(tension).any(axis=-1)
+    share = np.where(np.all(part == 1.0, axis=-1), 1.0, np.clip(np.sum(part * widths, axis=-1), 0.0, 1.0))  # sums round
     return {
-        name: np.where(unknown, np.nan, part @ widths),
-        f"{name}_error": np.where(unknown, np.nan, doubt @ widths),
+        name: np.where(unknown, np.nan, share),
+        f"{name}_error": np.where(unknown, np.nan, doubt @ widths + ROUNDING * share),
     }

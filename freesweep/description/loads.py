@@ -42,7 +42,8 @@ def read_stations(tube, x, accuracy, faults):
             faults.append(f"x: {error}")
         inside = np.all((stations >= 0.0) & (stations <= tube.length * (1.0 + 1e-12)))
         if stations.ndim != 1 or stations.size == 0 or not inside or np.any(np.diff(stations) <= 0.0):
-            faults.append(f"x: give ascending stations from 0 to the undeformed length {tube.length:g} m, in [m]")
+            asked = f"give ascending stations from 0 to the undeformed length {tube.length:g} m, in [m]"
+            faults.append(f"x: {asked}; found {described(x)}")
     if faults:
         raise ActuatorError(faults)
     return np.minimum(stations, tube.length), accuracy

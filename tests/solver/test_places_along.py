@@ -15,7 +15,13 @@ BONDED = Load(*LOAD[:2], (1.0, 0.5, 0.0), *LOAD[3:])
 
 def seen(x, alpha, beta, squares):
     """What is seen where the pulls are the multipliers, and the wall is stretched as it is wide."""
-    return np.array([x, alpha, beta, alpha, beta, squares, squares])
+    return np.array([x, alpha, beta, -alpha, -beta, squares, squares])
+
+
+def told(rows, load):
+    """What is summed along one segment, of whose places the first and the last are its ends."""
+    n = rows.shape[1] - 2
+    return summed(rows, n, n, np.array([0, n]), tuple(np.maximum(rows[3:, 0], rows[3:, -1])), load)
 
 
 @pytest.mark.parametrize(("load", "pushes"), [(LOAD, False), (BONDED, True)])
@@ -24,7 +30,7 @@ def test_a_pull_that_falls_linearly_ends_where_it_is_zero(load, pushes):
     alpha, beta = 0.73 - x, x - 1.26  # slack at the far end, and at the near one
     if not pushes:  # of a slack family nothing is told but that it is
         alpha, beta = (np.where(one > 0.0, one, -1e-300) for one in (alpha, beta))
-    found = summed(seen(x, alpha, beta, 1.0 + 0.0 * x), len(x), load)[0]
+    found = told(seen(x, alpha, beta, 1.0 + 0.0 * x), load)[0]
     assert found[0] == pytest.approx((2.0 - 0.73) / 2.0, abs=1e-12)
     assert found[2] == pytest.approx(1.26 / 2.0, abs=1e-12)
     assert (found[1], found[3]) == pytest.approx((places.DOUBT * 0.1 / 2.0,) * 2)
@@ -33,34 +39,55 @@ def test_a_pull_that_falls_linearly_ends_where_it_is_zero(load, pushes):
 def test_all_slack_and_all_taut_are_told_without_doubt_and_faint_pulls_with_all_of_it():
     x = np.linspace(0.0, 1.0, 11)
     alpha, beta = -1e-300 + 0.0 * x, 1.0 + 0.0 * x
-    assert summed(seen(x, alpha, beta, 1.0 + 0.0 * x), len(x), LOAD)[0] == pytest.approx((1.0, 0.0, 0.0, 0.0))
+    assert told(seen(x, alpha, beta, 1.0 + 0.0 * x), LOAD)[0] == pytest.approx((1.0, 0.0, 0.0, 0.0))
     faint = 0.1 * places.FAINT + 0.0 * x
-    assert summed(seen(x, faint, beta, 1.0 + 0.0 * x), len(x), LOAD)[0][:2] == pytest.approx((0.0, 1.0))
+    assert told(seen(x, faint, beta, 1.0 + 0.0 * x), LOAD)[0][:2] == pytest.approx((0.0, 1.0))
 
 
 def test_one_place_with_a_pull_among_slack_ones_may_be_slack_up_to_it():
     x = np.linspace(0.0, 1.0, 11)
     alpha = np.where(np.arange(11) == 5, 1.0, -1e-300)
-    share, doubt = summed(seen(x, alpha, 1.0 + 0.0 * x, 1.0 + 0.0 * x), len(x), LOAD)[0][:2]
+    share, doubt = told(seen(x, alpha, 1.0 + 0.0 * x, 1.0 + 0.0 * x), LOAD)[0][:2]
     assert share == pytest.approx(0.8)
     assert doubt == pytest.approx(0.2)
 
 
-def test_what_lies_above_the_widest_place_is_told():
+@pytest.mark.parametrize("bend", [1.0, 0.3])  # of cubics the parabola misses what is told
+def test_a_smooth_curve_is_widest_between_its_places(bend):
     x = np.linspace(0.0, 1.0, 11)
-    squares = 4.0 - (x - 0.53) ** 2
-    for most, missed in summed(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, squares), len(x), LOAD)[3:]:
-        assert most < 4.0 <= most + missed
-    assert summed(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, 4.0 - x), len(x), LOAD)[3:] == ((4.0, 0.0), (4.0, 0.0))
+    t = x - 0.53
+    squares = 4.0 - t**2 + (1.0 - bend) * t**3
+    for most, missed in told(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, squares), LOAD)[3:]:
+        assert abs(most - 4.0) < (1e-12 if bend == 1.0 else 1e-3)
+        assert abs(most - 4.0) <= missed
+    assert told(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, 4.0 - x), LOAD)[3:] == ((4.0, 0.0), (4.0, 0.0))
+
+
+@pytest.mark.parametrize("place", np.linspace(0.41, 0.59, 10))
+@pytest.mark.parametrize("fall", [0.1, 1.0, 10.0])
+def test_a_corner_between_two_places_is_within_what_is_told(place, fall):
+    x = np.linspace(0.0, 1.0, 11)
+    squares = 40.0 - np.where(x < place, place - x, fall * (x - place))
+    most, missed = told(seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, squares), LOAD)[3]
+    assert abs(most - 40.0) <= missed
 
 
 @pytest.mark.parametrize("load", [LOAD, BONDED])
-def test_what_lies_below_the_least_pull_is_told(load):
+def test_a_smooth_pull_is_least_between_its_places(load):
     x = np.linspace(0.0, 1.0, 11)
     pull = 0.7 + (x - 0.53) ** 2
-    _, (least, missed), other, _, _ = summed(seen(x, pull, 1.0 + x, 1.0 + 0.0 * x), len(x), load)
-    assert least - missed <= 0.7 < least
+    _, (least, missed), other, _, _ = told(seen(x, pull, 1.0 + x, 1.0 + 0.0 * x), load)
+    assert abs(least - 0.7) < 1e-12
+    assert missed < 0.01
     assert other == (1.0, 0.0)
+
+
+def test_what_is_largest_beside_a_jump_is_not_doubted_by_the_jump():
+    x, n = np.concatenate([[0.0], np.linspace(0.05, 0.95, 10), [1.0]]), 10
+    squares = np.where(x < 0.5, 4.0 + x, 2.0 + x)  # 4.5 just before the middle
+    rows = seen(x, 1.0 + 0.0 * x, 1.0 + 0.0 * x, squares)
+    found = summed(rows, n, n, np.array([0, 5, 10]), (-1.0, -1.0, 4.5, 4.5), LOAD)
+    assert found[3] == (4.5, 0.0)
 
 
 def test_three_meshes_tell_the_bound():

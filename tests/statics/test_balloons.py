@@ -380,3 +380,37 @@ def test_the_thin_wall_of_a_balloon_is_told_as_linear_elasticity_has_it():
             y, z = one["deformed_radius"].item() / RADIUS, one["deformed_length"].item() / 0.3
             growth.append(y * y * z - 1.0)
         assert thin.attrs["thin_wall_ratio"] == pytest.approx(growth[1] / growth[0], rel=0.02)
+
+
+@pytest.mark.parametrize("model", [{}, {"model": "physical"}, {"fibers": "loose"}], ids=str)
+@pytest.mark.parametrize("beta", [None, -24.3])
+def test_held_at_its_free_length_or_rotation_a_tube_of_one_family_is_the_free_one_all_along(beta, model):
+    """A slope turns such fibers; held tubes had the angles, tensions and widths of one that their stretch alone tells."""
+    own, loads = tube(beta=beta, **model), (3e4, 0.3, 2e-3 if beta is None else 0.0)
+    x = np.linspace(0.0, own.length, 9)
+    free = inflate(own, *loads, x=x)
+    held = [blocked_force(own, loads[0], free.deformed_length.item(), loads[2], x=x)]
+    if beta is not None:  # whose rotation can be held
+        held += [blocked_torque(own, loads[0], free.rotation.item(), loads[1], x=x)]
+    along = [f"{what}_{family}" for what in ("fiber_tension", "least_tension") for family in ("alpha", "beta")]
+    for state in held:
+        assert int(state.status) == OK
+        for name in ("beta_deformed", "twist", "axial_position", "outer_radius", "largest_stretch", *along):
+            if beta is None and name == "beta_deformed":
+                continue
+            allowed = 3.0 * (state[f"{name}_error"] + free[f"{name}_error"]) + 1e-6 * np.abs(free[name]).max()
+            assert np.all(np.abs(state[name] - free[name]) <= allowed), name
+
+
+@pytest.mark.parametrize("fibers", ["loose", "bonded"])
+@pytest.mark.parametrize("extension", [1.02, 1.03])
+def test_extended_fibers_of_one_steep_family_meet_clamped_ends_whichever_way_they_wind(fibers, extension):
+    """Two families could not: a single one turns. To one side it had been called invalid."""
+    left, right = (
+        inflate(tube(beta=beta, length=0.02, fibers=fibers, fiber_extension=extension), 8e5, x=0.0)
+        for beta in (-79.3, 79.3)
+    )
+    assert int(left.status) == int(right.status) == OK
+    for name in ("deformed_length", "rotation", "outer_radius"):
+        sign = -1.0 if name == "rotation" else 1.0
+        assert float(left[name]) == pytest.approx(sign * float(right[name]), rel=1e-6), name

@@ -97,6 +97,75 @@ def test_a_least_tension_in_a_layer_thinner_than_the_stations_are_apart_is_seen(
     assert error <= 0.5 * right
 
 
+def swung(u):
+    return 4.8080746169045625 - 70.39667204277125 * np.sin(np.pi * u) ** 2
+
+
+AT_BENDS = {  # elements of degree four of our own, on two meshes; how well that is known
+    "where the wall bends": (
+        {
+            "alpha": -4.246773537948471, "beta": 81.72372536210455, "length": 0.18596983933118014,
+            "radius": 0.018361731155595706, "material": fs.NeoHookean(68133.38230849979),
+            "wall": [(0, 0.8563655932129379e-3), (0.7386132682554598, 0.9175276372348344e-3), (1, 0.7878655843828179e-3)],
+        },
+        (2514.8247754184827, 0.0, -0.03587481480585733), "outer_radius", 0.019630059655159206, 1e-11,
+    ),
+    "where fibers bend": (
+        {
+            "alpha": 15.64826261708697, "length": 0.04595961790054501, "radius": 0.017669825782482853,
+            "beta": [(0, -15.578011711836929), (0.520937357111358, 2.3750602299749666), (1, -7.812606769953913)],
+            "wall": 1.7218515774894848e-3, "material": fs.MooneyRivlin(32943.10070691838, 45892.85591853071),
+        },
+        (3174.7825623248336,), "least_tension_beta", -2.0576862511830836, 1e-8,
+    ),
+    "where the wall of loose threads bends": (
+        {
+            "alpha": 71.98610073492108, "beta": 33.94628522437044, "length": 0.046471492744538864,
+            "radius": 6.885568468756367e-3, "fibers": "loose", "fiber_radius": 7.4458678975883605e-3,
+            "wall": [(0, 2.0140525841039307e-3), (0.8371376347742303, 2.290870264074471e-3), (1, 2.0609174093331106e-3)],
+            "material": fs.MooneyRivlin(991849.6939222252, 965431.685207576), "fiber_extension": 1.005,
+        },
+        (474466.0526411105,), "outer_radius", 9.297637289295215e-3, 1e-11,
+    ),
+    "where threads go slack": (
+        {
+            "alpha": 28.129865153845856, "beta": swung, "length": 0.047334649240991136, "radius": 5.316356259685909e-3,
+            "wall": 1.983806343213692e-3, "fibers": "loose",
+            "material": fs.MooneyRivlin(193500.058725973, 36980.92601726271),
+        },
+        (76498.74774768495,), "largest_stretch", 1.1239190979229239, 1e-8,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("where", AT_BENDS)
+def test_what_is_largest_or_least_at_a_corner_is_within_its_bound(where):
+    """Stations to both sides of the corner had passed it by up to twice the bound."""
+    tube, loads, name, right, known = AT_BENDS[where]
+    state = fs.inflate(fs.Actuator(**tube), *loads, x=0.0)
+    assert abs(float(state[name]) - right) <= float(state[f"{name}_error"]) + known
+    assert float(state[f"{name}_error"]) <= (2e-6 if where.endswith(" bends") else 2e-4) * abs(right) + 4e-6
+
+
+@pytest.mark.parametrize("place", [0.01, 0.08, 0.3, 0.505, 0.72, 0.98])
+@pytest.mark.parametrize("length", [0.054, 0.097, 0.151, 0.159])
+def test_on_a_jump_all_of_a_place_is_told_from_before_it(place, length):
+    """Rounding had put x/l to one side and the distance in radii to the other: tensions of neither, bounds of nothing."""
+
+    def inflated(jump):
+        angles = [(0.0, 20.0), (jump, 20.0), (jump, 35.0), (1.0, 35.0)]
+        tube = fs.Actuator(alpha=angles, beta=-40.0, length=length, radius=5e-3, wall=1e-3, material=RUBBER)
+        return fs.inflate(tube, 8e4, x=place * length * np.array([1.0 - 1e-9, 1.0, 1.0 + 1e-9]))
+
+    state, beside = inflated(place), inflated(place * (1.0 + 1e-9))
+    for name in ("alpha_deformed", "fiber_tension_alpha", "fiber_tension_beta"):
+        before, on, _ = state[name].values
+        assert on == pytest.approx(before, rel=1e-5), name
+    allowed = 1e-6 + float(state.largest_stretch_error)
+    assert float(state.largest_stretch) == pytest.approx(float(beside.largest_stretch), abs=allowed)
+    assert float(state.largest_stretch_error) < 1e-3
+
+
 def test_no_more_than_all_of_a_tube_is_slack():
     """Cells' lengths had added up to a little more than one."""
     own = {name: [(0.0, a), (0.69096, a), (0.69096, b), (1.0, b)] for name, a, b in (

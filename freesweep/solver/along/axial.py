@@ -5,7 +5,9 @@ node; it is smooth through jumps of the wall. With it::
 
     s = T sqrt(G)/sqrt(T^2 + q^2)
 
-A tube that is the same all along needs none: its first integral ``L - v L_v`` gives s from y and the middle's y_m,
+A tube of the source's that is the same all along needs none: its first integral ``L - v L_v`` gives s from y and the
+middle's y_m, as its fibers leave the wall no choice that the slope could turn (of thick and of loose ones they do, or the
+multipliers are others),
 
     s = T G/(T sqrt(G) + U(y_m) - U(y)),    U(y) = L(y, 0).
 """
@@ -22,8 +24,14 @@ def is_alike(course):
 
 
 @kernel
+def is_told_by_stretch(course, wall):
+    """Whether the first integral alone tells, by its stretch, all of a place."""
+    return len(wall) == 1 and is_alike(course)
+
+
+@kernel
 def axial_stretch(y, constant, cell, load):
-    """s of a tube that is the same all along, from the ``constant`` U(y_m) of its first integral."""
+    """s of a tube of the source's that is the same all along, from the ``constant`` U(y_m) of its first integral."""
     meridional, pull, at_rest = lagrangian.uniform_tube(y, cell, load)
     return meridional * pull / (pull + constant - at_rest)
 

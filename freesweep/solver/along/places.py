@@ -1,9 +1,10 @@
 """What a physical tube is like along its length: over which share of it a family is slack, or would have to push, and how
 hard, how wide it gets, and how far its wall is stretched.
 
-Looked at are places along the deformed shape: its ends, and the middles of its cells. Where a family pulls at one place and
-not at the next, its pull ends where it meets zero: on the line between both if fibers may push; if not, on the line through
-the two nearest places at which it pulls. What is told of one place is told of vectors of designs, too.
+Looked at are places along the deformed shape: its ends, those of its segments, where what varies jumps or bends, and the
+middles of its cells. Between these, what is largest has the parabola through three of them. Where a family pulls at one
+place and not at the next, its pull ends where it meets zero: on the line between both if fibers may push; if not, on the
+line through the two nearest places at which it pulls. What is told of one place is told of vectors of designs, too.
 """
 
 from math import sqrt
@@ -16,11 +17,12 @@ from ..physics import body, lagrangian, over_cell
 
 # shares without a pull, the least pulls [2 pi r0^2 C10], the largest outer radius and stretch of the wall
 NUMBERS = SLACK_ALPHA, SLACK_BETA, LEAST_ALPHA, LEAST_BETA, OUTER, STRETCH = range(6)
-# rows of what is seen: multipliers less the least that counts as a pull, pulls, squares of outer radius and stretch
+# rows of what is seen: multipliers less the least that counts as a pull, pulls with their sign turned round, squares of
+# outer radius and stretch
 ROWS = PLACE, ALPHA, BETA, PULL_ALPHA, PULL_BETA, SQUARE, STRAIN = range(7)
 DOUBT = 0.5  # of the way between two places: how far off the end of a pull may be
 FAINT = 1e-6  # of the load: less of a pull may be none
-CURVED = 0.125  # of a second difference: by how much a curve passes the largest of its samples
+CURVED = 0.125  # of a second difference: by how much a smooth curve passes its samples, or the middle of a chord
 FALLEN = 1.5  # times what two meshes differ by: what the finer one may be off, if errors fall by less than half
 ROUNDING = 1e-12
 SAMPLES = 32  # of a wall, along each of its segments
@@ -104,21 +106,63 @@ def without_pull(before, here, there, beyond, h_before, h, h_beyond, faint, loos
 
 
 @kernel
-def widest(before, here, there, most, missed):
-    """``(most, missed)`` with one more place between two others: the largest square so far, and what lies above it."""
-    wider = here > most
-    curved = CURVED * abs(before - 2.0 * here + there)
-    return select(wider, here, most), select(wider, curved, missed)
+def bent(row, j, first, last):
+    """Second difference of a row at place j, or at the next one that has two neighbours from ``first`` to ``last``."""
+    j = min(max(j, first + 1), last - 1)
+    return row[j - 1] - 2.0 * row[j] + row[j + 1]
 
 
 @kernel
-def least(before, here, there, lowest, missed, loose):
-    """``(lowest, missed)`` of a pull: what cannot push pulls by 0 at least."""
-    lower = here < lowest
-    curved = CURVED * abs(before - 2.0 * here + there)
-    if loose:
-        curved = min(curved, here)
-    return select(lower, here, lowest), select(lower, curved, missed)
+def above(x, row, j, first, last):
+    """By how much the parabola through a place and its neighbours, at an end of the segment through the three next to it,
+    passes the number there, if it is largest in the segment.
+    """
+    k = min(max(j, first + 1), last - 1)
+    before, behind = x[k] - x[k - 1], x[k + 1] - x[k]
+    rise, fall = (row[k] - row[k - 1]) / before, (row[k + 1] - row[k]) / behind
+    slope, bend = (rise * behind + fall * before) / (before + behind), (rise - fall) / (before + behind)
+    if not bend > 0.0:
+        return 0.0
+    top, end = 0.5 * slope / bend, 0.5 * (before if j < k else behind)  # from the middle of a cell to the segment's end
+    inside = x[first] - end <= x[k] + top <= x[last] + end
+    return max(row[k] + 0.5 * slope * top - row[j], 0.0) if inside else 0.0
+
+
+@kernel
+def missing(row, j, first, last):
+    """What a curve may pass the parabola by, at the largest of its samples: as its bend changes about there, at a corner
+    between two samples by all of it; at most half the largest second difference.
+    """
+    a, b, c, d, e = (
+        bent(row, j - 2, first, last), bent(row, j - 1, first, last), bent(row, j, first, last),
+        bent(row, j + 1, first, last), bent(row, j + 2, first, last),
+    )  # fmt: skip
+    change = max(max(abs(b - a), abs(c - b)), max(abs(d - c), abs(e - d)))
+    return min(change, 0.5 * max(max(abs(a), abs(b)), max(max(abs(c), abs(d)), abs(e))))
+
+
+@kernel
+def highest(x, row, first, last, ceiling, best, missed, higher):
+    """``(best, missed, higher)`` with a row of places ``first`` to ``last`` more, of one segment: the largest number, by how
+    much it may be missed, and what it may be at most; never above the ``ceiling``, which is reached where the row has it.
+    """
+    for j in range(first, last + 1):
+        if row[j] >= row[max(j - 1, first)] and row[j] >= row[min(j + 1, last)]:
+            met = row[j] >= ceiling
+            top = min(row[j] + above(x, row, j, first, last), ceiling)
+            doubt = 0.0 if met else missing(row, j, first, last)
+            if top > best:
+                best, missed = top, doubt
+            # a cell's middle is that of a chord, below what an end of a segment is compared with; two meshes mend that
+            chord = 0.0 if met else CURVED * abs(bent(row, j, first, last))
+            higher = max(higher, min(top + doubt + chord, ceiling))
+    return best, missed, higher
+
+
+@kernel
+def doubted(found):
+    """``(number, by how much it may be missed)``."""
+    return found[0], max(found[1], found[2] - found[0])
 
 
 @kernel

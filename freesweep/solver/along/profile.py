@@ -17,7 +17,7 @@ from ..numerics.finest import LEFT, MESHES, load_of, mesh_of
 from ..numerics.properties_along import at_point, fill
 from ..physics import lagrangian
 from ..physics.lagrangian import LAST_STEP, ROUNDING
-from .axial import axial_stretch, flux_at, is_alike
+from .axial import axial_stretch, flux_at, is_told_by_stretch
 
 VALUES = 7  # stretch, axial position, twist, angles after deformation, fiber multipliers
 FIELDS = 2 * VALUES  # and a bound for each
@@ -51,8 +51,9 @@ class Told(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """The ``load``, and one as far from it as its error may be; of a tube that is ``alike`` all along the constant of its
-    first integral, by how much that may be missed, and that under the other load.
+    """The ``load``, and one as far from it as its error may be; of a tube that is ``alike`` all along, whose stretch tells
+    all of a place (:func:`.axial.is_told_by_stretch`), the constant of its first integral, by how much that may be missed,
+    and that under the other load.
     """
 
     load: Load
@@ -77,7 +78,7 @@ def extrapolate_nodes(base, n, tube, load, fine, nodes):
     kind of cell changes along the tube.
     """
     course, edges, cells, _, _, _ = tube
-    alike, behind, broken = is_alike(course), n + 1, False
+    alike, behind, broken = is_told_by_stretch(course, load.wall), n + 1, False
     for which in range(MESHES):
         x, y = mesh_of(which, n, fine)
         now, count = load_of(which, load, fine), len(x) - 1
@@ -165,7 +166,7 @@ def units(nodes, n):
 def loads_of(known, course, load, fine):
     """The :class:`Loads` of a profile."""
     load, other = extrapolated_loads(load, fine)
-    if not is_alike(course):
+    if not is_told_by_stretch(course, load.wall):
         return Loads(load, other, False, 0.0, 0.0, 0.0)
     cell, middle, n = at_point(course, 0, 1.0), known.at[1, known.n], known.n
     off = SAFETY / known.order * known.at[1, n + 1 + n // 2]

@@ -2,6 +2,8 @@
 the numbers of :mod:`places`, from the three finest meshes of a solved state.
 """
 
+import numpy as np
+
 from ...jit import kernel
 from ..cells import cell_at, nothing_yet
 from ..numerics.finest import load_of, mesh_of
@@ -39,9 +41,9 @@ def look_along(fine, n, base, tube, load, seen, numbers, bounds):
 def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
     if len(wall) == 1:
         return slack_fibers(fine[0], fine[1], n, base, tube, load)
-    flag = see(fine[0], fine[1], n, base, tube, load_of(0, load, fine), seen)
+    flag, apart = see(fine[0], fine[1], n, base, tube, load_of(0, load, fine), seen)
     if len(numbers) > 0:
-        finest = summed(seen, n + 2, load)
+        finest = summed(seen, n, base, tube.edges, apart, load)
         finer, coarse = again(1, n, base, fine, tube, load, seen), again(2, n, base, fine, tube, load, seen)
         found, missed = places.together(finest, finer, coarse, load)
         for k in range(len(numbers)):
@@ -53,13 +55,15 @@ def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
 def again(which, n, base, fine, tube, load, seen):
     """What is :func:`summed` on one of the two meshes before that of n cells."""
     x, y = mesh_of(which, n // 2, fine)
-    see(x, y, len(x) - 1, base, tube, load_of(which, load, fine), seen)
-    return summed(seen, len(x) + 1, load)
+    _, apart = see(x, y, len(x) - 1, base, tube, load_of(which, load, fine), seen)
+    return summed(seen, len(x) - 1, base, tube.edges, apart, load)
 
 
 @kernel
 def see(x, y, n, base, tube, load, seen):
-    """Write what :mod:`places` looks at along a physical tube to the rows of ``seen``; returns the flag."""
+    """Write what :mod:`places` looks at along a physical tube to the rows of ``seen``; returns the flag, and what is largest
+    where segments end: pulls, their sign turned round, and squares.
+    """
     course, edges, cells, symmetric, _, _ = tube
     own, size, near, flag = fill(course, edges, x, n, base, cells), load.p + abs(load.f), nothing_yet(0.0), 0
     loose, any_family, both = may_go_slack(load.wall), has_any_family(load.wall), has_two_families(load.wall)
@@ -76,39 +80,59 @@ def see(x, y, n, base, tube, load, seen):
             v, place, below = (y[j + 1] - y[j]) / (x[j + 1] - x[j]), 0.5 * (x[j] + x[j + 1]), least
             alpha, beta, others, near = places.inside(0.5 * (y[j] + y[j + 1]), v, cell_at(own, j), load, near)
         seen[places.PLACE, k], seen[places.ALPHA, k], seen[places.BETA, k] = place, alpha - below, beta - below
-        seen[places.PULL_ALPHA, k], seen[places.PULL_BETA, k] = others[0], others[1]
+        seen[places.PULL_ALPHA, k], seen[places.PULL_BETA, k] = -others[0], -others[1]
         seen[places.SQUARE, k], seen[places.STRAIN, k] = others[2], others[3]
         flag |= (1 if any_family and alpha < below else 0) | (2 if both and beta < below else 0)
-    return flag
+    return flag, where_segments_end(x, y, n, base, tube, own, load, seen)
 
 
 @kernel
-def summed(seen, count, load):
-    """``(share of alpha, its doubt, share of beta, its doubt)`` of ``count`` places, then ``(number, missed)`` of the least
-    pulls, the largest square of the outer radius and of the stretch.
+def where_segments_end(x, y, n, base, tube, own, load, seen):
+    """What is largest at the ends of a tube, as ``seen``, and at those of its segments, seen from both sides."""
+    course, edges, _, _, _, _ = tube
+    a, b = (
+        max(seen[places.PULL_ALPHA, 0], seen[places.PULL_ALPHA, n + 1]),
+        max(seen[places.PULL_BETA, 0], seen[places.PULL_BETA, n + 1]),
+    )
+    square = max(seen[places.SQUARE, 0], seen[places.SQUARE, n + 1])
+    strain = max(seen[places.STRAIN, 0], seen[places.STRAIN, n + 1])
+    for s in range(1, course.shape[0]):
+        node = int(edges[s] * (n / base))
+        flux = flux_at(x, y, node, n, own, load)
+        for side in range(2):
+            _, _, others = places.at_end(y[node], flux, at_point(course, s - 1 + side, 1.0 - side), load)
+            a, b = max(a, -others[0]), max(b, -others[1])
+            square, strain = max(square, others[2]), max(strain, others[3])
+    return a, b, square, strain
+
+
+@kernel
+def summed(seen, n, base, edges, apart, load):
+    """``(share of alpha, its doubt, share of beta, its doubt)`` of n cells and both ends, then ``(number, missed)`` of the
+    least pulls, the largest square of the outer radius and of the stretch; ``apart`` is what they are where segments end.
     """
     x, faint, loose = seen[places.PLACE], places.FAINT * (load.p + abs(load.f)), may_go_slack(load.wall)
-    a, b, last = seen[places.ALPHA], seen[places.BETA], count - 1
-    pull_a, pull_b, squares, strains = (
-        seen[places.PULL_ALPHA], seen[places.PULL_BETA], seen[places.SQUARE], seen[places.STRAIN]
-    )  # fmt: skip
+    a, b, last = seen[places.ALPHA], seen[places.BETA], n + 1
     total, found = x[last] - x[0], (0.0, 0.0, 0.0, 0.0)
-    least_a, least_b = (min(pull_a[0], pull_a[last]), 0.0), (min(pull_b[0], pull_b[last]), 0.0)
-    widest, most = (max(squares[0], squares[last]), 0.0), (max(strains[0], strains[last]), 0.0)
     for i in range(last):
         before, beyond, h = max(i - 1, 0), min(i + 2, last), (x[i + 1] - x[i]) / total
         h_before = (x[i] - x[before]) / total if i > 0 else h
-        h_beyond = (x[beyond] - x[i + 1]) / total if i < count - 2 else h
+        h_beyond = (x[beyond] - x[i + 1]) / total if i < n else h
         steps = h_before, h, h_beyond, faint, loose
         part_a, doubt_a = places.without_pull(a[before], a[i], a[i + 1], a[beyond], *steps)
         part_b, doubt_b = places.without_pull(b[before], b[i], b[i + 1], b[beyond], *steps)
         found = found[0] + part_a, found[1] + doubt_a, found[2] + part_b, found[3] + doubt_b
-        if i > 0:
-            least_a = places.least(pull_a[before], pull_a[i], pull_a[i + 1], *least_a, loose)
-            least_b = places.least(pull_b[before], pull_b[i], pull_b[i + 1], *least_b, loose)
-            widest = places.widest(squares[before], squares[i], squares[i + 1], *widest)
-            most = places.widest(strains[before], strains[i], strains[i + 1], *most)
-    return found, least_a, least_b, widest, most
+    pull_a, pull_b = (apart[0], 0.0, apart[0]), (apart[1], 0.0, apart[1])
+    widest, most = (apart[2], 0.0, apart[2]), (apart[3], 0.0, apart[3])
+    none = 0.0 if loose else np.inf
+    for s in range(len(edges) - 1):
+        first, end = int(edges[s] * (n / base)) + 1, int(edges[s + 1] * (n / base))
+        pull_a = places.highest(x, seen[places.PULL_ALPHA], first, end, none, *pull_a)
+        pull_b = places.highest(x, seen[places.PULL_BETA], first, end, none, *pull_b)
+        widest = places.highest(x, seen[places.SQUARE], first, end, np.inf, *widest)
+        most = places.highest(x, seen[places.STRAIN], first, end, np.inf, *most)
+    (less_a, doubt_a), (less_b, doubt_b) = places.doubted(pull_a), places.doubted(pull_b)
+    return found, (-less_a, doubt_a), (-less_b, doubt_b), places.doubted(widest), places.doubted(most)
 
 
 @kernel

@@ -52,7 +52,7 @@ def locked(problem):
 
 
 @kernel
-def onward(lane, taken, seats, walks, columns, told):
+def onward(lane, taken, seats, walks, walls, columns, told):
     """Put the next load that has to be solved into a lane: of its own problem, or of the next one in the order, of which
     ``taken`` are in lanes. Returns ``(taken, whether there is one, whether it is another problem's)``.
     """
@@ -63,7 +63,7 @@ def onward(lane, taken, seats, walks, columns, told):
                 return taken, False, fresh
             k, fresh = walks.order[taken], True
             row, taken = walks.first[k], taken + 1
-            seats[MEMBER, lane], seats[CLAMPED, lane] = k, 1 if is_clamped(walks.problems[k]) else 0
+            seats[MEMBER, lane], seats[CLAMPED, lane] = k, int(is_clamped(walks.problems[k], walls))
             seats[LEADS, lane] = seats[CLAMPED, lane]
             enter(lane, walks.problems[k], columns)
             continue
@@ -97,7 +97,7 @@ def carry(walks, kind, told):
         fresh = 0
         for lane in range(WIDTH):
             if (ended >> lane) & 1:
-                taken, there, new = onward(lane, taken, seats, walks, columns, told)
+                taken, there, new = onward(lane, taken, seats, walks, kind.walls, columns, told)
                 active = active | (1 << lane) if there else active & ~(1 << lane)
                 fresh |= (1 if new else 0) << lane
         if active == 0:

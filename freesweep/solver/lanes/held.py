@@ -145,7 +145,7 @@ def cylinder_stability(cell, load, half):
 
 
 @kernel
-def seat(group, count, asked, unknown, beginnings, columns, found):
+def seat(group, count, asked, unknown, walls, beginnings, columns, found):
     """Put the next ``count`` rows in the given order into the lanes, without the load ``unknown``; those that are left take
     the last one, too. Returns the lanes whose tubes can be clamped.
     """
@@ -155,7 +155,7 @@ def seat(group, count, asked, unknown, beginnings, columns, found):
         enter(lane, asked.problems[row], columns)
         columns[PRESSURE, lane], columns[unknown, lane] = asked.pressures[row], 0.0
         found[HELD, lane], found[LOST, lane] = asked.targets[row], beginnings[row, LOST]
-        if lane < count and is_clamped(asked.problems[row]):
+        if lane < count and is_clamped(asked.problems[row], walls):
             valid |= 1 << lane
     return mask_of(valid)
 
@@ -202,7 +202,7 @@ def start(asked, length_held, kind, told, beginnings):
     columns, found = aligned(1, COLUMNS)[0], aligned(1, BEGINNING + 1)[0]
     for group in range(0, len(asked.order), WIDTH):
         count = min(WIDTH, len(asked.order) - group)
-        valid = seat(group, count, asked, FORCE if length_held else TORQUE, beginnings, columns, found)
+        valid = seat(group, count, asked, FORCE if length_held else TORQUE, kind.walls, beginnings, columns, found)
         cell, _, load = loads(columns, kind.constants, kind.walls, kind.layers)
         half, target, trial = get(columns, LENGTH), get(found, HELD), get(found, LOST)
         c, c_y, mu = cylinder(cell, load, length_held)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...jit import entry_point, kernel
 from ..along.places import OUTER, STRETCH
-from ..load import Load, at_pressure, fibers_alone
+from ..load import Load, at_pressure
 from ..physics import lagrangian
 from ..physics.wall import FEWEST, layers, reciprocal
 from ..problem import (
@@ -131,10 +131,10 @@ def lock(lane, columns):
 
 
 @kernel
-def is_clamped(problem):
-    """Whether the fibers leave the clamped ends any meridional stretch."""
+def is_clamped(problem, walls):
+    """Whether the fibers leave the clamped ends any meridional stretch; ``walls``: as of :class:`Kind`."""
     cell = problem[H], problem[D], problem[AREA]
-    return 1.0 + lagrangian.kinematics(1.0, cell, fibers_alone(problem[GAMMA]))[3] > 0.0
+    return lagrangian.clamped(cell, problem[GAMMA], wall_of(problem, walls)) > 0.0
 
 
 @kernel
