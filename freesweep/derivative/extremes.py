@@ -64,15 +64,33 @@ class Piece:
         return Piece(self.x[which], self.rows[..., which], self.ends, self.cells[which])
 
     def largest(self, field, sign):
-        """``sign`` times the field, where that is largest, (1 + parameters,); and how differently other places change that
-        have as much.
+        """``sign`` times the field, where that is largest, (1 + parameters,); how differently other places change that have
+        as much; and how large it is, counted as ends are.
+
+        Middles of cells err in another way than ends do, where a polynomial through middles tells by how much.
         """
-        k = int(np.argmax(sign * self.rows[field, 0]))
-        curve, low, high = self.near(field, k), self.x[max(k - 1, 0)], self.x[min(k + 1, len(self.x) - 1)]
-        made = [sign * curve.at(place)[0] for place in (self.x[k], *curve.turns(low, high))]
-        best, own = max(made, key=lambda one: one[0]), sign * self.rows[field]
-        alike = own[:, own[0] >= best[0] - TOGETHER * abs(best[0])]
-        return best, np.max(np.abs(alike - best[:, None]), axis=1, initial=0.0)
+        inside = (self.x > self.ends[0]) & (self.x < self.ends[1])
+        inner = self.only(inside) if np.count_nonzero(inside) > 1 else self
+        x, own, last = inner.x, sign * inner.rows[field], len(inner.x) - 1
+        k = int(np.argmax(own[0]))
+        low, high = x[k - 1] if k > 0 else self.ends[0], x[k + 1] if k < last else self.ends[1]
+        curve = inner.near(field, k)
+        made = [(place, sign * curve.at(place)[0]) for place in (x[k], *curve.turns(low, high))]
+        place, best = max(made, key=lambda one: one[1][0])
+        ends = [(at, sign * self.rows[field][:, at]) for at in np.flatnonzero(~inside)] if inner is not self else []
+        gap = 0.0
+        if ends:
+            at, there = min(ends, key=lambda end: abs(self.x[end[0]] - place))
+            gap = there[0] - sign * inner.near(field, 0 if at == 0 else last).at(self.x[at])[0][0]
+        counted = best[0] + gap
+        own, sizes = (
+            np.column_stack([own, *(there for _, there in ends)]),
+            [*(own[0] + gap), *(one[0] for _, one in ends)],
+        )
+        for _, there in ends:
+            best, counted = (there, there[0]) if there[0] >= counted else (best, counted)
+        alike = own[:, np.array(sizes) >= counted - TOGETHER * abs(counted)]
+        return best, np.max(np.abs(alike - best[:, None]), axis=1, initial=0.0), counted
 
 
 class Curve:
@@ -109,8 +127,8 @@ def largest(field, pieces, sign=1.0):
     other pieces change that have nearly as much.
     """
     tops = [piece.largest(field, sign) for piece in pieces]
-    best = max(tops, key=lambda top: top[0][0])[0]
-    tied = [np.abs(one - best) + doubt for one, doubt in tops if one[0] >= best[0] - TIED * abs(best[0])]
+    best = max(tops, key=lambda top: top[2])[0]
+    tied = [np.abs(one - best) + doubt for one, doubt, _ in tops if one[0] >= best[0] - TIED * abs(best[0])]
     return best, np.max(tied, axis=0)
 
 

@@ -100,6 +100,21 @@ def test_extremes_change_as_differences_tell(kind, name, step):
     assert changing >= 3
 
 
+def test_where_a_tube_is_widest_beside_the_end_of_a_piece_it_changes_as_it_does_there():
+    """Just before the middle of a tube whose angle jumps: differences of the solver at 1e-9, of 0.4 and 0.2 um."""
+    jump = 0.2555703014317311
+    tube = fs.Actuator(
+        alpha=[(0, -36.57092911645241), (jump, -36.57092911645241), (jump, -24.054645459761577), (1, -24.054645459761577)],
+        beta=None, length=22.502998987404904e-3, radius=1.2617630552164583e-3, wall=94.28407504254959e-6,
+        fiber_radius=1.2988651472655834e-3, material=fs.MooneyRivlin(105036.31618377719, 112744.54925920445),
+    )  # fmt: skip
+    found = fs.inflate(tube, 43286.218583800786, torque=-3.733862778560661e-4, derivatives="wall")
+    for output, told, doubt in (("outer_radius", -129.18097, 3e-5), ("largest_stretch", -117168.096, 0.03)):
+        exact, bound = (float(found[f"d_{output}_d_wall{end}"]) for end in ("", "_error"))
+        assert abs(exact - told) <= doubt
+        assert doubt < bound < 2e-4 * abs(told)
+
+
 def test_shares_that_are_none_or_all_do_not_change(by_vectors):
     found = found_of({}, derivatives="alpha")
     for family in ("alpha", "beta"):
