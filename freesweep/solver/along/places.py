@@ -191,7 +191,7 @@ def together(one, two, three, load):
     """``(numbers, bounds)`` from those of three meshes, the finest first, each ``(alpha, its doubt, beta, its doubt)`` of
     the shares, then ``(number, missed)`` of the least pulls and of the largest squares.
     """
-    size, share, other = load.p + abs(load.f), one[0], two[0]
+    size, share, other, first = load.p + abs(load.f), one[0], two[0], three[0]
     pull_a, bound_a = lowest(one[1], two[1], three[1], size)
     pull_b, bound_b = lowest(one[2], two[2], three[2], size)
     outer, missed = root(one[3], two[3], three[3])
@@ -199,8 +199,8 @@ def together(one, two, three, load):
     return (
         (share[0], share[2], pull_a, pull_b, outer, stretch),
         (
-            share[1] + abs(share[0] - other[0]) + ROUNDING * share[0],
-            share[3] + abs(share[2] - other[2]) + ROUNDING * share[2],
+            share[1] + FALLEN * differ(share[0], other[0], first[0]) + ROUNDING * share[0],
+            share[3] + FALLEN * differ(share[2], other[2], first[2]) + ROUNDING * share[2],
             bound_a, bound_b, missed, strained,
         ),
     )  # fmt: skip
