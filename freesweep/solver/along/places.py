@@ -2,9 +2,11 @@
 hard, how wide it gets, and how far its wall is stretched.
 
 Looked at are places along the deformed shape: its ends, those of its segments, where what varies jumps or bends, and the
-middles of its cells. Between these, what is largest has the parabola through three of them. Where a family pulls at one
-place and not at the next, its pull ends where it meets zero: on the line between both if fibers may push; if not, on the
-line through the two nearest places at which it pulls. What is told of one place is told of vectors of designs, too.
+middles of its cells. Between these, what is largest has the parabola through three of them; coarser meshes are asked at
+the place that the finest one finds, as the largest of their own may be of a wave that dies out with finer cells. Where a
+family pulls at one place and not at the next, its pull ends where it meets zero: on the line between both if fibers may
+push; if not, on the line through the two nearest places at which it pulls. What is told of one place is told of vectors of
+designs, too.
 """
 
 from math import sqrt
@@ -113,19 +115,39 @@ def bent(row, j, first, last):
 
 
 @kernel
-def above(x, row, j, first, last):
-    """By how much the parabola through a place and its neighbours, at an end of the segment through the three next to it,
-    passes the number there, if it is largest in the segment.
-    """
-    k = min(max(j, first + 1), last - 1)
+def parabola(x, row, k):
+    """``(slope, bend)``, at place k, of the parabola through it and its neighbours: row + slope t - bend t^2 / 2."""
     before, behind = x[k] - x[k - 1], x[k + 1] - x[k]
     rise, fall = (row[k] - row[k - 1]) / before, (row[k + 1] - row[k]) / behind
-    slope, bend = (rise * behind + fall * before) / (before + behind), (rise - fall) / (before + behind)
+    return (rise * behind + fall * before) / (before + behind), 2.0 * (rise - fall) / (before + behind)
+
+
+@kernel
+def top_beside(x, row, j, first, last):
+    """``(place, number)`` of the top of the parabola through a place and its neighbours, at an end of the segment through
+    the three next to it, if that is in the segment and higher than what is there.
+    """
+    k = min(max(j, first + 1), last - 1)
+    slope, bend = parabola(x, row, k)
     if not bend > 0.0:
-        return 0.0
-    top, end = 0.5 * slope / bend, 0.5 * (before if j < k else behind)  # from the middle of a cell to the segment's end
-    inside = x[first] - end <= x[k] + top <= x[last] + end
-    return max(row[k] + 0.5 * slope * top - row[j], 0.0) if inside else 0.0
+        return x[j], row[j]
+    end = 0.5 * (x[k] - x[k - 1] if j < k else x[k + 1] - x[k])  # from the middle of a cell to the segment's end
+    top = slope / bend
+    number = row[k] + 0.5 * slope * top
+    if x[first] - end <= x[k] + top <= x[last] + end and number > row[j]:
+        return x[k] + top, number
+    return x[j], row[j]
+
+
+@kernel
+def at_place(x, row, first, last, place):
+    """What a row has at a place of the segment from ``first`` to ``last``, by the parabola through the next three places."""
+    k = first + 1
+    while k < last - 1 and place > 0.5 * (x[k] + x[k + 1]):
+        k += 1
+    slope, bend = parabola(x, row, k)
+    t = place - x[k]
+    return row[k] + t * (slope - 0.5 * bend * t)
 
 
 @kernel
@@ -142,27 +164,23 @@ def missing(row, j, first, last):
 
 
 @kernel
-def highest(x, row, first, last, ceiling, best, missed, higher):
-    """``(best, missed, higher)`` with a row of places ``first`` to ``last`` more, of one segment: the largest number, by how
-    much it may be missed, and what it may be at most; never above the ``ceiling``, which is reached where the row has it.
+def highest(x, row, first, last, segment, ceiling, found):
+    """``(number, place, segment, by how much it may be missed, what it may be at most)`` of the largest that was ``found``
+    with a row of places ``first`` to ``last`` more, of one segment; never above the ``ceiling``, which is reached where
+    the row has it.
     """
+    best, at, where, missed, most = found
     for j in range(first, last + 1):
         if row[j] >= row[max(j - 1, first)] and row[j] >= row[min(j + 1, last)]:
             met = row[j] >= ceiling
-            top = min(row[j] + above(x, row, j, first, last), ceiling)
-            doubt = 0.0 if met else missing(row, j, first, last)
+            place, number = top_beside(x, row, j, first, last)
+            top, doubt = min(number, ceiling), 0.0 if met else missing(row, j, first, last)
             if top > best:
-                best, missed = top, doubt
+                best, at, where, missed = top, place, segment, doubt
             # a cell's middle is that of a chord, below what an end of a segment is compared with; two meshes mend that
             chord = 0.0 if met else CURVED * abs(bent(row, j, first, last))
-            higher = max(higher, min(top + doubt + chord, ceiling))
-    return best, missed, higher
-
-
-@kernel
-def doubted(found):
-    """``(number, by how much it may be missed)``."""
-    return found[0], max(found[1], found[2] - found[0])
+            most = max(most, min(top + doubt + chord, ceiling))
+    return best, at, where, missed, most
 
 
 @kernel
@@ -174,34 +192,35 @@ def differ(one, two, three):
 
 
 @kernel
-def root(one, two, three):
-    """``(value, bound)`` of the root of a largest square, from ``(most, missed)`` of three meshes, the finest first."""
-    a, b, c = sqrt(one[0]), sqrt(two[0]), sqrt(three[0])
-    return (4.0 * a - b) / 3.0, FALLEN * differ(a, b, c) + 0.5 * one[1] / a + ROUNDING * a
+def root(one, two, three, missed):
+    """``(value, bound)`` of the root of a largest square, from three meshes, the finest first, which may miss so much."""
+    a, b, c = sqrt(one), sqrt(two), sqrt(three)
+    return (4.0 * a - b) / 3.0, FALLEN * differ(a, b, c) + 0.5 * missed / a + ROUNDING * a
 
 
 @kernel
-def lowest(one, two, three, size):
-    """The same of a least pull, where the load is ``size``."""
-    return (4.0 * one[0] - two[0]) / 3.0, FALLEN * differ(one[0], two[0], three[0]) + one[1] + ROUNDING * size
+def lowest(one, two, three, missed, size):
+    """The same of a least pull, told with its sign turned, where the load is ``size``."""
+    return (two - 4.0 * one) / 3.0, FALLEN * differ(one, two, three) + missed + ROUNDING * size
 
 
 @kernel
-def together(one, two, three, load):
-    """``(numbers, bounds)`` from those of three meshes, the finest first, each ``(alpha, its doubt, beta, its doubt)`` of
-    the shares, then ``(number, missed)`` of the least pulls and of the largest squares.
+def together(shares, largest, missed, load):
+    """``(numbers, bounds)`` from three meshes, the finest first: ``(alpha, its doubt, beta, its doubt)`` of the shares, and
+    what is largest of pulls, their sign turned, and of squares, as it may be ``missed`` by the finest.
     """
-    size, share, other, first = load.p + abs(load.f), one[0], two[0], three[0]
-    pull_a, bound_a = lowest(one[1], two[1], three[1], size)
-    pull_b, bound_b = lowest(one[2], two[2], three[2], size)
-    outer, missed = root(one[3], two[3], three[3])
-    stretch, strained = root(one[4], two[4], three[4])
+    size, one, two, three = load.p + abs(load.f), shares[0], shares[1], shares[2]
+    first, second, third = largest
+    pull_a, bound_a = lowest(first[0], second[0], third[0], missed[0], size)
+    pull_b, bound_b = lowest(first[1], second[1], third[1], missed[1], size)
+    outer, apart = root(first[2], second[2], third[2], missed[2])
+    stretch, strained = root(first[3], second[3], third[3], missed[3])
     return (
-        (share[0], share[2], pull_a, pull_b, outer, stretch),
+        (one[0], one[2], pull_a, pull_b, outer, stretch),
         (
-            share[1] + FALLEN * differ(share[0], other[0], first[0]) + ROUNDING * share[0],
-            share[3] + FALLEN * differ(share[2], other[2], first[2]) + ROUNDING * share[2],
-            bound_a, bound_b, missed, strained,
+            one[1] + FALLEN * differ(one[0], two[0], three[0]) + ROUNDING * one[0],
+            one[3] + FALLEN * differ(one[2], two[2], three[2]) + ROUNDING * one[2],
+            bound_a, bound_b, apart, strained,
         ),
     )  # fmt: skip
 

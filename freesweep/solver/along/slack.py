@@ -43,20 +43,23 @@ def _look_along(fine, n, base, tube, load, seen, numbers, bounds, wall):
         return slack_fibers(fine[0], fine[1], n, base, tube, load)
     flag, apart = see(fine[0], fine[1], n, base, tube, load_of(0, load, fine), seen)
     if len(numbers) > 0:
-        finest = summed(seen, n, base, tube.edges, apart, load)
-        finer, coarse = again(1, n, base, fine, tube, load, seen), again(2, n, base, fine, tube, load, seen)
-        found, missed = places.together(finest, finer, coarse, load)
+        found, shares = peaks(seen, n, base, tube.edges, apart, load), without_pulls(seen, n, load)
+        finer, other = again(1, n, base, fine, tube, load, seen, found)
+        coarse, first = again(2, n, base, fine, tube, load, seen, found)
+        largest = (found[0][0], found[1][0], found[2][0], found[3][0]), finer, coarse
+        told, missed = places.together((shares, other, first), largest, doubts(found), load)
         for k in range(len(numbers)):
-            numbers[k], bounds[k] = found[k], missed[k]
+            numbers[k], bounds[k] = told[k], missed[k]
     return flag
 
 
 @kernel
-def again(which, n, base, fine, tube, load, seen):
-    """What is :func:`summed` on one of the two meshes before that of n cells."""
+def again(which, n, base, fine, tube, load, seen, found):
+    """:func:`at_peaks` and :func:`without_pulls` of one of the two meshes before that of n cells."""
     x, y = mesh_of(which, n // 2, fine)
-    _, apart = see(x, y, len(x) - 1, base, tube, load_of(which, load, fine), seen)
-    return summed(seen, len(x) - 1, base, tube.edges, apart, load)
+    cells = len(x) - 1
+    _, apart = see(x, y, cells, base, tube, load_of(which, load, fine), seen)
+    return at_peaks(seen, cells, base, tube.edges, apart, load, found), without_pulls(seen, cells, load)
 
 
 @kernel
@@ -107,10 +110,8 @@ def where_segments_end(x, y, n, base, tube, own, load, seen):
 
 
 @kernel
-def summed(seen, n, base, edges, apart, load):
-    """``(share of alpha, its doubt, share of beta, its doubt)`` of n cells and both ends, then ``(number, missed)`` of the
-    least pulls, the largest square of the outer radius and of the stretch; ``apart`` is what they are where segments end.
-    """
+def without_pulls(seen, n, load):
+    """``(share of alpha, its doubt, share of beta, its doubt)`` of n cells and both ends."""
     x, faint, loose = seen[places.PLACE], places.FAINT * (load.p + abs(load.f)), may_go_slack(load.wall)
     a, b, last = seen[places.ALPHA], seen[places.BETA], n + 1
     total, found = x[last] - x[0], (0.0, 0.0, 0.0, 0.0)
@@ -122,17 +123,56 @@ def summed(seen, n, base, edges, apart, load):
         part_a, doubt_a = places.without_pull(a[before], a[i], a[i + 1], a[beyond], *steps)
         part_b, doubt_b = places.without_pull(b[before], b[i], b[i + 1], b[beyond], *steps)
         found = found[0] + part_a, found[1] + doubt_a, found[2] + part_b, found[3] + doubt_b
-    pull_a, pull_b = (apart[0], 0.0, apart[0]), (apart[1], 0.0, apart[1])
-    widest, most = (apart[2], 0.0, apart[2]), (apart[3], 0.0, apart[3])
-    none = 0.0 if loose else np.inf
-    for s in range(len(edges) - 1):
+    return found
+
+
+@kernel
+def peaks(seen, n, base, edges, apart, load):
+    """Of pulls, their sign turned, and of squares: what :func:`places.highest` finds along n cells, if it is larger than
+    ``apart``, what they are where segments end (segment -1).
+    """
+    none, last = 0.0 if may_go_slack(load.wall) else np.inf, len(edges) - 1
+    a, b = (apart[0], 0.0, -1, 0.0, apart[0]), (apart[1], 0.0, -1, 0.0, apart[1])
+    widest, most = (apart[2], 0.0, -1, 0.0, apart[2]), (apart[3], 0.0, -1, 0.0, apart[3])
+    for s in range(last):
         first, end = int(edges[s] * (n / base)) + 1, int(edges[s + 1] * (n / base))
-        pull_a = places.highest(x, seen[places.PULL_ALPHA], first, end, none, *pull_a)
-        pull_b = places.highest(x, seen[places.PULL_BETA], first, end, none, *pull_b)
-        widest = places.highest(x, seen[places.SQUARE], first, end, np.inf, *widest)
-        most = places.highest(x, seen[places.STRAIN], first, end, np.inf, *most)
-    (less_a, doubt_a), (less_b, doubt_b) = places.doubted(pull_a), places.doubted(pull_b)
-    return found, (-less_a, doubt_a), (-less_b, doubt_b), places.doubted(widest), places.doubted(most)
+        a = places.highest(seen[places.PLACE], seen[places.PULL_ALPHA], first, end, s, none, a)
+        b = places.highest(seen[places.PLACE], seen[places.PULL_BETA], first, end, s, none, b)
+        widest = places.highest(seen[places.PLACE], seen[places.SQUARE], first, end, s, np.inf, widest)
+        most = places.highest(seen[places.PLACE], seen[places.STRAIN], first, end, s, np.inf, most)
+    return a, b, widest, most
+
+
+@kernel
+def doubts(found):
+    """By how much each of :func:`peaks` may be missed."""
+    a, b, widest, most = found
+    return (
+        max(a[3], a[4] - a[0]),
+        max(b[3], b[4] - b[0]),
+        max(widest[3], widest[4] - widest[0]),
+        max(most[3], most[4] - most[0]),
+    )
+
+
+@kernel
+def at_peaks(seen, n, base, edges, apart, load, found):
+    """What the rows of :func:`peaks` are along n cells where these were ``found`` to be largest on other ones."""
+    none = 0.0 if may_go_slack(load.wall) else np.inf
+    a = at_peak(seen, places.PULL_ALPHA, n, base, edges, apart[0], none, found[0])
+    b = at_peak(seen, places.PULL_BETA, n, base, edges, apart[1], none, found[1])
+    widest = at_peak(seen, places.SQUARE, n, base, edges, apart[2], np.inf, found[2])
+    most = at_peak(seen, places.STRAIN, n, base, edges, apart[3], np.inf, found[3])
+    return a, b, widest, most
+
+
+@kernel
+def at_peak(seen, row, n, base, edges, apart, ceiling, found):
+    _, place, s, _, _ = found
+    if s < 0:
+        return apart
+    first, end = int(edges[s] * (n / base)) + 1, int(edges[s + 1] * (n / base))
+    return min(places.at_place(seen[places.PLACE], seen[row], first, end, place), ceiling)
 
 
 @kernel
