@@ -25,7 +25,10 @@ from .path import load_at, size_of
 CORRECTIONS = 12  # of Newton's method; three suffice where a step is taken
 CORRECTED = 1e-7  # relative: the next correction would be its square
 STUCK = 1e-5  # relative: a correction that rounding keeps from falling further
-DIFFERENCE = 1e-3  # of the load, to see how the gradient changes with it: exact where it is linear
+BALANCED = 0.01  # of the room that a slope has: what it may still turn by where the meridian is all but upright
+DIFFERENCE = (
+    1e-3  # of the load, to see how the gradient changes with it, and of a slope's room: exact where it is linear
+)
 STILL = 1e-8  # of a tangent: a state that stands cannot leave its branch
 
 LOST, FOLLOWED = 0, 1
@@ -60,26 +63,24 @@ def largest_share(y, tangent, last):
 
 
 @kernel
-def load_slope(functional, x, y, n, cells, path, mu, b, spare):
+def load_slope(functional, track, y, n, cells, path, mu, b, work):
     """``b = dg/dmu``: how the gradient of -J changes along the path; returns what C and its target do, ``C_mu - T'``."""
     density, conjugate = functional.density, functional.conjugate
+    x, room, spare = track.x, system_in(work).room, border_in(work).of_k
     step = DIFFERENCE * (abs(mu) + path.floor)
-    low, here, high = load_at(path, y, n, mu - step), load_at(path, y, n, mu), load_at(path, y, n, mu + step)
+    low, high = load_at(path, y, n, mu - step), load_at(path, y, n, mu + step)
     b[0] = 0.0
     for j in range(n):
-        h, width = x[j + 1] - x[j], 2.0 * step
+        h, own = x[j + 1] - x[j], step
         middle, v = 0.5 * (y[j] + y[j + 1]), (y[j + 1] - y[j]) / h
         cell = of_length(cell_at(cells, j), h)
-        room_below, below_y, below_v, _, _, _ = density(middle, v, cell, low)
-        room_above, above_y, above_v, _, _, _ = density(middle, v, cell, high)
-        if not (room_below > 0.0 and room_above > 0.0):  # a meridian all but upright: one side of the load has no room
-            width = step
-            _, now_y, now_v, _, _, _ = density(middle, v, cell, here)
-            if room_above > room_below:
-                below_y, below_v = now_y, now_v
-            else:
-                above_y, above_v = now_y, now_v
-        half, turn = 0.5 * h * (above_y - below_y) / width, (above_v - below_v) / width
+        below, above = density(middle, v, cell, low), density(middle, v, cell, high)
+        change, allowed = max(abs(above[0] - room[j]), abs(below[0] - room[j])), DIFFERENCE * room[j]
+        if change > allowed:
+            own *= allowed / change
+            below = density(middle, v, cell, load_at(path, y, n, mu - own))
+            above = density(middle, v, cell, load_at(path, y, n, mu + own))
+        half, turn = 0.25 * h * (above[1] - below[1]) / own, 0.5 * (above[2] - below[2]) / own
         b[j] += turn - half
         b[j + 1] = -half - turn
     if not path.held.any:
@@ -87,6 +88,21 @@ def load_slope(functional, x, y, n, cells, path, mu, b, spare):
     below, _ = hold(conjugate, x, y, n, cells, low, path.held.unit, spare)
     above, _ = hold(conjugate, x, y, n, cells, high, path.held.unit, spare)
     return (above - below) / (2.0 * step) - path.held.change
+
+
+@kernel
+def is_balanced(x, y, n, last, system):
+    """Whether no slope would turn by much of its room if its nodes gave way to what is left of the forces on them: beside an
+    upright meridian a change of y that hardly shows is far from small.
+    """
+    g, d, room, before = system.g, system.d, system.room, 0.0
+    for j in range(n):
+        after = abs(g[j + 1] / d[j + 1]) if j + 1 <= last else 0.0
+        h = x[j + 1] - x[j]
+        if not max(before, after) * abs(y[j + 1] - y[j]) < BALANCED * room[j] * h * h:
+            return False
+        before = after
+    return True
 
 
 @kernel
@@ -185,7 +201,8 @@ def correct(functional, track, y, mu, n, cells, path, normal_mu, tangent, work):
         now, held_row = load_at(path, y, n, mu), (0.0, 0.0, 0.0)
         if not assemble(functional.density, track.x, y, n, cells, now, False, system):
             return LOST, 0, mu, 0.0
-        by_mu = load_slope(functional, track.x, y, n, cells, path, mu, b, of_k)
+        balanced = is_balanced(track.x, y, n, last, system)
+        by_mu = load_slope(functional, track, y, n, cells, path, mu, b, work)
         if held.any:
             total, by_held = hold(functional.conjugate, track.x, y, n, cells, now, held.unit, c)
             held_row = total - (held.first + mu * held.change), by_held, by_mu
@@ -206,7 +223,7 @@ def correct(functional, track, y, mu, n, cells, path, normal_mu, tangent, work):
             y[i] += move
         if not size < 1.0:
             return LOST, 0, mu, 0.0
-        if size < CORRECTED or (size < STUCK and size >= 0.5 * before):
+        if balanced and (size < CORRECTED or (size < STUCK and size >= 0.5 * before)):
             tangent_k, tangent_held, tangent_mu = right[0, 1], right[1, 1], right[2, 1]
             tangent[0] = tangent[n] = 0.0
             for i in range(1, last + 1):
