@@ -183,3 +183,28 @@ def test_two_thousand_random_tubes_in_lists_of_all_lengths(loads):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         assert [case for case in random_tubes(14, 1000, loads) if len(by_list(*case)) > 1] == []
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "length", "wall", "extension", "pressure"),
+    [
+        (74.73, 80.82, 39.2, 0.334, 1.01, 0.19), (85.11, -84.1, 9.6, 0.386, 1.1, 0.43), (53.19, 86.26, 38.7, 0.142, 1.02, 0.87),
+        (-84.33, -76.86, 12.0, 0.09, 1.01, 0.073), (66.73, 83.62, 11.2, 0.358, 1.02, 1.8), (53.03, 73.33, 11.9, 0.326, 1.1, 1.1),
+    ],
+)  # fmt: skip
+def test_extended_steep_fibers_stand_upright_at_the_ends_of_tubes_that_vary(
+    alpha, beta, length, wall, extension, pressure
+):
+    """By meshes, whose slopes have a millionth of room there, and less, as by vectors, which ask for no slope."""
+    tubes = [
+        Actuator(
+            alpha=alpha, beta=beta, length=length * R0, radius=R0, wall=own, material=MooneyRivlin(C10, 0.5 * C10),
+            fiber_extension=extension,
+        )
+        for own in (wall * R0, [(0, wall * R0), (1, wall * R0 * (1.0 + 1e-10))])
+    ]  # fmt: skip
+    alike, varying = (inflated(tube, pressure) for tube in tubes)
+    assert (alike["status"].item(), varying["status"].item()) == (OK, OK)
+    for name in ("deformed_length", "rotation", "volume", "mid_radius"):
+        bound = alike[name + "_error"].item() + varying[name + "_error"].item() + 1e-9 * abs(alike[name].item())
+        assert abs(alike[name].item() - varying[name].item()) <= bound
