@@ -9,6 +9,7 @@ import numpy as np
 
 from ..atlas.store import Atlas
 from ..description.actuator import Actuator
+from ..description.families import FAMILIES, given_by
 from ..description.faults import ActuatorError
 from ..description.given import described
 from ..description.options import read_count
@@ -17,12 +18,13 @@ from ..description.unit_warnings import tolerance_doubts, warn_of
 from ..report import SHOWN
 from . import freedom, wishes
 from .candidates import Found, gather
-from .deviation import read_tolerances
+from .deviation import WORKING, read_tolerances
 from .in_units import titled
 from .least import beaten, front, least, multipliers
 from .look import look, spread, with_dear
 from .misfit import make
 from .polish import polish
+from .space import LOADS
 from .unit_doubts import doubts_of
 from .wishes import Goal, Limit
 from .words import NONE, prices
@@ -93,16 +95,12 @@ def find(
     if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
         faults.append(f"seed: found {described(seed)}; give a whole number, 0 or more")
     allowed = read_tolerances(tolerances, template, faults) if space is not None else {}
-    if space is not None:
-        missing = [w.title for w in (*asked, *kept, *objectives) if _needs_pressure(w) and "pressure" not in free]
-        faults += [f"{title}: give its pressure, or let 'pressure' be free" for title in missing]
-        if "pressure" not in free and any(wish.output == "pressure" for wish in (*asked, *kept, *objectives)):
-            faults.append(
-                "pressure: is wished for, but each state has its own; let 'pressure' be free, or leave that out"
-            )
+    known = [*asked, *kept, *objectives]
+    faults += [] if space is None else _without_a_state(template, free, known)
     if faults:
         raise ActuatorError(faults)
-    doubts = [*doubts_of(space, [*asked, *kept]), *tolerance_doubts(template.design(), allowed)]
+    doubts = [*doubts_of(space, [*asked, *kept]), *_idle(free, known)]
+    doubts += tolerance_doubts(template.design(), allowed)
     warn_of(doubts, stacklevel=3)
     misfit = make(space, asked, kept)._replace(shown=shown)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
@@ -114,9 +112,17 @@ def find(
         if other is not None and (made is None or np.any(other.data["met"].values)):
             made = other
     if made is None:
+        if fault := space.no_tube():
+            raise ActuatorError([f"free: no design that it allows is a tube: {fault}"])
         titles = ", ".join(titled(wish.title, shown) for wish in misfit.wishes)
         raise ActuatorError([f"goals, limits: {NONE} has all the states in which they count: {titles}"])
+    if notes := [note for one in (*_several(goals), *_several(limits)) for note in one.notes()]:
+        made.data.attrs["notes"] = "\n".join(notes)
     return made
+
+
+def _several(given):
+    return given if isinstance(given, (list, tuple)) else () if given is None else (given,)
 
 
 def _searched(misfit, objectives, count, seed, atlas, allowed):
@@ -145,12 +151,31 @@ def _needs_pressure(wish):
     return wish.kind not in ("design", "limit", "every") and "pressure" not in dict(wish.conditions)
 
 
+def _without_a_state(template, free, known):
+    """Faults of the wishes ``known`` that count in no state of such tubes."""
+    absent = set(FAMILIES) - set(given_by(template))
+    found = [f"{w.output}: is wished for, a family that the template has not" for w in known if w.output in absent]
+    if "pressure" not in free:
+        titles = [wish.title for wish in known if _needs_pressure(wish)]
+        found += [f"{title}: give its pressure, or let 'pressure' be free" for title in titles]
+        if any(wish.output == "pressure" for wish in known):
+            found.append(
+                "pressure: is wished for, but each state has its own; let 'pressure' be free, or leave that out"
+            )
+    return found
+
+
+def _idle(free, known):
+    """Sentences on loads that are free, and in no state of the wishes ``known``, as each gives its own."""
+    for name in (name for key in free for name in map(str.strip, key.split(",")) if name in LOADS):
+        works = (name in WORKING[wish.kind] and name not in dict(wish.conditions) for wish in known)
+        if not any(works) and not any(wish.output == name for wish in known if wish.kind == "design"):
+            yield f"free[{name!r}] changes nothing: each goal and limit has its own {name}, or is none of a state under it"
+
+
 def _objectives(minimize, faults):
     """What is to be least, as wishes without a range."""
     given = list(minimize) if isinstance(minimize, (list, tuple)) else [] if minimize is None else [minimize]
-    if len(given) > 2:
-        faults.append(f"minimize: found {len(given)} of them; one, or two for a front between them")
-        return []
     found = []
     for k, one in enumerate(given):
         if isinstance(one, (Goal, Limit)):
@@ -162,6 +187,10 @@ def _objectives(minimize, faults):
             faults.append(
                 f"minimize: found {described(one)}; give one of {can}, or an output in a state as a Limit of any range"
             )
+    if len(found) > 2:
+        faults.append(f"minimize: found {len(found)} numbers; one, or two for a front between them")
+    elif len({wish.title for wish in found}) < len(found):
+        faults.append(f"minimize: found {found[0].title} twice; give it once, or two of which each has its price")
     return found
 
 

@@ -14,9 +14,9 @@ from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
 from ..scaling import SLACK
 from .beside import Held, load_slopes
-from .freedom import LOADS
 from .outputs import FOLLOWING, derived
 from .predict import state_of
+from .space import LOADS
 from .vectors import STRAIGHT, Kind, points_of
 from .wishes import HELD
 

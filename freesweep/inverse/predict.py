@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..status import INVALID, OK, VALUED
-from .freedom import Space
+from .space import Space
 from .wishes import HELD
 
 UNKNOWN, UNSTABLE, STABLE = -1, 0, 1  # of a state; vectors do not tell it of physical tubes that are held bent

@@ -32,6 +32,7 @@ from pathlib import Path
 
 from ..atlas.schema import PARAMETERS
 from ..description.actuator import Actuator
+from ..description.along import Profile
 from ..description.elastomer import rubber_of
 from ..description.faults import ActuatorError
 from ..description.given import numbers
@@ -39,7 +40,7 @@ from ..description.material_library import material
 from ..report import SHOWN
 from ..sweep import toml_guard
 from .curve_file import is_path
-from .freedom import CONSTANTS, Profile
+from .space import CONSTANTS
 from .wishes import CONDITIONS, UNITS, Goal, Limit, _Asked
 
 PLACES = {"alpha": 40.0, "beta": -20.0, "length": 0.1, "radius": 5e-3, "wall": 1e-3}  # of what is free, until it is not
