@@ -80,7 +80,7 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, nea
         for k, (state, part) in enumerate(zip(states, parts)):
             numbers = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
             if own.is_source:
-                numbers |= stiffness(asked[state], kind, numbers, part, own.energy)
+                numbers |= stiffness(asked[state], kind, numbers, part, tube)
             answers[state] = {name: output(name, kind, numbers, part) for name in asked[state]}
             limit = np.where(numbers["status"] == INVALID, INVALID, OK)
             answers[state]["slack"] = np.where(kind == "limit", 0, numbers["slack_fiber"]).astype(np.int8)
