@@ -88,7 +88,7 @@ class Misfit(NamedTuple):
             slopes[table] = np.where(np.isnan(known), other, known)
         return slopes / self.tolerances[:, None]
 
-    def _differences(self, wishes, u, choice, found, thorough):
+    def _differences(self, wishes, u, choice, found, thorough=False):
         """Central differences (n, wishes, p) about points of which that was ``found``, as ``thorough`` as it was."""
         count, free = u.shape
         step, middle = STEP * np.eye(free), found.values
