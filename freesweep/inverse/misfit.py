@@ -35,8 +35,10 @@ class Misfit(NamedTuple):
         """Whether vectors tell all that is wished for."""
         from .vectors import Kind
 
-        told = Kind.of(self.space.template).told
-        return self.space.is_alike and all(w.kind in ("design", "every") or w.output in told for w in self.wishes)
+        own = Kind.of(self.space.template)
+        return self.space.is_alike and all(
+            wish.kind in ("design", "every") or own.tells(wish.output, wish.kind) for wish in self.wishes
+        )
 
     def residuals(self, values):
         """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""

@@ -104,8 +104,12 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # designs on the way are nobody's
-        told = set(Kind.of(space.template).told) if space.is_alike else set()
-        quick = {state: names for state, names in asked.items() if set(names) <= told}
+        own = Kind.of(space.template)
+        quick = {
+            state: names
+            for state, names in asked.items()
+            if space.is_alike and all(own.tells(name, state.kind) for name in names)
+        }
         known = {} if near is None else near.held(wishes, states)
         answers = solve_vectors(space.template, quick, columns, accuracy, thorough, sure, known)
         if len(quick) < len(asked):

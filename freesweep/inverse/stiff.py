@@ -11,19 +11,20 @@ from .wishes import HELD, STIFF
 ACCURACY = 1e-7
 SAME = 1e-4  # of the length, or of a radian: a state of which what moves is further off is another one
 ASIDE, CAUTION = 1e-4, 2.0  # states beside one, and times what it is not known by
+FOLLOWED = 1e-6  # to which the middle of a state is known that was found beside another
 ROUNDING = 1e-9  # of what closed forms tell
 RADIAN = 57.3  # [degree]
 
 
 def stiffness(names, kind, found, design, tube) -> dict:
-    """Those of ``names`` that are stiffnesses, with their bounds, of states of the source's tubes, like the ``tube``, that
-    were ``found``; NaN where vectors tell no derivative of that state.
+    """Those of ``names`` that are stiffnesses, with their bounds, of states of tubes of two families, like the ``tube``,
+    that were ``found``; NaN where vectors tell no derivative of that state.
     """
     made = {}
     for name in set(names) & set(STIFF):
         value, bound = np.full((2, len(found["status"])), np.nan)
         states = _States(STIFF[name], kind, found, design, tube)
-        for way in (states.by_loads, states.straight, states.by_middles):
+        for way in states.ways:
             left = states.rows[np.isnan(value[states.rows])]
             value[left], bound[left] = states.tell(way, left)
         made |= {name: value, f"{name}_error": bound}
@@ -38,7 +39,10 @@ class _States:
     def __init__(self, load, kind, found, design, tube):
         self.load, self.moved, self.tube = load, HELD[load][0], tube
         self.design, self.errors = design, np.zeros(len(found["status"]))
-        self.middles, self.doubts = found["mid_radius"], found["mid_radius_error"]
+        self.middles = found["mid_radius"]
+        self.doubts = found.get("mid_radius_error", FOLLOWED * self.middles)
+        closed = [] if tube.is_thick or tube.threads else [self.straight]
+        self.ways = [self.by_loads, *closed, self.by_middles]
         if kind in HELD:
             self.design, self.errors = design | {kind: found[kind]}, found[f"{kind}_error"]
             self.target = design["held"] * (design["length"] if kind == "force" else 1.0)
@@ -75,7 +79,7 @@ class _States:
 
     def by_middles(self, rows, step, wider):
         """The same, of states of which the middle's radius is known."""
-        return self._differentiated(rows, step, (self.middles[rows] + wider, np.zeros(len(rows), bool)))
+        return self._differentiated(rows, step, (self.middles[rows] + wider, np.full(len(rows), self.tube.is_loose)))
 
     def straight(self, rows, step, _):
         """The same, of tubes that stay straight, in closed form."""
@@ -87,7 +91,9 @@ class _States:
         from ..derivative.vectors import differentiated
 
         sizes = self.size[None, rows]
-        own, bounds = differentiated(self._dual(rows, step), self.tube.energy, sizes, SHAPE, ACCURACY, known=known)
+        tube, design = self.tube, self._dual(rows, step)
+        kind = tube.is_thick, tube.threads
+        own, bounds = differentiated(design, tube.energy, sizes, SHAPE, ACCURACY, *kind, known)
         place = SHAPE.index(self.moved)
         return own[place, 0], own[place, 1], bounds[place, 1]
 

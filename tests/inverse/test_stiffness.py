@@ -87,3 +87,22 @@ def test_a_hidden_tube_is_found_by_a_held_stiffness_that_meshes_tell():
     ]
     found = fs.design(template, {"beta": (-85, 85), "wall": (3e-4, 2e-3)}, goals, count=1)
     assert found["met"].item()
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_free_ends_of_physical_tubes_are_as_stiff_as_their_loads_tell(name):
+    """Both families loose, of which one is slack along the second tube: by vectors, against differences of states."""
+    load, moved = HELD[name]
+    step = {"force": 1e-2, "torque": 1e-5}[load]
+    for alpha, beta in ((30.0, -40.0), (60.0, 25.0)):
+        tube = fs.Actuator(
+            alpha=alpha, beta=beta, length=0.15, radius=5e-3, wall=1e-3, material=RUBBER, model="physical"
+        )
+        goal = fs.Goal(name, 1.0, pressure=5e4)
+        space = freedom.read(tube, {"wall": (1e-3, 1.1e-3)}, [])
+        task = misfit.make(space, goal.wishes([]), [])
+        assert task.is_quick
+        found, _ = task.at(np.zeros((1, 1)), np.zeros(1, int), thorough=False)
+        ends = fs.inflate(tube, 5e4, x=0.0, accuracy=1e-9, **{load: [-step, step]})[moved].values
+        assert found.values.item() == pytest.approx(2.0 * step / np.diff(ends).item(), rel=1e-4)
+        assert found.bounds.item() <= 1e-3 * found.values.item()
