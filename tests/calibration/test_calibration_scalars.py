@@ -363,3 +363,46 @@ def test_the_shell_and_toml_say_the_same(tmp_path, monkeypatch, capsys):
     assert "--report: found" in refused(capsys, "calibrate", "case.toml", "--report", "page.docx")
     (tmp_path / "case.toml").write_text("[data]\nfile = 1\n")
     assert "data.file: unknown; it has files, measured" in refused(capsys, "calibrate", "case.toml")
+
+
+@pytest.fixture(scope="module")
+def muscle_read():
+    """Free lengths of a muscle whose families differ from what its actuator says of the second."""
+    truth = Actuator(alpha=30, beta=-30, length=0.2, radius=6e-3, wall=1e-3, material=MooneyRivlin(1.2e5, 6e4))
+    pressure = np.linspace(2e4, 2e5, 8)
+    noise = 1e-4 * np.random.default_rng(1).standard_normal(8)
+    read = inflate(truth, pressure, x=0.0)["deformed_length"].values + noise
+    guess = replace(truth, beta=-50, material=MooneyRivlin(1.5e5, 6e4))
+    return Measurement(guess, pressure, deformed_length=read)
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"bounds": {"alpha": (0, 95), "wall": (-1e-3, 2e-3)}}, ["bounds of alpha: found 95", "wall: found -0.001"]),
+        ({"bounds": {"fiber_extension": (0.5, 2)}}, ["bounds of fiber_extension: found 0.5, allowed is 1 to 10"]),
+        ({"bounds": {"radius": (1e-3, 2e-3)}}, ["bounds of radius: it is not fitted"]),
+        ({"priors": {"alpha": (95, 1)}}, ["priors of alpha: found 95"]),
+        ({"priors": {"alpha": (30, 1)}, "alpha": (31, 1)}, ["priors: found alpha twice"]),
+        ({"fit": ["alpha", "beta"], "ties": {"beta": "-alpha"}}, ["fit: beta is tied"]),
+        (
+            {"ties": {"beta": "-alpha", "alpha": "2*beta"}},
+            ["'beta': tied to 'alpha', which", "'alpha': tied to 'beta'"],
+        ),
+        ({"ties": {"wall": "c10"}}, ["what is in [m] cannot follow what is in [Pa]"]),
+        ({"ties": {"wall": "1.2.3*radius"}}, ["tie a parameter to a number times another"]),
+    ],
+)
+def test_what_no_calibration_can_follow_is_refused(muscle_read, asked, words):
+    with pytest.raises(ActuatorError) as fault:
+        calibrate(muscle_read, **{"fit": ["c10", "alpha", "wall", "fiber_extension"]} | asked)
+    said = fault.value.faults
+    assert all(any(word in one for one in said) for word in words)
+    assert len(said) == len(words)
+
+
+def test_a_tie_holds_where_what_it_follows_is_not_fitted(muscle_read):
+    """The second family mirrors the first, whatever the actuator says of it."""
+    found = calibrate(muscle_read, "c10", ties={"beta": "-alpha"})
+    assert found.tubes[0].beta == -30.0
+    assert found.values.item() == pytest.approx(1.2e5, rel=0.02)
