@@ -207,7 +207,7 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
         wishes=[*misfit.wishes, *objectives], tolerances=np.append(misfit.tolerances, [1.0] * number)
     )
     values = whole.at(u, choice)[0].values[:, -number:]
-    scale = np.maximum(np.nanmax(np.abs(values), axis=0), 1e-300)
+    scale = np.maximum(np.max(np.abs(values), axis=0, initial=0.0, where=np.isfinite(values)), 1e-300)
     if number == 2:
         u, choice = front(whole, u, choice, count, scale)
     else:

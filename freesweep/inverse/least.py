@@ -27,19 +27,22 @@ class Least:
             found, _ = self.misfit.at(u[None], self.choice)
             slopes = np.nan_to_num(self.misfit.slopes(u[None], self.choice, found)[0])
             values = found.values[0] / self.misfit.tolerances
-            self._known = {key: (np.where(np.isfinite(values), values, self._none()), slopes)}  # the last one only
+            values = np.where(np.isnan(values), self._far(-1.0), np.where(np.isinf(values), self._far(1.0), values))
+            self._known = {key: (values, slopes)}  # the last one only
         return self._known[key]
 
-    def _none(self):
-        """What stands for the values of states that are not there: beyond each range, and more than any objective."""
+    def _far(self, sign):
+        """What stands for the values of states that are not there, beyond each range (-1), or of limit pressures where there
+        is no limit, above each level (1); more than any objective.
+        """
         low, high = np.array([(wish.low, wish.high) for wish in self.misfit.wishes]).T / self.misfit.tolerances
-        beyond = np.where(np.isfinite(high), high + FAR, np.where(np.isfinite(low), low - FAR, 0.0))
+        beyond = np.where(np.isfinite(high), high + FAR, np.where(np.isfinite(low), low + sign * FAR, 0.0))
         beyond[len(beyond) - self.objectives :] = FAR * self.scale
         return beyond
 
     def is_there(self, u):
         """Whether all states are."""
-        return bool(np.all(np.isfinite(self.misfit.at(u[None], self.choice)[0].values)))
+        return not np.any(np.isnan(self.misfit.at(u[None], self.choice)[0].values))
 
     def objective(self, k):
         """One objective and its gradient, of size 1."""
