@@ -265,5 +265,5 @@ def _column(name, value, unit, faults, infinite=False):
 
 
 def _title(output, names, values):
-    state = ", ".join(f"{name} {value:g} {CONDITIONS[name]}" for name, value in zip(names, values))
+    state = ", ".join(f"{name} {value:.9g} {CONDITIONS[name]}" for name, value in zip(names, values))
     return f"{output} at {state}" if state else output

@@ -155,3 +155,28 @@ def test_an_uncertainty_of_nothing_is_refused_where_it_stands(tmp_path):
         fs.Goal("force", path, pressure=1e5)
     told = ["deformed_length: found -0.14 m", "force_sigma: found 0 N; it has to be above 0 (line 2, column 3)"]
     assert all(any(word in one for one in fault.value.faults) for word in told)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "word"),
+    [
+        ('value = "pull.csv"', "between = 5", "between: give two numbers"),
+        ('c01 = "60 kPa"', 'c01 = "60 kPa"\nmaterial = "natural-latex"', "actuator.material: found beside c10, c01"),
+        ("stop = 60", "stop = 95", "free['alpha']: found 95"),
+    ],
+)
+def test_a_file_of_wishes_with_a_fault_ends_in_words(tmp_path, capsys, old, new, word):
+    path = tmp_path / "wish.toml"
+    (tmp_path / "pull.csv").write_text("deformed_length [mm],force [N]\n148,3\n")
+    path.write_text(WISH.replace(old, new))
+    assert main(["design", str(path)]) == 2
+    assert word in capsys.readouterr().err
+
+
+def test_states_are_told_in_the_units_in_which_they_were_given(tmp_path, capsys):
+    """Fifteen psi are no round number of pascals."""
+    path = tmp_path / "wish.toml"
+    asked = WISH.replace('"force"', '"rotation"').replace('"pull.csv"', '"1 rad"').replace('"1 bar"', '"15 psi"')
+    path.write_text(asked)
+    assert main(["design", str(path)]) == 0
+    assert "at pressure 15 psi" in capsys.readouterr().out
