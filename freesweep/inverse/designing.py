@@ -19,9 +19,10 @@ from ..report import SHOWN
 from . import freedom, wishes
 from .candidates import Found, gather
 from .deviation import WORKING, read_tolerances
+from .from_atlas import tells
 from .in_units import titled
 from .least import beaten, front, least, multipliers
-from .look import look, spread, with_dear
+from .look import glanced, look, spread, with_dear
 from .misfit import make
 from .polish import polish
 from .space import LOADS
@@ -101,8 +102,11 @@ def find(
         raise ActuatorError(faults)
     doubts = [*doubts_of(space, [*asked, *kept]), *_idle(free, known)]
     doubts += tolerance_doubts(template.design(), allowed)
-    warn_of(doubts, stacklevel=3)
     misfit = make(space, asked, kept)._replace(shown=shown)
+    if atlas is not None and not tells(atlas, glanced(misfit)):
+        doubts.append("the atlas holds none of these tubes, or tells nothing that is wished for: it was not asked")
+        atlas = None
+    warn_of(doubts, stacklevel=3)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
     made = _searched(first, objectives, count, seed, atlas, allowed)
     is_done = made is not None and np.any(made.data["met"].values)

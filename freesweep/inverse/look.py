@@ -25,7 +25,7 @@ def look(misfit: Misfit, count, seed, atlas=None):
     free, choices = len(space.names), len(space.choices)
     if free == 0:
         return np.zeros((choices, 0)), np.arange(choices)
-    known = [] if atlas is None else told(atlas, misfit.wishes)
+    known = [] if atlas is None else told(atlas, misfit)
     most = ALIKE if misfit.is_quick or any(known) else ONE_BY_ONE
     if misfit.is_quick and not space.is_source:  # what holds one is sought by many states
         most //= 1 + sum(wish.kind in HELD for wish in misfit.wishes)
