@@ -131,7 +131,7 @@ def _several(given):
 
 def _searched(misfit, objectives, count, seed, atlas, allowed):
     """Candidates, None where no design has all the states in which goals and limits count."""
-    u, choice = look(misfit, STARTS * count, seed, atlas)
+    u, choice = look(misfit, STARTS * count, seed, atlas, bool(objectives))
     # not all that lists name goes together
     real = [misfit.space.actuator_or_none(one, k) is not None for one, k in zip(u, choice)]
     u, choice = u[real], choice[real]
@@ -198,6 +198,15 @@ def _objectives(minimize, faults):
     return found
 
 
+def _first(values, choice, count):
+    """Rows from which the least is looked for: the first ones, and those that have the least ``values`` (n, objectives) so
+    far, of all and of each choice.
+    """
+    order = np.argsort(values[:, 0], kind="stable")
+    firsts = order[np.sort(np.unique(choice[order], return_index=True)[1])]
+    return np.unique(np.concatenate([np.arange(min(count, len(order))), order[:STARTS], firsts[: count + STARTS]]))
+
+
 def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
     """Candidates among those that do it with the least of the objectives."""
     number = len(objectives)
@@ -206,11 +215,13 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
         best = _order(np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf))[:count]
         _, found, _, slopes = polish(misfit, u[best], choice[best])
         return gather(misfit, u[best], choice[best], found, slopes, tolerances)
-    u, choice = u[good][:count], choice[good][:count]
+    u, choice = u[good], choice[good]
     whole = misfit._replace(
         wishes=[*misfit.wishes, *objectives], tolerances=np.append(misfit.tolerances, [1.0] * number)
     )
     values = whole.at(u, choice)[0].values[:, -number:]
+    rows = _first(values, choice, count)
+    u, choice, values = u[rows], choice[rows], values[rows]
     scale = np.maximum(np.max(np.abs(values), axis=0, initial=0.0, where=np.isfinite(values)), 1e-300)
     if number == 2:
         u, choice = front(whole, u, choice, count, scale)

@@ -78,6 +78,8 @@ class Least:
         """The point with the least of objective ``k`` from ``u`` (p,) on: where that leads to where there is no state, from
         the last one that has all of them, within a box that is halved each time.
         """
+        if not len(u):  # a choice leaves nothing open
+            return u
         end, reach = self._descend(u, k, levels, 1.0), 0.5
         if self.is_there(end):
             return end
@@ -110,7 +112,7 @@ def front(misfit: Misfit, u, choice, count, scale):
     """``count`` points, and their choices, along the front of two objectives, from the starts that have the least of each:
     the second one's least while the first is held at its own least and at levels from there on.
     """
-    ends = []
+    ends, others = [], []
     for k in range(2):
         found = [Least(misfit, c, 2, scale).search(one, k, [np.nan] * 2) for one, c in zip(u, choice)]
         _, residuals = misfit.at(np.array(found), choice)
@@ -118,6 +120,7 @@ def front(misfit: Misfit, u, choice, count, scale):
         kept = np.all(np.abs(residuals[:, : len(misfit.wishes) - 2]) <= 1.0, axis=1)
         best = np.argmin(np.where(kept, values, np.inf))
         ends.append((found[best], choice[best]))
+        others += [(found[i], choice[i]) for i in np.unique(choice, return_index=True)[1]]  # of each choice one
     place = len(misfit.wishes) - 2
     (first, one), (last, other) = ends
     levels = [Least(misfit, c, 2, scale).known(end)[0][place] for end, c in ends]
@@ -126,6 +129,7 @@ def front(misfit: Misfit, u, choice, count, scale):
         level = levels[0] + share * (levels[1] - levels[0])
         starts = [(points[-1], choices[-1]), (last, other)] if points else [(first, one)]
         starts += [(first + share * (last - first), one)] if points and one == other else []
+        starts += others if len(np.unique(choice)) > 1 else []
         point, own = _best(misfit, scale, starts, level)
         points.append(point)
         choices.append(own)
