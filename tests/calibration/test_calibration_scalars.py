@@ -406,3 +406,36 @@ def test_a_tie_holds_where_what_it_follows_is_not_fitted(muscle_read):
     found = calibrate(muscle_read, "c10", ties={"beta": "-alpha"})
     assert found.tubes[0].beta == -30.0
     assert found.values.item() == pytest.approx(1.2e5, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "c10", "wall", "top", "off"),
+    [
+        (36.22046965, -56.71108998, 165786.717, 9.566276e-4, 73645.511, 1.98),
+        (40.68839407, -51.91293947, 146661.940, 1.35789568e-3, 86344.645, -0.52),
+    ],
+)
+def test_a_muscle_that_hardly_pushes_misleads_no_fit(alpha, beta, c10, wall, top, off):
+    """What it pushes where the bench read next to nothing is told from a slope at no force: that of the tube, not of a far
+    stiffer one that the first look passed. All else is exact, so the fit is the truth.
+    """
+    truth = Actuator(alpha=alpha, beta=beta, length=0.15, radius=5e-3, wall=wall, material=MooneyRivlin(c10, 0.5 * c10))
+    guess = replace(truth, alpha=alpha + off, material=MooneyRivlin(1.5e5, 0.75e5))
+    pressure = np.linspace(0.1, 1.0, 10) * top
+    free, thrust = inflate(truth, pressure, x=0.0), np.pi * 5e-3**2 * pressure
+    force = blocked_force(truth, pressure, 0.148, x=0.0)["force"].values
+    hardly = (force < 0.0) & (force > -0.1 * thrust)
+    assert np.any(hardly)
+    measured = [
+        Measurement(
+            guess, pressure, deformed_length=free["deformed_length"].values, rotation=free["rotation"].values,
+            measured=("deformed_length", "rotation"), sigma={"deformed_length": 2e-4, "rotation": 1.0},
+        ),
+        Measurement(
+            guess, pressure, deformed_length=0.148, force=np.where(hardly, -0.015 * thrust, force), measured="force",
+            sigma={"force": 0.03},
+        ),
+    ]  # fmt: skip
+    found = calibrate(measured, ["c10", "alpha"], ties={"c01": "0.5*c10"})
+    assert found.values == pytest.approx([c10, alpha], rel=0.02)
+    assert found.predicted[1][:, 0] == pytest.approx(force, abs=0.06)
