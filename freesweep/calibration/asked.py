@@ -47,11 +47,19 @@ def checked(measurements, fit, own_extension, bounds, priors, ties, known):
     if priors is not None and not isinstance(priors, dict):
         faults.append(f"priors: found {described(priors)}; give a dict such as {{'alpha': (30, 1)}}")
         priors = None
+    own_priors = priors
     bounds = read_pairs("bounds", bounds, material, faults)
     priors = read_pairs("priors", {**(priors or {}), **known}, material, faults, positive=True)
     ties = read_ties(ties, material, faults)
+    twice = [] if own_priors is None else [name for name in known if name in own_priors]
+    faults += [f"priors: found {name} twice; keep one of priors= and {name}=" for name in twice]
+    faults += [
+        f"fit: {name} is tied; leave it out there, or in ties" for name in names if fit is not None and name in ties
+    ]
     names += [base for base in dict.fromkeys(_base(name, allowed) for name in priors) if base not in names]
     names = [name for name in names if name not in ties]
+    idle = [name for name in bounds if _base(name, allowed) not in names]
+    faults += [f"bounds of {name}: it is not fitted; name it in fit, or leave its bounds out" for name in idle]
     if not names and not faults:
         faults.append(f"fit: nothing to fit; choose among {', '.join(allowed)}")
     if faults:

@@ -102,7 +102,7 @@ def _measurements(found, measured, tube, others, name):
     given = set(map(as_length, columns))
     measured = tuple(as_length(part) for part in measured if part in columns) or default_measured(given)
     faults += measured_faults(measured, given)
-    faults += _outside(found)
+    faults += outside(found)
     if "branch" in columns:
         faults += branch_faults(found)
     own = [part for part in TUBE if part in columns]
@@ -138,8 +138,8 @@ def _measurements(found, measured, tube, others, name):
     return made
 
 
-def _outside(found):
-    """Faults of numbers that no bench measures, with their places."""
+def outside(found) -> list:
+    """Faults of numbers that no bench measures, with their places in a file of which that was ``found``."""
     faults = []
     for name, array in found.values.items():
         if name == "pressure":

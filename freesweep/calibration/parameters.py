@@ -12,6 +12,7 @@ from ..description.faults import ActuatorError
 from ..description.given import described, numbers
 from ..description.impossible import LARGEST_ANGLE
 from ..inverse.freedom import TIE
+from ..sweep.axis import outside
 
 EXTENSION = "fiber_extension"
 DEAD, THRESHOLD = "dead_length", "threshold_pressure"
@@ -72,6 +73,9 @@ class Parameters:
         faults, made = [], []
         for name in names:
             made += self._made(name, own_extension, dict(bounds), dict(priors), faults)
+        for name, (_, other) in self.ties.items():
+            if not all(isinstance(_given(other, m.tube), float) for m in measurements):
+                faults.append(f"ties: {name}: {other} is a profile along the tube; only a number can be followed")
         if faults:
             raise ActuatorError(faults)
         self.all = made
@@ -87,8 +91,9 @@ class Parameters:
 
     def _made(self, name, own_extension, bounds, priors, faults):
         """The parameters of one name: one for all measurements, or for each value that is given."""
-        given = [self._given(name, m, faults) for m in self.measurements]
-        if faults:
+        given = [_given(name, m.tube) for m in self.measurements]
+        if not all(isinstance(value, float) for value in given):
+            faults.append(f"fit: {name} is a profile along the tube; only a number can be fitted")
             return []
         which = np.zeros(len(given), int)
         if name == EXTENSION:
@@ -122,17 +127,6 @@ class Parameters:
                 )
             )
         return made
-
-    def _given(self, name, measurement, faults):
-        if name in self.material.constants:
-            return getattr(self.material, name)
-        if name in BENCH:
-            return 0.0
-        tube = measurement.tube
-        value = tube.fiber_surface if name == "fiber_radius" else getattr(tube, name)
-        if not isinstance(value, float):
-            faults.append(f"fit: {name} is a profile along the tube; only a number can be fitted")
-        return value
 
     def _scales(self, name, given, measurement):
         """Unit and offset of theta, and where it is searched."""
@@ -177,8 +171,7 @@ class Parameters:
 
     def _setup(self, tube, own):
         for name, (factor, other) in self.ties.items():
-            if other in own:
-                own[name] = factor * own[other]
+            own[name] = factor * (own[other] if other in own else _given(other, tube))
         if "alpha" in own and "beta" not in own and tube.beta == -tube.alpha:
             own["beta"] = -own["alpha"]
         constants = {name: own.pop(name) for name in tube.material.constants if name in own}
@@ -193,6 +186,15 @@ class Parameters:
         if constants:
             rubber = replace(rubber, largest_stretch=None, source="", **constants)
         return Setup(replace(tube, material=rubber, **own), length, dead, threshold)
+
+
+def _given(name, tube):
+    """What a parameter is of a ``tube`` whose bench has no faults."""
+    if name in tube.material.constants:
+        return getattr(tube.material, name)
+    if name in BENCH:
+        return 0.0
+    return tube.fiber_surface if name == "fiber_radius" else getattr(tube, name)
 
 
 def _possible(name, tube):
@@ -236,8 +238,21 @@ def read_pairs(what, given, material, faults, positive=False) -> dict:
             kind = "(value, standard uncertainty above 0)" if positive else "(lowest, highest)"
             faults.append(f"{what} of {name}: found {described(pair)}; give {kind}")
             continue
+        ends = array[:1] if positive else array
+        wrong = [fault for end, one in zip(ends.tolist(), pair) if (fault := _outside(base, end, one))]
+        faults += [f"{what} of {name}: {fault}" for fault in wrong]
+        if wrong:
+            continue
         found[name] = tuple(array.tolist())
     return found
+
+
+def _outside(name, number, given):
+    """What is wrong with a number as an end or a guess of a parameter: 0 is no more than the border of what is above it."""
+    if name in SCALARS or name in ("c10", "c1", "c01"):
+        name = {"c1": "c10"}.get(name, name)
+        return "" if number == 0.0 and name != EXTENSION else outside(name, number, given)
+    return f"found {described(given)}; it has to be 0 or more" if name in BENCH and number < 0.0 else ""
 
 
 def read_ties(given, material, faults) -> dict:
@@ -254,5 +269,12 @@ def read_ties(given, material, faults) -> dict:
                 f" '0.5*c10', among {', '.join(known)}"
             )
             continue
-        found[name] = (-1.0 if match[1] else 1.0) * float(match[2] or 1.0), match[3]
+        other = match[3]
+        own, its = (UNITS.get(one, "Pa") for one in (name, other))
+        if own != its:
+            faults.append(f"ties: {name!r}: found {text!r}; what is in [{own}] cannot follow what is in [{its}]")
+        elif other in given:
+            faults.append(f"ties: {name!r}: tied to {other!r}, which is tied itself; tie it to what is not")
+        else:
+            found[name] = (-1.0 if match[1] else 1.0) * float(match[2] or 1.0), other
     return found

@@ -62,7 +62,7 @@ class Predictor:
             self.refresh(setups)
 
     def refresh(self, setups) -> float:
-        """Correct what vectors miss of short physical tubes; the largest change of a force that makes [N]."""
+        """Correct what vectors miss of short tubes, and of pushes; the largest change of a force that makes [N]."""
         largest = 0.0
         for k, (measurement, setup) in enumerate(zip(self.measurements, setups)):
             state = self._asked(measurement, setup)
@@ -99,7 +99,7 @@ class Predictor:
             values = held_torques(points, energy, model)[:, None]
         else:
             own = np.concatenate([self.rows[k] for _, k in members])
-            values = self.forces.solve(points, energy, model, own)[:, None]
+            values = self.forces.solve(points, energy, model, own, not rough)[:, None]
         cuts = np.cumsum([len(self.measurements[k]) for _, k in members])[:-1]
         for (t, k), part in zip(members, np.split(values, cuts)):
             found[t][k][:] = part

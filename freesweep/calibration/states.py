@@ -20,6 +20,7 @@ NEAR = 1e-3  # of the length: a difference that tells a slope
 LOWEST = -0.3  # of pressure times section: a push from which a search begins, at most
 PUSH = -0.02  # of pressure times section: what was measured below it is a push
 TURNS = 8  # of secants
+ASIDE, ROUNDING = 0.02, 1e-9  # of pressure times section, a pull beside none; relative
 SETTLED = 1e-8  # of the length
 
 
@@ -63,17 +64,17 @@ class Forces:
         self.force = np.full(count, np.nan)
         self.slope = np.full(count, np.nan)  # [m/N]
 
-    def solve(self, points, energy, model, own):
-        """Forces at points (k, 15) of which each is the state ``own`` (k,) of a measurement."""
+    def solve(self, points, energy, model, own, keep=True):
+        """Forces at points (k, 15) of which each is the state ``own`` (k,) of a measurement; ``keep`` them to begin with."""
         found = np.full(len(points), np.nan)
         rest = (points[:, PRESSURE] == 0.0) & (points[:, HELD] <= 1.0 + 1e-12)  # a thread cannot be pushed
         found[rest & (points[:, HELD] >= 1.0 - 1e-12)] = 0.0
         todo = np.flatnonzero(~rest)
         if len(todo):
-            found[todo] = self._sought(points[todo], energy, model, own[todo])
+            found[todo] = self._sought(points[todo], energy, model, own[todo], keep)
         return found
 
-    def _sought(self, points, energy, model, own):
+    def _sought(self, points, energy, model, own, keep):
         target = points[:, HELD] * points[:, LENGTH] - self.correction[own]
         force, slope = self.force[own].copy(), self.slope[own].copy()
         thrust = np.pi * points[:, FIBERS] ** 2 * points[:, PRESSURE]
@@ -82,24 +83,41 @@ class Forces:
         if not done.all():
             anew = np.flatnonzero(~done)
             first = _first_forces(points[anew], target[anew])
-            found = _secants(points[anew], energy, model, target[anew], *first, floor[anew])
+            found = _secants(points[anew], energy, model, target[anew], *first, floor[anew], aside=True)
             force[anew], slope[anew], done[anew] = found
-        self.force[own[done]], self.slope[own[done]] = force[done], slope[done]
+        if keep:
+            self.force[own[done]], self.slope[own[done]] = force[done], slope[done]
         return np.where(done & (force > -thrust), force, np.nan)  # beyond, the wall would have to be pushed
 
     def refresh(self, points, energy, model, own):
-        """Correct lengths of short tubes by exact solutions at the forces found; the largest change that makes [N]."""
+        """Correct lengths of short tubes by exact solutions at the forces found, and pushes by slopes at no force; the
+        largest change that makes [N].
+        """
+        change = self._refresh_pushes(points, energy, model, own)
         short = (points[:, LENGTH] < FAR * points[:, FIBERS]) & np.isfinite(self.force[own])
         short &= (self.force[own] >= 0.0) | (self.measured[own] < 0.0)
         if not short.any():
-            return 0.0
+            return change
         points, own = points[short].copy(), own[short]
         points[:, FORCE] = self.force[own]
         exact = _shared(LOADED, points, energy, model)["deformed_length"]
         missed = exact - _lengths(points, energy, model)
-        change = np.where(np.isfinite(missed), missed - self.correction[own], 0.0)
-        self.correction[own] += change
-        return float(np.max(np.abs(change / self.slope[own]), initial=0.0))
+        more = np.where(np.isfinite(missed), missed - self.correction[own], 0.0)
+        self.correction[own] += more
+        return float(np.max(np.abs(more / self.slope[own]), initial=change))
+
+    def _refresh_pushes(self, points, energy, model, own):
+        """Tell pushes anew, that are told from slopes of tubes that may have differed more; slack muscles are none."""
+        thrust = np.pi * points[:, FIBERS] ** 2 * points[:, PRESSURE]
+        told = (self.force[own] < 0.0) & (self.measured[own] >= PUSH * thrust) & (self.measured[own] != 0.0)
+        if not told.any():
+            return 0.0
+        points, own = points[told], own[told]
+        target, none = points[:, HELD] * points[:, LENGTH] - self.correction[own], np.zeros(len(own))
+        force, slope, done = _secants(points, energy, model, target, none, self.slope[own].copy(), none, aside=True)
+        change = np.abs(force - self.force[own])[done]
+        self.force[own[done]], self.slope[own[done]] = force[done], slope[done]
+        return float(np.max(change, initial=0.0))
 
 
 def _lengths(points, energy, model):
@@ -163,8 +181,10 @@ def _first_forces(points, target):
         return force, NEAR * points[:, LENGTH] / (found[1] - found[0])
 
 
-def _secants(points, energy, model, target, force, slope, floor):
-    """Forces, slopes and whether they are found (n,)."""
+def _secants(points, energy, model, target, force, slope, floor, aside=False):
+    """Forces, slopes and whether they are found (n,). A push is told from the slope at no force: one that is not that of a
+    state like these (``aside``) is told by a state beside.
+    """
     points, done, force = points.copy(), np.zeros(len(points), bool), np.maximum(force, floor)
     thrust = np.pi * points[:, FIBERS] ** 2 * points[:, PRESSURE] + np.abs(np.nan_to_num(force))
     known_force, known = np.full(len(points), np.nan), np.full(len(points), np.nan)
@@ -180,6 +200,12 @@ def _secants(points, energy, model, target, force, slope, floor):
         slope[todo] = np.where(secant > 0.0, secant, slope[todo])
         miss = target[todo] - length
         below = (force[todo] <= floor[todo]) & (miss < 0.0) & (floor[todo] == 0.0)
+        if aside:
+            step = np.abs(force[todo] - known_force[todo])
+            unknown = below & ~(step <= ASIDE * thrust[todo] * (1.0 + ROUNDING))
+        else:
+            unknown = np.zeros(len(todo), bool)
+        below &= ~unknown
         settled = (np.abs(miss) <= SETTLED * points[todo, LENGTH]) | below
         done[todo] = settled
         half = 0.5 * (force[todo] + np.where(np.isfinite(known_force[todo]), known_force[todo], 0.0))
@@ -189,6 +215,7 @@ def _secants(points, energy, model, target, force, slope, floor):
         force[todo] = np.where(
             below, miss / slope[todo], np.where(settled, force[todo], np.maximum(ahead, floor[todo]))
         )
+        force[todo[unknown]] = ASIDE * thrust[todo[unknown]]
         todo = todo[~settled]
     return force, slope, done
 

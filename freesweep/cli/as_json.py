@@ -62,9 +62,9 @@ def of_candidates(found) -> str:
         "python": found["python"].values.tolist()
     }
     rows = [dict(zip(named, values)) for values in zip(*named.values())]
-    return text(
-        {name: found.attrs[name] for name in ("summary", "prices") if found.attrs.get(name)} | {"candidates": rows}
-    )
+    said = {name: found.attrs[name] for name in ("summary", "prices") if found.attrs.get(name)}
+    said |= {"notes": found.attrs["notes"].splitlines()} if "notes" in found.attrs else {}
+    return text(said | {"candidates": rows})
 
 
 def of_calibration(found) -> str:

@@ -39,6 +39,8 @@ def _run(options):
     else:
         print(table(found, shown_as))
         print(found.attrs["summary"])
+        for note in found.attrs.get("notes", "").splitlines():
+            print(f"- {note}")
         if found.attrs.get("prices"):
             print(found.attrs["prices"])
         print(lines(found))

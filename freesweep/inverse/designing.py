@@ -9,6 +9,7 @@ import numpy as np
 
 from ..atlas.store import Atlas
 from ..description.actuator import Actuator
+from ..description.families import FAMILIES, given_by
 from ..description.faults import ActuatorError
 from ..description.given import described
 from ..description.options import read_count
@@ -17,12 +18,14 @@ from ..description.unit_warnings import tolerance_doubts, warn_of
 from ..report import SHOWN
 from . import freedom, wishes
 from .candidates import Found, gather
-from .deviation import read_tolerances
+from .deviation import WORKING, read_tolerances
+from .from_atlas import tells
 from .in_units import titled
 from .least import beaten, front, least, multipliers
-from .look import look, spread, with_dear
+from .look import glanced, look, spread, with_dear
 from .misfit import make
 from .polish import polish
+from .space import LOADS
 from .unit_doubts import doubts_of
 from .wishes import Goal, Limit
 from .words import NONE, prices
@@ -93,18 +96,17 @@ def find(
     if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
         faults.append(f"seed: found {described(seed)}; give a whole number, 0 or more")
     allowed = read_tolerances(tolerances, template, faults) if space is not None else {}
-    if space is not None:
-        missing = [w.title for w in (*asked, *kept, *objectives) if _needs_pressure(w) and "pressure" not in free]
-        faults += [f"{title}: give its pressure, or let 'pressure' be free" for title in missing]
-        if "pressure" not in free and any(wish.output == "pressure" for wish in (*asked, *kept, *objectives)):
-            faults.append(
-                "pressure: is wished for, but each state has its own; let 'pressure' be free, or leave that out"
-            )
+    known = [*asked, *kept, *objectives]
+    faults += [] if space is None else _without_a_state(template, free, known)
     if faults:
         raise ActuatorError(faults)
-    doubts = [*doubts_of(space, [*asked, *kept]), *tolerance_doubts(template.design(), allowed)]
-    warn_of(doubts, stacklevel=3)
+    doubts = [*doubts_of(space, [*asked, *kept]), *_idle(free, known)]
+    doubts += tolerance_doubts(template.design(), allowed)
     misfit = make(space, asked, kept)._replace(shown=shown)
+    if atlas is not None and not tells(atlas, glanced(misfit)):
+        doubts.append("the atlas holds none of these tubes, or tells nothing that is wished for: it was not asked")
+        atlas = None
+    warn_of(doubts, stacklevel=3)
     first = misfit._replace(left_out=[])  # what a disturbance ends is no answer, unless there is no other
     made = _searched(first, objectives, count, seed, atlas, allowed)
     is_done = made is not None and np.any(made.data["met"].values)
@@ -114,14 +116,22 @@ def find(
         if other is not None and (made is None or np.any(other.data["met"].values)):
             made = other
     if made is None:
+        if fault := space.no_tube():
+            raise ActuatorError([f"free: no design that it allows is a tube: {fault}"])
         titles = ", ".join(titled(wish.title, shown) for wish in misfit.wishes)
         raise ActuatorError([f"goals, limits: {NONE} has all the states in which they count: {titles}"])
+    if notes := [note for one in (*_several(goals), *_several(limits)) for note in one.notes()]:
+        made.data.attrs["notes"] = "\n".join(notes)
     return made
+
+
+def _several(given):
+    return given if isinstance(given, (list, tuple)) else () if given is None else (given,)
 
 
 def _searched(misfit, objectives, count, seed, atlas, allowed):
     """Candidates, None where no design has all the states in which goals and limits count."""
-    u, choice = look(misfit, STARTS * count, seed, atlas)
+    u, choice = look(misfit, STARTS * count, seed, atlas, bool(objectives))
     # not all that lists name goes together
     real = [misfit.space.actuator_or_none(one, k) is not None for one, k in zip(u, choice)]
     u, choice = u[real], choice[real]
@@ -145,12 +155,31 @@ def _needs_pressure(wish):
     return wish.kind not in ("design", "limit", "every") and "pressure" not in dict(wish.conditions)
 
 
+def _without_a_state(template, free, known):
+    """Faults of the wishes ``known`` that count in no state of such tubes."""
+    absent = set(FAMILIES) - set(given_by(template))
+    found = [f"{w.output}: is wished for, a family that the template has not" for w in known if w.output in absent]
+    if "pressure" not in free:
+        titles = [wish.title for wish in known if _needs_pressure(wish)]
+        found += [f"{title}: give its pressure, or let 'pressure' be free" for title in titles]
+        if any(wish.output == "pressure" for wish in known):
+            found.append(
+                "pressure: is wished for, but each state has its own; let 'pressure' be free, or leave that out"
+            )
+    return found
+
+
+def _idle(free, known):
+    """Sentences on loads that are free, and in no state of the wishes ``known``, as each gives its own."""
+    for name in (name for key in free for name in map(str.strip, key.split(",")) if name in LOADS):
+        works = (name in WORKING[wish.kind] and name not in dict(wish.conditions) for wish in known)
+        if not any(works) and not any(wish.output == name for wish in known if wish.kind == "design"):
+            yield f"free[{name!r}] changes nothing: each goal and limit has its own {name}, or is none of a state under it"
+
+
 def _objectives(minimize, faults):
     """What is to be least, as wishes without a range."""
     given = list(minimize) if isinstance(minimize, (list, tuple)) else [] if minimize is None else [minimize]
-    if len(given) > 2:
-        faults.append(f"minimize: found {len(given)} of them; one, or two for a front between them")
-        return []
     found = []
     for k, one in enumerate(given):
         if isinstance(one, (Goal, Limit)):
@@ -162,7 +191,20 @@ def _objectives(minimize, faults):
             faults.append(
                 f"minimize: found {described(one)}; give one of {can}, or an output in a state as a Limit of any range"
             )
+    if len(found) > 2:
+        faults.append(f"minimize: found {len(found)} numbers; one, or two for a front between them")
+    elif len({wish.title for wish in found}) < len(found):
+        faults.append(f"minimize: found {found[0].title} twice; give it once, or two of which each has its price")
     return found
+
+
+def _first(values, choice, count):
+    """Rows from which the least is looked for: the first ones, and those that have the least ``values`` (n, objectives) so
+    far, of all and of each choice.
+    """
+    order = np.argsort(values[:, 0], kind="stable")
+    firsts = order[np.sort(np.unique(choice[order], return_index=True)[1])]
+    return np.unique(np.concatenate([np.arange(min(count, len(order))), order[:STARTS], firsts[: count + STARTS]]))
 
 
 def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
@@ -173,12 +215,14 @@ def _with_least(misfit, objectives, u, choice, residuals, count, tolerances):
         best = _order(np.nan_to_num(np.sum(residuals**2, axis=1), nan=np.inf))[:count]
         _, found, _, slopes = polish(misfit, u[best], choice[best])
         return gather(misfit, u[best], choice[best], found, slopes, tolerances)
-    u, choice = u[good][:count], choice[good][:count]
+    u, choice = u[good], choice[good]
     whole = misfit._replace(
         wishes=[*misfit.wishes, *objectives], tolerances=np.append(misfit.tolerances, [1.0] * number)
     )
     values = whole.at(u, choice)[0].values[:, -number:]
-    scale = np.maximum(np.nanmax(np.abs(values), axis=0), 1e-300)
+    rows = _first(values, choice, count)
+    u, choice, values = u[rows], choice[rows], values[rows]
+    scale = np.maximum(np.max(np.abs(values), axis=0, initial=0.0, where=np.isfinite(values)), 1e-300)
     if number == 2:
         u, choice = front(whole, u, choice, count, scale)
     else:

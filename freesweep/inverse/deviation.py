@@ -11,14 +11,22 @@ from ..derivative.request import SHAPE, constants, parameters, place_of_fibers, 
 from ..derivative.table import rows_of
 from ..description.given import described, read_number
 from ..description.tube_model import FIBER_PLACES, fiber_place
-from .freedom import LOADS
 from .outputs import FOLLOWING, derived
 from .predict import state_of
 from .singles import states_of
+from .space import LOADS
 from .wishes import HELD
 
 ACCURACY = 1e-6
-WORKING = {"free": LOADS, "locked": (), "force": ("pressure", "torque"), "torque": ("pressure", "force")}
+WORKING = {
+    "free": LOADS,
+    "locked": (),
+    "force": ("pressure", "torque"),
+    "torque": ("pressure", "force"),
+    "limit": LOADS[1:],
+    "design": (),
+    "every": (),
+}  # by the kind of a wish, the loads under which its state is
 
 
 def read_tolerances(given, template, faults) -> dict:

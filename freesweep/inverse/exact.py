@@ -5,18 +5,18 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ..derivative.cylinder import at_cylinder
 from ..derivative.dual import Dual
 from ..derivative.extremes import EXTREMES
-from ..derivative.physics import OWN, Physics
+from ..derivative.physics import OWN
 from ..derivative.request import SHAPE
 from ..derivative.table import rows_of
 from ..derivative.vectors import differentiated
 from ..scaling import SLACK
 from .beside import Held, load_slopes
-from .freedom import LOADS
 from .outputs import FOLLOWING, derived
 from .predict import state_of
+from .space import LOADS
+from .straight import straight
 from .vectors import STRAIGHT, Kind, points_of
 from .wishes import HELD
 
@@ -85,7 +85,9 @@ def _state(space, state, outputs, columns, values, middles, some, free):
     known = None if middles is None else (middles, np.full(len(middles), limp))
     rows, _ = differentiated(design, tube.energy, sizes, NAMES, ACCURACY, tube.is_thick, tube.threads, known)
     if held is not None:
-        rows = _straight(tube, design, rows, free + 1) if space.is_source else rows
+        if space.is_source:
+            made, there = straight(tube, design, free + 1, len(some))
+            rows[: len(SHAPE)] = np.where(there, made, rows[: len(SHAPE)])
         target = (
             Dual(np.array([given[held]])) if held in given else design["length"] if held == "deformed_length" else None
         )
@@ -126,24 +128,6 @@ def held_slopes(space, wishes, u, choice, found, slopes):
         slopes[rows, k] = load_slopes(
             tubes[0], list(zip(tubes[1 : 1 + len(size)], tubes[1 + len(size) :])), found.values[rows, k], middle, STEP
         )
-
-
-class Designs(Physics):
-    """Many designs like a ``tube``: name -> dual numbers (n,), with derivatives along some directions."""
-
-    def __init__(self, tube, design, directions):
-        self.tube, self.course, self.parameters, self.is_locked = tube, None, tuple(range(directions)), False
-        self.design, self.length = design, design["length"] / design["fiber_radius"]
-
-
-def _straight(tube, design, rows, directions):
-    """The ``rows`` of outputs and derivatives (outputs, 1 + directions, n), of those that their loads leave as they are in
-    closed form: tubes whose own length is held, or no rotation.
-    """
-    with np.errstate(all="ignore"):
-        made, there = at_cylinder(Designs(tube, design, directions), rows.shape[-1])
-    shape = np.where(there, rows_of(made, SHAPE, directions), rows[: len(SHAPE)])
-    return np.concatenate([shape, rows[len(SHAPE) :]])
 
 
 def _sizes(design, state, count, free):

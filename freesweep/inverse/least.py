@@ -27,19 +27,22 @@ class Least:
             found, _ = self.misfit.at(u[None], self.choice)
             slopes = np.nan_to_num(self.misfit.slopes(u[None], self.choice, found)[0])
             values = found.values[0] / self.misfit.tolerances
-            self._known = {key: (np.where(np.isfinite(values), values, self._none()), slopes)}  # the last one only
+            values = np.where(np.isnan(values), self._far(-1.0), np.where(np.isinf(values), self._far(1.0), values))
+            self._known = {key: (values, slopes)}  # the last one only
         return self._known[key]
 
-    def _none(self):
-        """What stands for the values of states that are not there: beyond each range, and more than any objective."""
+    def _far(self, sign):
+        """What stands for the values of states that are not there, beyond each range (-1), or of limit pressures where there
+        is no limit, above each level (1); more than any objective.
+        """
         low, high = np.array([(wish.low, wish.high) for wish in self.misfit.wishes]).T / self.misfit.tolerances
-        beyond = np.where(np.isfinite(high), high + FAR, np.where(np.isfinite(low), low - FAR, 0.0))
+        beyond = np.where(np.isfinite(high), high + FAR, np.where(np.isfinite(low), low + sign * FAR, 0.0))
         beyond[len(beyond) - self.objectives :] = FAR * self.scale
         return beyond
 
     def is_there(self, u):
         """Whether all states are."""
-        return bool(np.all(np.isfinite(self.misfit.at(u[None], self.choice)[0].values)))
+        return not np.any(np.isnan(self.misfit.at(u[None], self.choice)[0].values))
 
     def objective(self, k):
         """One objective and its gradient, of size 1."""
@@ -75,6 +78,8 @@ class Least:
         """The point with the least of objective ``k`` from ``u`` (p,) on: where that leads to where there is no state, from
         the last one that has all of them, within a box that is halved each time.
         """
+        if not len(u):  # a choice leaves nothing open
+            return u
         end, reach = self._descend(u, k, levels, 1.0), 0.5
         if self.is_there(end):
             return end
@@ -107,7 +112,7 @@ def front(misfit: Misfit, u, choice, count, scale):
     """``count`` points, and their choices, along the front of two objectives, from the starts that have the least of each:
     the second one's least while the first is held at its own least and at levels from there on.
     """
-    ends = []
+    ends, others = [], []
     for k in range(2):
         found = [Least(misfit, c, 2, scale).search(one, k, [np.nan] * 2) for one, c in zip(u, choice)]
         _, residuals = misfit.at(np.array(found), choice)
@@ -115,6 +120,7 @@ def front(misfit: Misfit, u, choice, count, scale):
         kept = np.all(np.abs(residuals[:, : len(misfit.wishes) - 2]) <= 1.0, axis=1)
         best = np.argmin(np.where(kept, values, np.inf))
         ends.append((found[best], choice[best]))
+        others += [(found[i], choice[i]) for i in np.unique(choice, return_index=True)[1]]  # of each choice one
     place = len(misfit.wishes) - 2
     (first, one), (last, other) = ends
     levels = [Least(misfit, c, 2, scale).known(end)[0][place] for end, c in ends]
@@ -123,6 +129,7 @@ def front(misfit: Misfit, u, choice, count, scale):
         level = levels[0] + share * (levels[1] - levels[0])
         starts = [(points[-1], choices[-1]), (last, other)] if points else [(first, one)]
         starts += [(first + share * (last - first), one)] if points and one == other else []
+        starts += others if len(np.unique(choice)) > 1 else []
         point, own = _best(misfit, scale, starts, level)
         points.append(point)
         choices.append(own)

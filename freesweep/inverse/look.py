@@ -9,15 +9,16 @@ from .wishes import HELD
 ALIKE, ONE_BY_ONE = 4096, 128  # designs of a first look: in vectors, or each by itself; the choices share them
 DEAR, DEAR_STARTS = 16, 3  # the same, and starts, where vectors tell no state of any
 LEAST = 32  # of each choice
+MOST_EACH = 48  # choices of which each has a start
 DEARNESS = {"force": 1, "torque": 2}  # of what is looked at later
 FEWER, ENOUGH = 4, 256  # of so many times fewer designs, but not of less
 APART = 0.12  # of the unit box's diagonal: starts nearer than that lie in one basin
 BOUNDED = 1e4  # tolerances beyond which a wish is simply missed: rough looks compare designs that are close
 
 
-def look(misfit: Misfit, count, seed, atlas=None):
+def look(misfit: Misfit, count, seed, atlas=None, each=False):
     """Starts for :func:`polish`: points (s, p) and their choices (s,), the best ones first, each in a basin of its own. With
-    an ``atlas`` it is that which is asked, as far as it can tell.
+    an ``atlas`` it is that which is asked, as far as it can tell. ``each``: of each choice one, too.
     """
     from scipy.stats import qmc
 
@@ -25,7 +26,7 @@ def look(misfit: Misfit, count, seed, atlas=None):
     free, choices = len(space.names), len(space.choices)
     if free == 0:
         return np.zeros((choices, 0)), np.arange(choices)
-    known = [] if atlas is None else told(atlas, misfit.wishes)
+    known = [] if atlas is None else told(atlas, misfit)
     most = ALIKE if misfit.is_quick or any(known) else ONE_BY_ONE
     if misfit.is_quick and not space.is_source:  # what holds one is sought by many states
         most //= 1 + sum(wish.kind in HELD for wish in misfit.wishes)
@@ -44,7 +45,11 @@ def look(misfit: Misfit, count, seed, atlas=None):
                 few, count = max(DEAR, len(shown)), min(count, DEAR_STARTS)
                 draws, choice = draws[:few], choice[:few]
             residuals = one_by_one(misfit, draws, choice, count)
-    picked = spread(space, draws, choice, best(residuals), count, APART)
+    order = best(residuals)
+    picked = spread(space, draws, choice, order, count, APART)
+    if each:
+        firsts = order[np.sort(np.unique(choice[order], return_index=True)[1])][:MOST_EACH]
+        picked = np.concatenate([picked, np.setdiff1d(firsts, picked)])
     return draws[picked], choice[picked]
 
 
@@ -112,7 +117,7 @@ def part(misfit: Misfit, kept) -> Misfit:
 def spread(space, u, choice, order, count, apart):
     """The first of ``order`` that are ``apart`` from each other, up to ``count``; symmetric copies are the same design."""
     picked, mirrored = [], space.mirrored(u)
-    reach = apart * np.sqrt(u.shape[1])
+    reach = apart * np.sqrt(max(u.shape[1], 1))  # where nothing is open, a choice is one design
     for i in order:
         others = [j for j in picked if choice[j] == choice[i]]
         near = [u[others] - u[i], mirrored[others] - u[i]] if others else []

@@ -4,13 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..query.exact import MESHES
 from ..report import SHOWN
 from .exact import exact_slopes, held_slopes
 from .predict import predict
 from .wishes import HELD, RELATIVE
 
 STEP = 1e-4  # of the unit box, of central differences
-LOOKING, POLISHING = 1e-4, 1e-9  # accuracies of the solver
+LOOKING, POLISHING = 1e-4, 1e-8  # accuracies of the solver: held states are told to little more in vectors
 NATURAL = {"rotation": 1.0, "stroke": 0.01}  # [degree], [1]: a wish for 0 is measured by
 SHARE = {"deformed_length": "length", "length_change": "length", "mid_radius": "radius", "outer_radius": "radius"}
 INSIDE = 1e-2  # tolerances: a limit is kept where the search ends a little short of it
@@ -34,8 +35,10 @@ class Misfit(NamedTuple):
         """Whether vectors tell all that is wished for."""
         from .vectors import Kind
 
-        told = Kind.of(self.space.template).told
-        return self.space.is_alike and all(w.kind in ("design", "every") or w.output in told for w in self.wishes)
+        own = Kind.of(self.space.template)
+        return self.space.is_alike and all(
+            wish.kind in ("design", "every") or own.tells(wish.output, wish.kind) for wish in self.wishes
+        )
 
     def residuals(self, values):
         """By how many tolerances ``values`` (n, wishes) miss each wish: beyond its range, with a sign."""
@@ -64,28 +67,31 @@ class Misfit(NamedTuple):
         held = [wish.output in HELD for wish in self.wishes]
         return near is not None and bool(np.any(np.isfinite(near.middles[:, held])))
 
-    def slopes(self, u, choice, found):
+    def slopes(self, u, choice, found, on_meshes=None):
         """Derivatives (n, wishes, p) of the predicted values, in tolerances, along u: exact ones where vectors give them,
-        else central differences, one-sided where the other side has no state; of held states, beside these. NaN where
-        nothing is known.
+        else central differences, one-sided where the other side has no state; of held states, beside these, of those
+        ``on_meshes`` (n,) by meshes. NaN where nothing is known.
         """
         slopes = exact_slopes(self.space, self.wishes, u, choice, found.values, found.middles)
         held_slopes(self.space, self.wishes, u, choice, found, slopes)
         there = np.isfinite(found.values)
         missing = there & np.any(np.isnan(slopes), axis=2)
-        rows, wishes = np.any(missing, axis=1), np.any(missing, axis=0)
-        if np.any(rows):
-            own = [wish for wish, lost in zip(self.wishes, wishes) if lost]
+        wishes = np.any(missing, axis=0)
+        own = [wish for wish, lost in zip(self.wishes, wishes) if lost]
+        meshed = np.zeros(len(u), bool) if on_meshes is None else on_meshes
+        for way, part in ((False, ~meshed), (MESHES, meshed)):
+            rows = np.any(missing, axis=1) & part
+            if not np.any(rows):
+                continue
             near = found.part(rows)
             near = near._replace(**{name: getattr(near, name)[:, wishes] for name in WISHED})
-            table = np.ix_(rows, wishes)
-            slopes[table] = np.where(
-                np.isnan(slopes[table]), self._differences(own, u[rows], choice[rows], near), slopes[table]
-            )
+            table, known = np.ix_(rows, wishes), slopes[np.ix_(rows, wishes)]
+            other = self._differences(own, u[rows], choice[rows], near, way)
+            slopes[table] = np.where(np.isnan(known), other, known)
         return slopes / self.tolerances[:, None]
 
-    def _differences(self, wishes, u, choice, found):
-        """Central differences (n, wishes, p) about points of which that was ``found``."""
+    def _differences(self, wishes, u, choice, found, thorough=False):
+        """Central differences (n, wishes, p) about points of which that was ``found``, as ``thorough`` as it was."""
         count, free = u.shape
         step, middle = STEP * np.eye(free), found.values
         ends = np.concatenate([np.clip(u[:, None] + step, 0.0, 1.0), np.clip(u[:, None] - step, 0.0, 1.0)], axis=1)
@@ -95,7 +101,7 @@ class Misfit(NamedTuple):
             ends.reshape(-1, free),
             np.repeat(choice, 2 * free),
             POLISHING,
-            thorough=False,
+            thorough=thorough,
             near=found.part(np.repeat(np.arange(count), 2 * free)),
         ).values.reshape(count, 2 * free, -1)
         middle, there = middle[:, None], np.isfinite(values)

@@ -25,7 +25,7 @@ def polish(misfit: Misfit, u, choice):
         found, residuals = misfit.at(u, choice, thorough=not misfit.is_quick)
     else:
         found, residuals = _told(misfit, u, choice, on_meshes)
-    slopes = misfit.slopes(u, choice, found)
+    slopes = misfit.slopes(u, choice, found, on_meshes)
     cost, damping, reach = _cost(residuals), np.full(count, DAMPING), np.full(count, LARGEST)
     active = np.isfinite(cost) & (free > 0)
     spent = 0  # rounds since a design met everything
@@ -56,7 +56,7 @@ def polish(misfit: Misfit, u, choice):
         for own, other in zip(found, trial):
             own[won] = other[better]
         if len(won):
-            slopes[won] = misfit.slopes(u[won], choice[won], trial.part(better))
+            slopes[won] = misfit.slopes(u[won], choice[won], trial.part(better), on_meshes[won])
     return u, found, residuals, slopes
 
 

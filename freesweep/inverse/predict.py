@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..status import INVALID, OK, VALUED
-from .freedom import Space
-from .wishes import HELD
+from .space import Space
+from .wishes import HELD, STIFF
 
 UNKNOWN, UNSTABLE, STABLE = -1, 0, 1  # of a state; vectors do not tell it of physical tubes that are held bent
 
@@ -66,6 +66,20 @@ def state_of(wish) -> State:
     return State(wish.kind, wish.conditions, least)
 
 
+def _tell_stiffness(space, asked, answers, columns, u, choice, accuracy):
+    """Write stiffnesses to the ``answers`` of states that vectors found, but tell no derivative of: each by itself."""
+    from .singles import solve_singles
+
+    for state, names in asked.items():
+        for name in set(names) & set(STIFF):
+            values, bounds = answers[state][name]
+            left = np.flatnonzero(np.isnan(values) & np.isin(answers[state]["status"], VALUED))
+            if len(left):
+                tubes = [space.actuator_or_none(u[i], choice[i]) for i in left]
+                own = {key: column[left] for key, column in columns.items()}
+                values[left], bounds[left] = solve_singles(tubes, {state: [name]}, own, accuracy)[state][name]
+
+
 def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False, near=None) -> Predicted:
     """What the designs at points u (n, p) of the ``space``, with ``choice`` (n,), do; if not ``thorough``, of those that
     vectors can tell, where they tell any; ``sure``, as of :func:`vectors.solve_vectors`;
@@ -90,14 +104,20 @@ def predict(space: Space, wishes, u, choice, accuracy, thorough=True, sure=False
     }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # designs on the way are nobody's
-        told = set(Kind.of(space.template).told) if space.is_alike else set()
-        quick = {state: names for state, names in asked.items() if set(names) <= told}
+        own = Kind.of(space.template)
+        quick = {
+            state: names
+            for state, names in asked.items()
+            if space.is_alike and all(own.tells(name, state.kind) for name in names)
+        }
         known = {} if near is None else near.held(wishes, states)
         answers = solve_vectors(space.template, quick, columns, accuracy, thorough, sure, known)
         if len(quick) < len(asked):
             tubes = [space.actuator_or_none(one, k) for one, k in zip(u, choice)]
             rest = {state: names for state, names in asked.items() if state not in quick}
             answers |= solve_singles(tubes, rest, columns, accuracy)
+        if thorough is True:
+            _tell_stiffness(space, quick, answers, columns, u, choice, accuracy)
     for k, (wish, state) in enumerate(zip(wishes, states)):
         if state in answers:
             found.values[:, k], found.bounds[:, k] = answers[state][wish.output]

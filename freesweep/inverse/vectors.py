@@ -23,7 +23,7 @@ KINDS = {"free": LOADED, "locked": LOCKED, "force": LENGTH_HELD, "torque": ROTAT
 ALONG = (*SLACK, *PULLS)  # what only sums along the depth tell (:mod:`freesweep.solver.lanes.sums`)
 WORST = ("outer_radius", "largest_stretch")
 TOLD = (*SHAPE, "stroke", "length_change", *HELD, *ALONG)  # outputs, of all tubes
-OF_SOURCE = (*WORST, "limit_pressure", *STIFF)
+OF_SOURCE = (*WORST, "limit_pressure")
 HARDLY = 1e-3  # [Pa]: the pressure of a limit that nothing is asked of
 STRAIGHT = 1e-6  # strain in the middle: beside it a tube is straight, and leads to none that is not
 ONSET = 1e-2  # strain of the middle from which a state is looked for beside a straight one
@@ -49,10 +49,13 @@ class Kind(NamedTuple):
         """Whether they are the source's: membranes with two bonded families."""
         return not self.model.is_physical and len(self.families) == 2
 
-    @property
-    def told(self) -> tuple:
-        """Outputs that vectors tell."""
-        return TOLD + (OF_SOURCE if self.is_source else WORST if self.model.is_thick else ())
+    def tells(self, output, kind) -> bool:
+        """Whether vectors tell an output of states of a kind, as of :class:`.wishes.Wish`: of physical tubes that are held,
+        which mostly stay straight, no stiffness.
+        """
+        if output in STIFF:
+            return self.is_source or (kind == "free" and len(self.families) == 2)
+        return output in TOLD + (OF_SOURCE if self.is_source else WORST if self.model.is_thick else ())
 
 
 def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, near=None) -> dict:
@@ -79,8 +82,8 @@ def solve_vectors(tube, asked, columns, accuracy, thorough=True, sure=False, nea
         found = _solved(own, kind, points, accuracy, most, thorough, sure, along, known)
         for k, (state, part) in enumerate(zip(states, parts)):
             numbers = {name: array[k * count : (k + 1) * count] for name, array in found.items()}
-            if own.is_source:
-                numbers |= stiffness(asked[state], kind, numbers, part, own.energy)
+            if set(asked[state]) & set(STIFF):
+                numbers |= stiffness(asked[state], kind, numbers, part, tube)
             answers[state] = {name: output(name, kind, numbers, part) for name in asked[state]}
             limit = np.where(numbers["status"] == INVALID, INVALID, OK)
             answers[state]["slack"] = np.where(kind == "limit", 0, numbers["slack_fiber"]).astype(np.int8)

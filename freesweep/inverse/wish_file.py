@@ -32,6 +32,7 @@ from pathlib import Path
 
 from ..atlas.schema import PARAMETERS
 from ..description.actuator import Actuator
+from ..description.along import Profile
 from ..description.elastomer import rubber_of
 from ..description.faults import ActuatorError
 from ..description.given import numbers
@@ -39,7 +40,7 @@ from ..description.material_library import material
 from ..report import SHOWN
 from ..sweep import toml_guard
 from .curve_file import is_path
-from .freedom import CONSTANTS, Profile
+from .space import CONSTANTS
 from .wishes import CONDITIONS, UNITS, Goal, Limit, _Asked
 
 PLACES = {"alpha": 40.0, "beta": -20.0, "length": 0.1, "radius": 5e-3, "wall": 1e-3}  # of what is free, until it is not
@@ -125,6 +126,10 @@ def _actuator(given, free, faults):
     faults += [f"actuator.{key}: unknown; it has {', '.join(sorted(allowed))}" for key in given if key not in allowed]
     faults += [f"actuator.{name}: is missing, and not free" for name in PLACES if name not in {*given, *parts}]
     values = {key: value for key, value in given.items() if key in known}
+    if "material" in given and (own := [name for name in CONSTANTS if name in given]):
+        faults.append(
+            f"actuator.material: found beside {', '.join(own)}; a rubber has its constants, so keep one of both"
+        )
     try:
         if "material" in given:
             rubber = material(given["material"])
@@ -154,7 +159,7 @@ def _asked(kind, given, where, faults):
     if unknown or "output" not in given:
         return None
     try:
-        return kind(**{key: tuple(value) if key == "between" else value for key, value in given.items()})
+        return kind(**given)
     except ActuatorError as error:
         faults += [f"{where}: {fault.partition(': ')[2] or fault}" for fault in error.faults]
         return None

@@ -18,7 +18,7 @@ from ..atlas.schema import PARAMETERS, SHAPE
 from ..description.faults import ActuatorError
 from ..description.given import described, numbers, read_number
 from ..description.quantities import Quantities, Quantity
-from .curve_file import columns_of, is_path
+from .curve_file import curve_of, is_path
 
 FREE = {name: each.units for name, each in schema.VARIABLES.items() if each.without == schema.HELD}  # of a free state
 UNITS = FREE | {
@@ -116,18 +116,22 @@ class _Asked:
         unit = units[self.output]
         value, given, tolerance = self.value, {}, np.full(1, math.nan)
         if is_path(value):
-            curve = columns_of(value, self.output, self._conditions(), faults, where)
+            curve = curve_of(value, self.output, self._conditions(), faults, where)
             if curve is None:
                 return []
-            value, given, sigma = curve
-            tolerance = tolerance if sigma is None else sigma
+            value, given = curve.values, curve.conditions
+            tolerance = tolerance if curve.sigma is None else curve.sigma
         low, high = self._range(value, unit, faults, where)
+        if self.output.endswith("pressure") and (np.any((low < 0.0) & np.isfinite(low)) or np.any(high < 0.0)):
+            faults.append(f"{where}: {self.output}: pressures are 0 or more")
         for name in CONDITIONS:
             if getattr(self, name) is not None:
                 if name in given:
                     faults.append(f"{where}: {name}: a column of the file, and given beside it; keep one")
-                elif (found := _column(f"{where}: {name}", getattr(self, name), CONDITIONS[name], faults)) is not None:
-                    given[name] = found
+                else:
+                    label, can = f"{where}: {name}", name == "pressure"  # at an infinite one a tube is locked
+                    found = _column(label, getattr(self, name), CONDITIONS[name], faults, infinite=can)
+                    given |= {} if found is None else {name: found}
         self._check(given, faults, where)
         if self.tolerance is not None:
             tolerance = np.full(1, read_number(f"{where}: tolerance", self.tolerance, unit, faults, positive=True))
@@ -145,6 +149,13 @@ class _Asked:
             Wish(self.output, tuple(zip(given, conditions)), a, b, allowed, _title(self.output, given, conditions))
             for a, b, allowed, *conditions in zip(*columns)
         ]
+
+    def notes(self) -> tuple:
+        """What of a file was passed over, in words."""
+        if not is_path(self.value):
+            return ()
+        curve = curve_of(self.value, self.output, self._conditions(), [], "")
+        return () if curve is None else curve.notes
 
     def _range(self, value, unit, faults, where):
         ways = [name for name in ("value", "at_least", "at_most", "between") if getattr(self, name) is not None]
@@ -169,8 +180,10 @@ class _Asked:
             for k, end in enumerate(ends)
         )
         low, high = (none[k] if column is None else column for k, column in enumerate((low, high)))
-        if low.shape == high.shape and np.any(low > high):
-            faults.append(f"{where}: between: give the lower number first")
+        fits = len(low) == len(high) or 1 in (len(low), len(high))  # else it is told as curves of two lengths
+        if fits and np.any(low > high):
+            first, last = next((a, b) for a, b in np.broadcast(low, high) if a > b)
+            faults.append(f"{where}: {', '.join(ways)}: found {first:g}, then {last:g}; give the lower number first")
         return low, high
 
     def _conditions(self) -> tuple:
@@ -190,8 +203,10 @@ class _Asked:
         if self.output in STIFF and HELD[STIFF[self.output]][0] in given:
             allowed = ("pressure", *HELD[STIFF[self.output]])
         if np.any(given.get("pressure", np.zeros(1)) < 0.0):
-            faults.append(f"{where}: pressure: found {described(self.pressure)}; pressures are 0 or more")
+            faults.append(f"{where}: pressure: found {_least(given, 'pressure')} Pa; pressures are 0 or more")
         held = self.output in (*HELD, *STIFF)
+        if np.any(given.get("deformed_length", np.ones(1)) <= 0.0):
+            faults.append(f"{where}: deformed_length: found {_least(given, 'deformed_length')} m; lengths are above 0")
         for name in given:
             if name not in allowed:
                 can = f"give {', '.join(allowed)}" if allowed else "it is no matter of a state"
@@ -233,19 +248,22 @@ def read(name, given, kind, faults) -> list:
     return [wish for k, one in enumerate(given) for wish in one.wishes(faults, f"{name}[{k}]")]
 
 
-def _column(name, value, unit, faults):
+def _least(given, name):
+    return f"{np.min(given[name]):g}"
+
+
+def _column(name, value, unit, faults, infinite=False):
     try:
         found = np.atleast_1d(numbers(value, unit))
     except ValueError as error:
         faults.append(f"{name}: {error}")
         return None
-    infinite = name.endswith("pressure")
     if found.ndim != 1 or found.size == 0 or np.any(np.isnan(found)) or not (infinite or np.all(np.isfinite(found))):
-        faults.append(f"{name}: give finite numbers, one or a column of them, in [{unit}]")
+        faults.append(f"{name}: found {described(value)}; give finite numbers, one or a column of them, in [{unit}]")
         return None
     return found
 
 
 def _title(output, names, values):
-    state = ", ".join(f"{name} {value:g} {CONDITIONS[name]}" for name, value in zip(names, values))
+    state = ", ".join(f"{name} {value:.9g} {CONDITIONS[name]}" for name, value in zip(names, values))
     return f"{output} at {state}" if state else output

@@ -26,7 +26,7 @@ def sentence(misfit, result, residuals, u, slopes) -> str:
             return said
         return f"{said}; in {pushing} of them threads would have to push (slack_fiber)"
     missed, wishes = np.nan_to_num(np.abs(residuals), nan=np.inf), misfit.wishes
-    if not np.any(missed[: misfit.goals] > 1.0):
+    if not any(each > 1.0 for each, wish in zip(missed, wishes) if wish.kind != "every"):
         limits = zip(result["limit"].values.tolist(), result["limit_kept"].values[0])
         broken = [titled(name, misfit.shown) for name, kept in limits if not kept]
         return f"{NONE} meets the goals and keeps the limits: {', '.join(broken)}"

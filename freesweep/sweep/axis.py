@@ -41,7 +41,7 @@ DOMAIN = {
     "held_length": _SIZE,
     "held_length_ratio": (1e-3, 1e3, "it is a stretch of the whole tube: a tenth shorter is 0.9"),
     "held_rotation": _LOAD,
-    "pressure": (0.0, LARGEST, "vacuum is another problem"),
+    "pressure": (0.0, LARGEST, "pressures are 0 or more; vacuum is another problem"),
 }
 
 
@@ -56,13 +56,20 @@ def value(faults: Faults, path: str, name: str, given) -> float | None:
     except ValueError as error:
         faults.add(path, str(error))
         return None
-    low, high, reason = DOMAIN[name]
-    if not low <= number <= high:
-        bounds = "between -90 and 90, both excluded" if DOMAIN[name] is _ANGLE else f"{low:g} to {high:g}"
-        unit = "" if units == "1" else f" [{units}]"
-        faults.add(path, f"found {shown(given)}, allowed is {bounds}{unit}" + (f"; {reason}" if reason else ""))
+    if fault := outside(name, number, given):
+        faults.add(path, fault)
         return None
     return number
+
+
+def outside(name: str, number: float, given) -> str:
+    """What is wrong with a ``number`` of the parameter ``name``, as it was ``given``; "" where it may have it."""
+    low, high, reason = DOMAIN[name]
+    if low <= number <= high:
+        return ""
+    bounds = "between -90 and 90, both excluded" if DOMAIN[name] is _ANGLE else f"{low:g} to {high:g}"
+    unit = "" if PARAMETERS[name].units == "1" else f" [{PARAMETERS[name].units}]"
+    return f"found {shown(given)}, allowed is {bounds}{unit}" + (f"; {reason}" if reason else "")
 
 
 def values(faults: Faults, path: str, name: str, given) -> np.ndarray | None:

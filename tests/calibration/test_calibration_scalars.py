@@ -363,3 +363,79 @@ def test_the_shell_and_toml_say_the_same(tmp_path, monkeypatch, capsys):
     assert "--report: found" in refused(capsys, "calibrate", "case.toml", "--report", "page.docx")
     (tmp_path / "case.toml").write_text("[data]\nfile = 1\n")
     assert "data.file: unknown; it has files, measured" in refused(capsys, "calibrate", "case.toml")
+
+
+@pytest.fixture(scope="module")
+def muscle_read():
+    """Free lengths of a muscle whose families differ from what its actuator says of the second."""
+    truth = Actuator(alpha=30, beta=-30, length=0.2, radius=6e-3, wall=1e-3, material=MooneyRivlin(1.2e5, 6e4))
+    pressure = np.linspace(2e4, 2e5, 8)
+    noise = 1e-4 * np.random.default_rng(1).standard_normal(8)
+    read = inflate(truth, pressure, x=0.0)["deformed_length"].values + noise
+    guess = replace(truth, beta=-50, material=MooneyRivlin(1.5e5, 6e4))
+    return Measurement(guess, pressure, deformed_length=read)
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"bounds": {"alpha": (0, 95), "wall": (-1e-3, 2e-3)}}, ["bounds of alpha: found 95", "wall: found -0.001"]),
+        ({"bounds": {"fiber_extension": (0.5, 2)}}, ["bounds of fiber_extension: found 0.5, allowed is 1 to 10"]),
+        ({"bounds": {"radius": (1e-3, 2e-3)}}, ["bounds of radius: it is not fitted"]),
+        ({"priors": {"alpha": (95, 1)}}, ["priors of alpha: found 95"]),
+        ({"priors": {"alpha": (30, 1)}, "alpha": (31, 1)}, ["priors: found alpha twice"]),
+        ({"fit": ["alpha", "beta"], "ties": {"beta": "-alpha"}}, ["fit: beta is tied"]),
+        (
+            {"ties": {"beta": "-alpha", "alpha": "2*beta"}},
+            ["'beta': tied to 'alpha', which", "'alpha': tied to 'beta'"],
+        ),
+        ({"ties": {"wall": "c10"}}, ["what is in [m] cannot follow what is in [Pa]"]),
+        ({"ties": {"wall": "1.2.3*radius"}}, ["tie a parameter to a number times another"]),
+    ],
+)
+def test_what_no_calibration_can_follow_is_refused(muscle_read, asked, words):
+    with pytest.raises(ActuatorError) as fault:
+        calibrate(muscle_read, **{"fit": ["c10", "alpha", "wall", "fiber_extension"]} | asked)
+    said = fault.value.faults
+    assert all(any(word in one for one in said) for word in words)
+    assert len(said) == len(words)
+
+
+def test_a_tie_holds_where_what_it_follows_is_not_fitted(muscle_read):
+    """The second family mirrors the first, whatever the actuator says of it."""
+    found = calibrate(muscle_read, "c10", ties={"beta": "-alpha"})
+    assert found.tubes[0].beta == -30.0
+    assert found.values.item() == pytest.approx(1.2e5, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "c10", "wall", "top", "off"),
+    [
+        (36.22046965, -56.71108998, 165786.717, 9.566276e-4, 73645.511, 1.98),
+        (40.68839407, -51.91293947, 146661.940, 1.35789568e-3, 86344.645, -0.52),
+    ],
+)
+def test_a_muscle_that_hardly_pushes_misleads_no_fit(alpha, beta, c10, wall, top, off):
+    """What it pushes where the bench read next to nothing is told from a slope at no force: that of the tube, not of a far
+    stiffer one that the first look passed. All else is exact, so the fit is the truth.
+    """
+    truth = Actuator(alpha=alpha, beta=beta, length=0.15, radius=5e-3, wall=wall, material=MooneyRivlin(c10, 0.5 * c10))
+    guess = replace(truth, alpha=alpha + off, material=MooneyRivlin(1.5e5, 0.75e5))
+    pressure = np.linspace(0.1, 1.0, 10) * top
+    free, thrust = inflate(truth, pressure, x=0.0), np.pi * 5e-3**2 * pressure
+    force = blocked_force(truth, pressure, 0.148, x=0.0)["force"].values
+    hardly = (force < 0.0) & (force > -0.1 * thrust)
+    assert np.any(hardly)
+    measured = [
+        Measurement(
+            guess, pressure, deformed_length=free["deformed_length"].values, rotation=free["rotation"].values,
+            measured=("deformed_length", "rotation"), sigma={"deformed_length": 2e-4, "rotation": 1.0},
+        ),
+        Measurement(
+            guess, pressure, deformed_length=0.148, force=np.where(hardly, -0.015 * thrust, force), measured="force",
+            sigma={"force": 0.03},
+        ),
+    ]  # fmt: skip
+    found = calibrate(measured, ["c10", "alpha"], ties={"c01": "0.5*c10"})
+    assert found.values == pytest.approx([c10, alpha], rel=0.02)
+    assert found.predicted[1][:, 0] == pytest.approx(force, abs=0.06)

@@ -276,6 +276,19 @@ def test_an_atlas_is_asked_for_the_first_look(tmp_path, monkeypatch):
     assert found["met"].values[0]
 
 
+@pytest.mark.parametrize(
+    "other",
+    [dict(length=0.2), dict(model="physical"), dict(material=fs.MooneyRivlin(2e5, 6e4)), dict(material=fs.Yeoh(1.2e5))],
+)
+def test_an_atlas_of_other_tubes_is_not_asked(tmp_path, other):
+    """It is told so; what it does not hold had been refused as what no tube does."""
+    make(tmp_path / "atlas.nc", parse(ATLAS))
+    goal, template = fs.Goal("rotation", 30, pressure=5e4), replace(tube(alpha=40.0, beta=-20.0), **other)
+    with fs.open_atlas(tmp_path / "atlas.nc") as atlas, pytest.warns(UserWarning, match="it was not asked"):
+        found = fs.design(template, {"alpha": (30, 60), "beta": (-60, -30)}, goal, count=1, atlas=atlas)
+    assert found["met"].item()
+
+
 def test_the_same_seed_gives_the_same_bits():
     wish = [fs.Goal("rotation", 120, pressure=1e5)]
     one, other = (fs.design(tube(), bounds("alpha", "beta"), wish, count=4, seed=3) for _ in range(2))

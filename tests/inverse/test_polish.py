@@ -23,7 +23,7 @@ class Cliff:
         none = np.zeros_like(values)
         return Predicted(values, none, none, none, np.ones_like(values), none[:, 0]), values
 
-    def slopes(self, u, choice, found):
+    def slopes(self, u, choice, found, on_meshes=None):
         return np.full((len(u), 1, 1), -10.0)
 
     def ahead(self, found, slopes, step):
