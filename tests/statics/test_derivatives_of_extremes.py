@@ -115,6 +115,27 @@ def test_where_a_tube_is_widest_beside_the_end_of_a_piece_it_changes_as_it_does_
         assert doubt < bound < 2e-4 * abs(told)
 
 
+def test_where_a_tube_stretches_most_just_where_fibers_go_slack_it_changes_as_that_place_moves(monkeypatch):
+    """The stretch has a corner there, in which it is no end that stays, and no place of vanishing slope."""
+    monkeypatch.setattr(attach, "is_worth_vectors", lambda *_: False)
+    tube = fs.Actuator(
+        alpha=83.4, beta=-83.4, length=0.0415, radius=0.014, wall=4.15e-3, fiber_radius="middle", model="physical",
+        material=fs.NeoHookean(145530.0),
+    )  # fmt: skip
+    loads, torque, step = {"pressure": 1.8e5, "force": 118.0}, 0.99, 2e-3
+    found = fs.inflate(tube, **loads, torque=torque, x=[0.0], derivatives="torque")
+    far, near = (
+        [fs.inflate(tube, **loads, torque=torque + side * by, x=[0.0], accuracy=1e-10) for side in (1.0, -1.0)]
+        for by in (step, 0.5 * step)
+    )
+    slopes = [float(one["largest_stretch"] - other["largest_stretch"]) for one, other in (far, near)]
+    told = (8.0 * slopes[1] - slopes[0]) / (6.0 * step)
+    exact, bound = (float(found[f"d_largest_stretch_d_torque{end}"]) for end in ("", "_error"))
+    assert 0.0 < float(found["slack_beta"]) < 1.0
+    assert exact == pytest.approx(told, rel=1e-6)
+    assert bound < 1e-6
+
+
 def test_shares_that_are_none_or_all_do_not_change(by_vectors):
     found = found_of({}, derivatives="alpha")
     for family in ("alpha", "beta"):
