@@ -3,7 +3,8 @@
 What is told of the middles of cells (outer radius, largest stretch, tensions) changes there as nodes move. Between pieces'
 ends it is smooth: a polynomial through a few cells tells it at any place. Where it is largest, it changes as it does at
 that very place: either its slope vanishes there, or it is an end, which stays. A share ends where a tension, seen from the
-side on which it pulls, meets zero: that place moves by what the tension changes, over its slope.
+side on which it pulls, meets zero: that place moves by what the tension changes, over its slope. What is largest just there
+has a corner, and changes as it moves, too.
 """
 
 from functools import cache
@@ -47,11 +48,12 @@ def fields(physics, y, place, share):
 
 class Piece:
     """A part of a mesh between two places, in which all is smooth: ``rows`` (fields, 1 + parameters, n) at places ``x``,
-    middles of ``cells``, and its ends where these stay, at the cells beside.
+    middles of ``cells``, and its ends where these stay, at the cells beside. ``moves``: what both ends move by, (1 +
+    parameters,), None of those that stay.
     """
 
-    def __init__(self, x, rows, ends, cells):
-        self.x, self.rows, self.ends, self.cells = x, rows, ends, cells
+    def __init__(self, x, rows, ends, cells, moves=(None, None)):
+        self.x, self.rows, self.ends, self.cells, self.moves = x, rows, ends, cells, moves
 
     def near(self, field, k):
         """The polynomial through a field at the few of its places beside place k."""
@@ -61,7 +63,16 @@ class Piece:
 
     def only(self, which):
         """The part of it at some of its places."""
-        return Piece(self.x[which], self.rows[..., which], self.ends, self.cells[which])
+        return Piece(self.x[which], self.rows[..., which], self.ends, self.cells[which], self.moves)
+
+    def at_moving_ends(self, field, k):
+        """``(place, (1 + parameters,))`` of a field at the ends that move, if its place k is beside one."""
+        made = []
+        for end, move, beside in zip(self.ends, self.moves, (0, len(self.x) - 1)):
+            if move is not None and k == beside:
+                value, slope = self.near(field, k).at(end)
+                made.append((end, value + slope[0] * move))
+        return made
 
     def largest(self, field, sign):
         """``sign`` times the field, where that is largest, (1 + parameters,); how differently other places change that have
@@ -76,6 +87,7 @@ class Piece:
         low, high = x[k - 1] if k > 0 else self.ends[0], x[k + 1] if k < last else self.ends[1]
         curve = inner.near(field, k)
         made = [(place, sign * curve.at(place)[0]) for place in (x[k], *curve.turns(low, high))]
+        made += [(place, sign * value) for place, value in inner.at_moving_ends(field, k)]
         place, best = max(made, key=lambda one: one[1][0])
         ends = [(at, sign * self.rows[field][:, at]) for at in np.flatnonzero(~inside)] if inner is not self else []
         gap = 0.0
@@ -132,22 +144,36 @@ def largest(field, pieces, sign=1.0):
     return best, np.max(tied, axis=0)
 
 
-def slack_of_loose(field, taut, pieces, segments):
-    """Share of a mesh along which a loose family is slack, with its derivatives: ``field`` is that of its tension, ``taut``
-    (cells,).
+def pulls_in(taut, pieces):
+    """Whether a loose family, ``taut`` (cells,), pulls in each piece."""
+    return [bool(taut[piece.cells[len(piece.cells) // 2]]) for piece in pieces]
+
+
+def moving(field, taut, pieces, segments):
+    """What each place between two pieces moves by, (1 + parameters,) each, where a loose family goes slack, None at others:
+    ``field`` is that of its tension, ``taut`` (cells,).
     """
-    pulls = [bool(taut[piece.cells[len(piece.cells) // 2]]) for piece in pieces]
-    total = np.zeros(pieces[0].rows.shape[1])
-    for piece, pulled in zip(pieces, pulls):
-        total[0] += 0.0 if pulled else piece.ends[1] - piece.ends[0]
-    for (before, one), (behind, other) in pairwise(zip(pieces, pulls)):
+    found = []
+    for (before, one), (behind, other) in pairwise(zip(pieces, pulls_in(taut, pieces))):
         place = before.ends[1]
         if one == other or np.any(segments == place):  # where profiles jump, it stays
+            found.append(None)
             continue
         own = before if one else behind
         own = own.only(taut[own.cells])  # a node may not be where it ends yet
         value, slope = own.near(field, len(own.x) - 1 if one else 0).at(place)
-        total += (1.0 if one else -1.0) * value / slope[0]
+        found.append(-value / slope[0])
+    return found
+
+
+def slack_of_loose(taut, pieces, moves):
+    """Share of a mesh along which a loose family is slack, with its derivatives, from the ``moves`` of where it ends."""
+    pulls, total = pulls_in(taut, pieces), np.zeros(pieces[0].rows.shape[1])
+    for piece, pull in zip(pieces, pulls):
+        total[0] += 0.0 if pull else piece.ends[1] - piece.ends[0]
+    for pull, move in zip(pulls, moves):
+        if move is not None:
+            total -= move if pull else -move
     return total
 
 
@@ -175,13 +201,19 @@ def extremes(physics, pieces, segments, whole):
     lines, given = len(followed(tube)), given_by(tube)
     table = np.zeros((len(pieces), len(EXTREMES), 2, count))
     for found, own in zip(table, pieces):
+        moves = []
+        if tube.is_loose:
+            moves = [moving(PULLS + line, physics.settled[2 + line], own, segments) for line in range(lines)]
+        for (before, behind), *all_moves in zip(pairwise(own), *moves):
+            move = next((move for move in all_moves if move is not None), None)
+            before.moves, behind.moves = (before.moves[0], move), (move, behind.moves[1])
         found[0], found[1] = largest(OUTER, own), largest(STRETCH, own)
         for k, family in enumerate(FAMILIES):
             if lines == 0 or family not in given:
                 continue
             line = k if lines == 2 else 0
             if tube.is_loose:
-                found[4 + k, 0] = whole * slack_of_loose(PULLS + line, physics.settled[2 + line], own, segments)
+                found[4 + k, 0] = whole * slack_of_loose(physics.settled[2 + line], own, moves[line])
             else:
                 found[4 + k, 0] = whole * slack_of_bonded(PULLS + line, own)
             if not tube.is_loose or found[4 + k, 0, 0] == 0.0:

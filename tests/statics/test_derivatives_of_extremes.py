@@ -115,11 +115,72 @@ def test_where_a_tube_is_widest_beside_the_end_of_a_piece_it_changes_as_it_does_
         assert doubt < bound < 2e-4 * abs(told)
 
 
+def test_where_a_tube_stretches_most_just_where_fibers_go_slack_it_changes_as_that_place_moves(monkeypatch):
+    """The stretch has a corner there, in which it is no end that stays, and no place of vanishing slope."""
+    monkeypatch.setattr(attach, "is_worth_vectors", lambda *_: False)
+    tube = fs.Actuator(
+        alpha=83.4, beta=-83.4, length=0.0415, radius=0.014, wall=4.15e-3, fiber_radius="middle", model="physical",
+        material=fs.NeoHookean(145530.0),
+    )  # fmt: skip
+    loads, torque, step = {"pressure": 1.8e5, "force": 118.0}, 0.99, 2e-3
+    found = fs.inflate(tube, **loads, torque=torque, x=[0.0], derivatives="torque")
+    far, near = (
+        [fs.inflate(tube, **loads, torque=torque + side * by, x=[0.0], accuracy=1e-10) for side in (1.0, -1.0)]
+        for by in (step, 0.5 * step)
+    )
+    slopes = [float(one["largest_stretch"] - other["largest_stretch"]) for one, other in (far, near)]
+    told = (8.0 * slopes[1] - slopes[0]) / (6.0 * step)
+    exact, bound = (float(found[f"d_largest_stretch_d_torque{end}"]) for end in ("", "_error"))
+    assert 0.0 < float(found["slack_beta"]) < 1.0
+    assert exact == pytest.approx(told, rel=1e-6)
+    assert bound < 1e-6
+
+
 def test_shares_that_are_none_or_all_do_not_change(by_vectors):
     found = found_of({}, derivatives="alpha")
     for family in ("alpha", "beta"):
         assert float(found[f"slack_{family}"]) == 0.0
         assert float(found[f"d_slack_{family}_d_alpha"]) == 0.0
+
+
+def test_share_along_which_fibers_would_have_to_push_changes_as_where_they_bear_nothing(monkeypatch):
+    """Pulls hardly change along the tube where they end: what counts as none there, a billionth of the load, moves that."""
+    tube = fs.Actuator(
+        alpha=85, beta=-58.9, length=0.05037, radius=3.016e-3, wall=0.6665e-3, wall_model="membrane", fibers="bonded",
+        fiber_radius="outer", material=fs.MooneyRivlin(66186.0, 61797.0),
+    )  # fmt: skip
+    one, other = (
+        told_by(way, monkeypatch, tube, pressure=8390.3, force=0.16848, torque=4.3354e-4) for way in (True, False)
+    )
+    assert 0.98 < float(one["slack_beta"]) < 1.0
+    for name in ("alpha", "length", "pressure", "torque"):
+        (exact, bound), (told, doubt) = (
+            [float(found[f"d_slack_beta_d_{name}{end}"]) for end in ("", "_error")] for found in (one, other)
+        )
+        assert abs(exact - told) <= bound + doubt, name
+        assert bound + doubt <= 1e-6 * abs(exact), name
+
+
+def test_loose_tubes_that_hardly_bend_are_told_as_exactly_as_they_settle(monkeypatch):
+    """Of what bends them little is left of the resultant's digits: vectors are as far from meshes as their bounds say."""
+    tube = fs.Actuator(
+        alpha=2.0, beta=None, length=6.3e-3, radius=2.73e-3, wall=1.72e-3, fiber_extension=1.0027, model="physical",
+        material=fs.MooneyRivlin(192606.0, 56182.0),
+    )  # fmt: skip
+    one, other = (
+        told_by(way, monkeypatch, tube, pressure=4166.0, force=0.0967, torque=1.16e-4) for way in (True, False)
+    )
+    for output in ("deformed_length", "rotation", "volume"):
+        for name in ("pressure", "force", "torque"):
+            (exact, bound), (told, doubt) = (
+                [float(found[f"d_{output}_d_{name}{end}"]) for end in ("", "_error")] for found in (one, other)
+            )
+            assert abs(exact - told) <= bound + doubt, (output, name)
+
+
+def told_by(in_vectors, monkeypatch, tube, **loads):
+    monkeypatch.setattr(attach, "is_worth_vectors", lambda *_: in_vectors)
+    return fs.inflate(tube, **loads, x=[0.0], accuracy=1e-6 if in_vectors else 1e-9, derivatives="all")
 
 
 def test_tension_of_slack_threads_does_not_change(by_vectors):

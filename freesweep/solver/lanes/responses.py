@@ -204,7 +204,7 @@ def differentiate_lanes(problems, pressures, known, limp, order, constants, laye
             met = active & (off < ALMOST)
             if step + 1 == PASSES or not some(active & (off > ENOUGH)):
                 loose = (unsure > 0.0) & mask_of(-1 if is_loose else 0)
-                doubts = tell(mid, far, off, loose, half, own, out)
+                doubts = tell(mid, far, off, loose, load, half, own, out)
                 tell_extremes(mid, at, doubts, inner, cell, load, own, out)
                 tell_slack(parts, room, mid, pull, doubts, cell, load, half, own, out)
                 break

@@ -10,9 +10,10 @@ q what it is in the middle, per length. What is missed is what rules miss of the
 is; where families go slack; and rounding. A long tube is uniform in the middle, which no depth moves.
 """
 
-from math import exp
+from math import exp, sqrt
 
 from ...jit import kernel
+from ..physics.wall import has_two_families, may_go_slack
 from .meridian import DEEPEST
 from .moved import MISSED, SUM
 from .moved_middle import DEPTH, LOADS, OF_LOADS, OF_Y, OWN
@@ -25,10 +26,22 @@ SAFETY, WRONG, LEFT = 10.0, 20.0, 4.0  # times what rules miss, and what is wron
 BEHIND = 2.0 * DEEPEST * exp(-DEEPEST)  # of a layer, in the middle of a long tube
 ENDS, ROUNDING, NOISE = 4e-9, 1e-11, 3e-10  # of where ends of slack lie, of numbers, of how R - T moves near the middle
 CLOSE = 1e-10  # of the strain in the middle, that may be wrong
+# of a shear modulus: what the resultant misses where fibers settle by Newton's method, times the places it does so at
+FOLLOWED, TINY = 3e-11, 1e-300
 
 
 @kernel
-def tell(mid, far, off, loose, half, own, out):
+def missed_of_bend(mid, load):
+    """By what share R - T may be wrong, of which the tube bends, in the mean along it: the less it bends the more so."""
+    if has_two_families(load.wall) and not may_go_slack(load.wall):
+        return 0.0 * mid.y
+    on, T = 1.0 - mid.y, load.p * mid.y * mid.y + load.f
+    beyond = abs(on * (mid.rise + 0.5 * mid.bend * on))  # R - T at the end, about
+    return FOLLOWED / sqrt(max(beyond * T, TINY))
+
+
+@kernel
+def tell(mid, far, off, loose, load, half, own, out):
     """Write what is told: ``out`` (2, OUTPUTS TOLD, WIDTH), values and what they may miss. Where it is ``far`` to the middle
     it is uniform; ``off`` is by what share what hangs on the depth of the middle is wrong. Where ``loose``, a family
     goes slack along the tube. Returns (where it is far, 1/(how half a tube grows with the depth), what is unsure, where
@@ -40,6 +53,7 @@ def tell(mid, far, off, loose, half, own, out):
     hangs = select(far, 1.0, min(LEFT * mid.depth * mid.q, 1.0))
     off = off + select(far, 0.0, missed / mid.depth * hangs)
     unsure, ends = WRONG * off + select(far, BEHIND, 0.0) + NOISE, select(loose, ENDS, 0.0)
+    unsure = unsure + missed_of_bend(mid, load)
     for n in range(LOADS):
         tell_load(n, far, per, unsure, ends, half, own, out)
     first = TOLD * LOADS
