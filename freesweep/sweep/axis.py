@@ -41,7 +41,7 @@ DOMAIN = {
     "held_length": _SIZE,
     "held_length_ratio": (1e-3, 1e3, "it is a stretch of the whole tube: a tenth shorter is 0.9"),
     "held_rotation": _LOAD,
-    "pressure": (0.0, LARGEST, "pressures are 0 or more; vacuum is another problem"),
+    "pressure": (0.0, LARGEST, "vacuum is another problem: pressures are 0 or more"),
 }
 
 

@@ -72,12 +72,15 @@ def follow(room, tube, path, here, far, rows, limit, accuracy):
         if status != OK and status != BEYOND_LIMIT:
             return status
         passed = (ahead[0] - far) * sense >= 0.0
-        if status == BEYOND_LIMIT and sense > 0.0:  # a limit pressure is one of rising pressures
+        if status == BEYOND_LIMIT:
             fold = locate(room, tube, path, here, ahead, sense)
-            end_at_fold(room, tube, path, first, here, ahead, fold, rows, limit, accuracy)
+            if sense > 0.0:  # a limit pressure is one of rising pressures
+                end_at_fold(room, tube, path, first, here, ahead, fold, rows, limit, accuracy)
+            else:
+                answer(room, tube, path, first, here, ahead, rows, accuracy)
             return OK if passed else BEYOND_LIMIT if fold[0] == fold[0] else NOT_CONVERGED
         answer(room, tube, path, first, here, ahead, rows, accuracy)
-        if passed or status == BEYOND_LIMIT:
-            return OK if passed else BEYOND_LIMIT
+        if passed:
+            return OK
         first, here = ahead[0], take(track, tube, path, ahead[0], ahead[1], work)
     return NOT_CONVERGED
