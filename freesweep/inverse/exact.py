@@ -56,7 +56,7 @@ def exact_slopes(space, wishes, u, choice, values, middles=None):
         return _state(space, state, outputs, columns, values[np.ix_(some, own)], known, some, free)
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        for (_, own, some), found in zip(jobs, pool.map(solve, jobs)):
+        for (_, own, some), found in zip(jobs, (pool.map if len(values) > 1 else map)(solve, jobs)):
             slopes[np.ix_(some, own)] = found
     return slopes
 

@@ -74,6 +74,12 @@ class Least:
             "jac": lambda u: sign * self.known(u)[1][j] / size,
         }
 
+    def is_out_of_reach(self, u, levels):
+        """Whether some objective is above its level and nothing that is open changes it."""
+        values, slopes = (numbers[len(numbers) - self.objectives :] for numbers in self.known(u))
+        above = values - np.array(levels) > ACTIVE * self.scale
+        return bool(np.any(above & ~np.any(slopes, axis=1)))
+
     def search(self, u, k, levels):
         """The point with the least of objective ``k`` from ``u`` (p,) on: where that leads to where there is no state, from
         the last one that has all of them, within a box that is halved each time.
@@ -147,8 +153,9 @@ def _best(misfit, scale, starts, level):
     found = []
     for start, choice in starts:
         at = Least(misfit, choice, 2, scale)
-        point = at.search(start, 1, [level, np.nan])
-        broken = sum(max(0.0, -float(each["fun"](point)) - ACTIVE) for each in at.constraints([level, np.nan]))
+        levels = [level, np.nan]
+        point = start if at.is_out_of_reach(start, levels) else at.search(start, 1, levels)
+        broken = sum(max(0.0, -float(each["fun"](point)) - ACTIVE) for each in at.constraints(levels))
         found.append((broken, float(at.objective(1)[0](point)), point, choice))
     return min(found, key=lambda one: one[:2])[2:]
 

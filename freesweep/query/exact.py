@@ -78,7 +78,8 @@ def solve(kind, points, tubes, accuracy, largest_pressure=None, cells=CELLS, tho
 
     order = [np.searchsorted(good, some) for some, _ in courses]
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        parts = list(pool.map(part, order, [followed for _, followed in courses]))
+        each = pool.map if len(order) > 1 else map  # a thread for one would cost as much as what it solves
+        parts = list(each(part, order, [followed for _, followed in courses]))
     names = HELD_KINDS.get(kind, OUTPUTS)
     names += ALONG if along or tubes.model.is_physical or len(tubes.families) < 2 else ()
     found = {key: np.full(len(points), np.nan) for name in names for key in (name, f"{name}_error")}
