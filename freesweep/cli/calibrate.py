@@ -92,10 +92,8 @@ def _run(options):
         measurements = _measurements(options, asked, faults)
         shown = shown_as([*units_of_files(map(Path, options.files)), *asked_in_units(options)])
     found = calibrate(measurements, **asked)
-    print(of_calibration(found) if options.json else table(found, shown))
     if options.out:
         write_whole(options.out, to_dataset(found).to_netcdf(engine="netcdf4"))
-        tell_kept(options.out, options.json)
     if options.report:
         if options.report.lower().endswith(".html"):
             from ..calibration.page import page
@@ -106,7 +104,9 @@ def _run(options):
             from ..plot.style import save
 
             save(picture(found, shown), options.report)
-        tell_kept(options.report, options.json)
+    print(of_calibration(found) if options.json else table(found, shown))
+    for kept in filter(None, (options.out, options.report)):
+        tell_kept(kept, options.json)
 
 
 def _measurements(options, asked, faults):

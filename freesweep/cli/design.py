@@ -34,6 +34,15 @@ def _run(options):
     asked = wish_file.read(options.wishes)
     shown_as = shown_in(wish_file.units_asked(options.wishes))
     found, tubes = find(**asked, shown=shown_as)
+    if options.out:  # files first: who reads the table may not wait for its end
+        content = csv(found).encode() if options.out.endswith(".csv") else found.to_netcdf(engine="netcdf4")
+        write_whole(options.out, content)
+    if options.picture:
+        from ..inverse.shown import shown
+        from ..plot.candidates import draw
+        from ..plot.style import save
+
+        save(draw(found, *shown(found, tubes, asked["goals"], asked["limits"])), options.picture)
     if options.json:
         print(of_candidates(found))
     else:
@@ -44,14 +53,5 @@ def _run(options):
         if found.attrs.get("prices"):
             print(found.attrs["prices"])
         print(lines(found))
-    if options.out:
-        content = csv(found).encode() if options.out.endswith(".csv") else found.to_netcdf(engine="netcdf4")
-        write_whole(options.out, content)
-        tell_kept(options.out, options.json)
-    if options.picture:
-        from ..inverse.shown import shown
-        from ..plot.candidates import draw
-        from ..plot.style import save
-
-        save(draw(found, *shown(found, tubes, asked["goals"], asked["limits"])), options.picture)
-        tell_kept(options.picture, options.json)
+    for kept in filter(None, (options.out, options.picture)):
+        tell_kept(kept, options.json)

@@ -280,12 +280,13 @@ def _show(dataset, options):
     from .as_json import of_states, tell_kept
     from .query import as_csv
 
-    print(of_states(dataset) if options.json else table(dataset, shown_in(asked_in_units(options))))
-    if note := dataset.attrs.get("thin_wall_note"):
-        print(f"freesweep: note: {note}", file=sys.stderr)
-    if options.out:
+    if options.out:  # first: who reads the table may not wait for its end
         if options.out.lower().endswith(".csv"):
             write_whole(options.out, f"{as_csv(dataset.drop_dims('x'))}\n".encode())
         else:
             write_whole(options.out, dataset.to_netcdf(engine="netcdf4"))
+    print(of_states(dataset) if options.json else table(dataset, shown_in(asked_in_units(options))))
+    if note := dataset.attrs.get("thin_wall_note"):
+        print(f"freesweep: note: {note}", file=sys.stderr)
+    if options.out:
         tell_kept(options.out, options.json)

@@ -1,6 +1,7 @@
 """The command line: what it prints, which files it makes, which exit code it gives; never a traceback."""
 
 import csv
+import os
 import subprocess
 import sys
 
@@ -147,3 +148,37 @@ def test_a_missing_folder_is_the_environments_fault(capsys):
 @pytest.mark.parametrize("words", [[], ["nonsense"], ["plot"], ["lock"], ["inflate", *TUBE]])
 def test_incomplete_commands_show_their_usage(words, capsys):
     assert "usage: freesweep" in refused(capsys, *words)
+
+
+WISH = """
+[actuator]
+alpha = 30
+beta = -30
+length = "0.2 m"
+wall = "1 mm"
+c10 = "1 bar"
+[free]
+radius = ["4 mm", "5 mm"]
+[[goals]]
+output = "rotation"
+at_most = 90
+pressure = "1 bar"
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "files"),
+    [
+        (["inflate", *TUBE, *RUBBER, "--pressure", "1 bar", "-o", "states.csv"], ["states.csv"]),
+        (["design", "wish.toml", "-o", "tubes.csv", "--picture", "tubes.png"], ["tubes.csv", "tubes.png"]),
+    ],
+    ids=["inflate", "design"],
+)
+def test_what_is_kept_is_kept_though_nobody_reads_the_table(command, files, tmp_path):
+    """`freesweep ... -o FILE | head -1` had lost the file."""
+    (tmp_path / "wish.toml").write_text(WISH)
+    reader, writer = os.pipe()
+    os.close(reader)
+    subprocess.run([sys.executable, "-m", "freesweep", *command], stdout=writer, env=CHILD_ENVIRONMENT, check=False)
+    os.close(writer)
+    assert all((tmp_path / name).stat().st_size > 0 for name in files)
